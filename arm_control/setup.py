@@ -1,0 +1,39 @@
+"""Installs arm_control as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "arm_control"
+DATA_FOLDERS = ["config", "launch"]
+
+
+def data_files() -> list[tuple[str, list[str]]]:
+    """Return the share/ entries of every file below the data folders."""
+    share = Path("share") / PACKAGE
+    files = [
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (str(share), ["package.xml"]),
+    ]
+    for folder in DATA_FOLDERS:
+        for path in sorted(Path(folder).rglob("*")):
+            if path.is_file():
+                files.append((str(share / path.parent), [str(path)]))
+    return files
+
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    data_files=data_files(),
+    install_requires=["setuptools"],
+    zip_safe=True,
+    description="ros2_control in Python: hardware interface, controller manager, controllers and spawner.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "spawner = arm_control.spawner_node:main"
+        ],
+    },
+)

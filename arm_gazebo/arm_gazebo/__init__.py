@@ -1,0 +1,1 @@
+"""The simulation: URDF to MuJoCo, simulated hardware, worlds and cameras."""

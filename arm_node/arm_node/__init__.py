@@ -1,0 +1,8 @@
+"""What every node process of the arm suite shares: environment, start and orderly end of rclpy.
+
+Import-light on purpose: nothing here imports rclpy before `prepare_environment` has run.
+"""
+
+from arm_node.environment import MissingInterfacesError, prepare_environment
+
+__all__ = ["MissingInterfacesError", "prepare_environment"]

@@ -1,0 +1,174 @@
+"""Start, run and orderly end of a process that holds rclpy nodes.
+
+The main thread only waits for signals; the executor spins in a thread of its own. rclpy's own
+signal handlers are off: they raise inside whatever callback runs, and an exit in the middle of
+`spin` can abort the interpreter. Order of the end: the application's own teardown (its loop
+thread joined, while services still answer), executor, nodes, context.
+"""
+
+import logging
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from types import FrameType
+
+from arm_node.environment import MissingInterfacesError, prepare_environment
+
+SWITCH_INTERVAL_S = 0.0005
+"""Python's default of 5 ms lets one busy callback delay a control tick by as much."""
+
+EXIT_OK = 0
+EXIT_FAILED = 1
+EXIT_USAGE = 2
+
+
+class NodeProcess:
+    """The running process as its application sees it: an executor and a way to end.
+
+    `executor` is a SingleThreadedExecutor; add nodes to it. Every method may be called from any
+    thread.
+    """
+
+    def __init__(self) -> None:
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.executor = SingleThreadedExecutor()
+        self.exit_code = EXIT_OK
+        self._stop = threading.Event()
+        self._spinning: threading.Thread | None = None
+
+    @property
+    def stopping(self) -> bool:
+        """Whether the end has been asked for, by a signal or by `stop`."""
+        return self._stop.is_set()
+
+    def stop(self, exit_code: int = EXIT_OK) -> None:
+        """Ask the process to end with this exit code; the first failure wins."""
+        self.exit_code = self.exit_code or exit_code
+        self._stop.set()
+
+    def wait(self, timeout_s: float | None = None) -> bool:
+        """Block until the end is asked for; return whether it was, within the time-out."""
+        return self._stop.wait(timeout_s)
+
+    def start_spinning(self) -> None:
+        """Spin the executor in a thread of its own until `join_spinning`."""
+        self._spinning = threading.Thread(target=self._spin, name="executor", daemon=True)
+        self._spinning.start()
+
+    def join_spinning(self) -> None:
+        """Stop the executor and join its thread: a thread still spinning at exit aborts."""
+        self.executor.shutdown(timeout_sec=2.0)
+        if self._spinning is not None:
+            self._spinning.join(timeout=5.0)
+
+    def _spin(self) -> None:
+        from rclpy.executors import ExternalShutdownException, ShutdownException
+
+        while not self.executor._is_shutdown:
+            try:
+                self.executor.spin()
+            except (ExternalShutdownException, ShutdownException):
+                return
+            except Exception:
+                # A callback raised. One bad message must not end the process: say it, go on.
+                logging.getLogger("arm_node").exception("a callback failed; the node goes on")
+
+
+Application = Callable[[NodeProcess], AbstractContextManager[None]]
+"""Builds the nodes before it yields, tears them down after; runs in the main thread."""
+
+
+def run_process(
+    application: Application,
+    argv: Sequence[str] | None = None,
+    user_errors: tuple[type[Exception], ...] = (),
+) -> int:
+    """Run an application until SIGINT, SIGTERM, SIGHUP or its own `stop`; return the exit code.
+
+    Args:
+        application: builds the nodes, see `Application`.
+        argv: ROS arguments of the process, the program's name first; default sys.argv.
+        user_errors: errors whose message is for the user: one FATAL line, no traceback, exit 1.
+
+    A missing interface package is one sentence on stderr and exit code 2.
+    """
+    try:
+        prepare_environment()
+    except MissingInterfacesError as error:
+        sys.stderr.write(f"{error}\n")
+        return EXIT_USAGE
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    try:
+        rclpy.init(
+            args=list(sys.argv if argv is None else argv),
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+    except Exception as error:
+        # rcl raises half a dozen unrelated types here, all of them about the arguments given.
+        sys.stderr.write(f"cannot start ROS: {first_line(error)}\n")
+        return EXIT_USAGE
+    try:
+        return _run_initialised(application, user_errors)
+    finally:
+        rclpy.try_shutdown()
+
+
+def _run_initialised(application: Application, user_errors: tuple[type[Exception], ...]) -> int:
+    from arm_node.log_bridge import bridge_logging
+
+    process = NodeProcess()
+    with _signals_stop(process), bridge_logging():
+        try:
+            with application(process):
+                process.start_spinning()
+                process.wait()
+            process.join_spinning()
+        except user_errors as error:
+            logging.getLogger("arm_node").critical("%s", error)
+            process.stop(EXIT_FAILED)
+        finally:
+            process.join_spinning()
+            for node in list(process.executor.get_nodes()):
+                node.destroy_node()
+    return process.exit_code
+
+
+def run_node(
+    node_class: Callable[[], object],
+    argv: Sequence[str] | None = None,
+    user_errors: tuple[type[Exception], ...] = (),
+) -> int:
+    """Run one node that needs nothing but an executor; see `run_process`."""
+
+    @contextmanager
+    def application(process: NodeProcess) -> Iterator[None]:
+        process.executor.add_node(node_class())
+        yield
+
+    return run_process(application, argv, user_errors)
+
+
+def first_line(error: BaseException) -> str:
+    """Return the first line of an error's message: rcl appends C source positions to it."""
+    text = str(error).strip()
+    return text.splitlines()[0] if text else type(error).__name__
+
+
+@contextmanager
+def _signals_stop(process: NodeProcess) -> Iterator[None]:
+    def ask_to_stop(_number: int, _frame: FrameType | None) -> None:
+        process.stop()
+
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    previous = {number: signal.signal(number, ask_to_stop) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)

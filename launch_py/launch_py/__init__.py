@@ -1,0 +1,1 @@
+"""Process supervisor and launch files in Python: starts when ready, restarts with back-off, stops everything."""
