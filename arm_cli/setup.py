@@ -1,5 +1,6 @@
-"""Installs arm_cli as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -8,10 +9,10 @@ PACKAGE = "arm_cli"
 DATA_FOLDERS = []
 
 
-def data_files() -> list[tuple[str, list[str]]]:
+def data_files() -> list[tuple[str, Sequence[str]]]:
     """Return the share/ entries of every file below the data folders."""
     share = Path("share") / PACKAGE
-    files = [
+    files: list[tuple[str, Sequence[str]]] = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
@@ -32,8 +33,6 @@ setup(
     description="The arm command.",
     license="Apache-2.0",
     entry_points={
-        "console_scripts": [
-            "arm = arm_cli.main:main"
-        ],
+        "console_scripts": ["arm = arm_cli.main:main"],
     },
 )

@@ -1,5 +1,6 @@
-"""Installs arm_control as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -8,10 +9,10 @@ PACKAGE = "arm_control"
 DATA_FOLDERS = ["config", "launch"]
 
 
-def data_files() -> list[tuple[str, list[str]]]:
+def data_files() -> list[tuple[str, Sequence[str]]]:
     """Return the share/ entries of every file below the data folders."""
     share = Path("share") / PACKAGE
-    files = [
+    files: list[tuple[str, Sequence[str]]] = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
@@ -29,11 +30,11 @@ setup(
     data_files=data_files(),
     install_requires=["setuptools"],
     zip_safe=True,
-    description="ros2_control in Python: hardware interface, controller manager, controllers and spawner.",
+    description=(
+        "ros2_control in Python: hardware interface, controller manager, controllers and spawner."
+    ),
     license="Apache-2.0",
     entry_points={
-        "console_scripts": [
-            "spawner = arm_control.spawner_node:main"
-        ],
+        "console_scripts": ["spawner = arm_control.spawner_node:main"],
     },
 )

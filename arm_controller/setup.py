@@ -1,5 +1,6 @@
-"""Installs arm_controller as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -8,10 +9,10 @@ PACKAGE = "arm_controller"
 DATA_FOLDERS = ["config", "launch"]
 
 
-def data_files() -> list[tuple[str, list[str]]]:
+def data_files() -> list[tuple[str, Sequence[str]]]:
     """Return the share/ entries of every file below the data folders."""
     share = Path("share") / PACKAGE
-    files = [
+    files: list[tuple[str, Sequence[str]]] = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
@@ -29,13 +30,15 @@ setup(
     data_files=data_files(),
     install_requires=["setuptools"],
     zip_safe=True,
-    description="Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined.",
+    description=(
+        "Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined."
+    ),
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
             "arm_controller_node = arm_controller.arm_controller_node:main",
             "publisher_terminal = arm_controller.publisher_terminal_node:main",
-            "publisher_defined = arm_controller.publisher_defined_node:main"
+            "publisher_defined = arm_controller.publisher_defined_node:main",
         ],
     },
 )

@@ -1,5 +1,6 @@
-"""Installs arm_description as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -8,10 +9,10 @@ PACKAGE = "arm_description"
 DATA_FOLDERS = ["urdf", "meshes", "config", "launch"]
 
 
-def data_files() -> list[tuple[str, list[str]]]:
+def data_files() -> list[tuple[str, Sequence[str]]]:
     """Return the share/ entries of every file below the data folders."""
     share = Path("share") / PACKAGE
-    files = [
+    files: list[tuple[str, Sequence[str]]] = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
@@ -29,12 +30,15 @@ setup(
     data_files=data_files(),
     install_requires=["setuptools"],
     zip_safe=True,
-    description="The 4-DOF arm: xacro, meshes, robot model and kinematics; robot_state_publisher and joint_state_publisher in Python.",
+    description=(
+        "The 4-DOF arm: xacro, meshes, robot model and kinematics; robot_state_publisher "
+        "and joint_state_publisher in Python."
+    ),
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
             "robot_state_publisher = arm_description.robot_state_publisher_node:main",
-            "joint_state_publisher = arm_description.joint_state_publisher_node:main"
+            "joint_state_publisher = arm_description.joint_state_publisher_node:main",
         ],
     },
 )

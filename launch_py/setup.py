@@ -1,5 +1,6 @@
-"""Installs launch_py as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -8,10 +9,10 @@ PACKAGE = "launch_py"
 DATA_FOLDERS = ["config"]
 
 
-def data_files() -> list[tuple[str, list[str]]]:
+def data_files() -> list[tuple[str, Sequence[str]]]:
     """Return the share/ entries of every file below the data folders."""
     share = Path("share") / PACKAGE
-    files = [
+    files: list[tuple[str, Sequence[str]]] = [
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
@@ -29,11 +30,12 @@ setup(
     data_files=data_files(),
     install_requires=["setuptools"],
     zip_safe=True,
-    description="Process supervisor and launch files in Python: starts when ready, restarts with back-off, stops everything.",
+    description=(
+        "Process supervisor and launch files in Python: starts when ready, restarts with "
+        "back-off, stops everything."
+    ),
     license="Apache-2.0",
     entry_points={
-        "console_scripts": [
-            "launch_py = launch_py.__main__:main"
-        ],
+        "console_scripts": ["launch_py = launch_py.__main__:main"],
     },
 )

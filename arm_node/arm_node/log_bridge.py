@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.logging import get_logger
 
+
 class RosLogHandler(logging.Handler):
     """Writes each record through the rclpy logger of the record's name, any thread."""
 

@@ -13,8 +13,12 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from arm_node.environment import MissingInterfacesError, prepare_environment
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
@@ -37,6 +41,7 @@ class NodeProcess:
         self.executor = SingleThreadedExecutor()
         self.exit_code = EXIT_OK
         self._stop = threading.Event()
+        self._spin_ended = threading.Event()
         self._spinning: threading.Thread | None = None
 
     @property
@@ -60,6 +65,7 @@ class NodeProcess:
 
     def join_spinning(self) -> None:
         """Stop the executor and join its thread: a thread still spinning at exit aborts."""
+        self._spin_ended.set()
         self.executor.shutdown(timeout_sec=2.0)
         if self._spinning is not None:
             self._spinning.join(timeout=5.0)
@@ -67,7 +73,7 @@ class NodeProcess:
     def _spin(self) -> None:
         from rclpy.executors import ExternalShutdownException, ShutdownException
 
-        while not self.executor._is_shutdown:
+        while not self._spin_ended.is_set():
             try:
                 self.executor.spin()
             except (ExternalShutdownException, ShutdownException):
@@ -102,6 +108,7 @@ def run_process(
         return EXIT_USAGE
     import rclpy
     from rclpy.signals import SignalHandlerOptions
+    from rclpy.utilities import try_shutdown
 
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     try:
@@ -116,7 +123,7 @@ def run_process(
     try:
         return _run_initialised(application, user_errors)
     finally:
-        rclpy.try_shutdown()
+        try_shutdown()
 
 
 def _run_initialised(application: Application, user_errors: tuple[type[Exception], ...]) -> int:
@@ -128,7 +135,6 @@ def _run_initialised(application: Application, user_errors: tuple[type[Exception
             with application(process):
                 process.start_spinning()
                 process.wait()
-            process.join_spinning()
         except user_errors as error:
             logging.getLogger("arm_node").critical("%s", error)
             process.stop(EXIT_FAILED)
@@ -140,7 +146,7 @@ def _run_initialised(application: Application, user_errors: tuple[type[Exception
 
 
 def run_node(
-    node_class: Callable[[], object],
+    node_class: Callable[[], "Node"],
     argv: Sequence[str] | None = None,
     user_errors: tuple[type[Exception], ...] = (),
 ) -> int:

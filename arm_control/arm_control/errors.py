@@ -1,0 +1,38 @@
+"""Errors of arm_control.
+
+ArmControlError
+├── HardwareInfoError      a <ros2_control> block that cannot be used
+├── RegistryError          a controller or hardware type that is not known or not loadable
+├── ParameterError         a parameter of a controller that is missing or wrong
+├── ControllerError        a controller refuses a step of its life cycle
+├── ControllerManagerError the manager refuses what was asked of it
+└── LoopStoppedError       a call to a control loop that runs no more
+"""
+
+
+class ArmControlError(Exception):
+    """Root of every error that this package raises; the message is for the user."""
+
+
+class HardwareInfoError(ArmControlError):
+    """A `<ros2_control>` block is missing, incomplete or contradictory."""
+
+
+class RegistryError(ArmControlError):
+    """No installed package offers the controller or hardware type, or it cannot be imported."""
+
+
+class ParameterError(ArmControlError):
+    """A parameter of a controller is missing, of the wrong type or out of its range."""
+
+
+class ControllerError(ArmControlError):
+    """Raised by a controller's life-cycle method to refuse, with the reason."""
+
+
+class ControllerManagerError(ArmControlError):
+    """The manager refuses a request; the message says why and what exists."""
+
+
+class LoopStoppedError(ArmControlError):
+    """The control loop has ended, so it will not run the function handed to it."""

@@ -1,0 +1,213 @@
+"""What a robot description says about its hardware: the `<ros2_control>` blocks."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from arm_description.xml_document import parse_xml
+
+from arm_control.errors import HardwareInfoError
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+COMPONENT_TYPES = ("system", "actuator", "sensor")
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceInfo:
+    """One command or state interface of a joint, sensor or GPIO, in rad or m and s.
+
+    Attributes:
+        name: without the joint, for example 'position'.
+        initial_value: value at the start, None if not given.
+        minimum: lowest command, None if not given.
+        maximum: highest command, None if not given.
+        parameters: every `<param>` of the interface, the ones above included, as text.
+    """
+
+    name: str
+    initial_value: float | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class JointInfo:
+    """A joint of a component; sensors and GPIOs have the same shape."""
+
+    name: str
+    command_interfaces: tuple[InterfaceInfo, ...] = ()
+    state_interfaces: tuple[InterfaceInfo, ...] = ()
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareInfo:
+    """One `<ros2_control>` block.
+
+    Attributes:
+        name: of the component.
+        type: 'system', 'actuator' or 'sensor'.
+        plugin: the driver's type string.
+        joints: in document order.
+        sensors: in document order; they have no command interfaces.
+        gpios: in document order.
+        parameters: the `<param>`s of `<hardware>`, as text.
+        line: where the block starts in the description.
+    """
+
+    name: str
+    type: str
+    plugin: str
+    joints: tuple[JointInfo, ...] = ()
+    sensors: tuple[JointInfo, ...] = ()
+    gpios: tuple[JointInfo, ...] = ()
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    line: int = 0
+
+    @property
+    def state_interface_names(self) -> tuple[str, ...]:
+        """Full names of all state interfaces: joints, sensors, GPIOs, each in document order."""
+        return tuple(
+            f"{part.name}/{interface.name}"
+            for part in self._parts()
+            for interface in part.state_interfaces
+        )
+
+    @property
+    def command_interface_names(self) -> tuple[str, ...]:
+        """Full names of all command interfaces: joints, sensors, GPIOs, each in document order."""
+        return tuple(
+            f"{part.name}/{interface.name}"
+            for part in self._parts()
+            for interface in part.command_interfaces
+        )
+
+    def _parts(self) -> Iterator[JointInfo]:
+        yield from self.joints
+        yield from self.sensors
+        yield from self.gpios
+
+
+def parse_hardware_info(urdf_xml: str) -> tuple[HardwareInfo, ...]:
+    """Return the `<ros2_control>` blocks of a robot description; empty where it has none.
+
+    Raises:
+        HardwareInfoError: a block lacks something, repeats a name, or has a value that is no
+            number; the message names the component and the line.
+        arm_description.errors.XmlError: the text is not XML.
+    """
+    components: dict[str, HardwareInfo] = {}
+    for element in parse_xml(urdf_xml).iterchildren("ros2_control"):
+        component = _parse_component(element)
+        if component.name in components:
+            raise HardwareInfoError(
+                f"line {component.line}: a second <ros2_control> component is named "
+                f"'{component.name}'; the first stands in line {components[component.name].line}"
+            )
+        components[component.name] = component
+    return tuple(components.values())
+
+
+def _parse_component(element: "_Element") -> HardwareInfo:
+    name = _required_name(element, "<ros2_control>")
+    where = f"<ros2_control name='{name}'>"
+    kind = element.get("type", "")
+    if kind not in COMPONENT_TYPES:
+        raise HardwareInfoError(
+            f"line {element.sourceline}: {where} has type '{kind}'; "
+            f"it must be one of {', '.join(COMPONENT_TYPES)}"
+        )
+    hardware = element.find("hardware")
+    plugin = (hardware.findtext("plugin") or "").strip() if hardware is not None else ""
+    if hardware is None or not plugin:
+        raise HardwareInfoError(
+            f"line {element.sourceline}: {where} names no <hardware><plugin>, "
+            "so nothing says what drives it"
+        )
+    return HardwareInfo(
+        name=name,
+        type=kind,
+        plugin=plugin,
+        joints=_parse_parts(element, "joint", where),
+        sensors=_parse_parts(element, "sensor", where),
+        gpios=_parse_parts(element, "gpio", where),
+        parameters=_parse_parameters(hardware, where),
+        line=element.sourceline or 0,
+    )
+
+
+def _parse_parts(element: "_Element", tag: str, where: str) -> tuple[JointInfo, ...]:
+    parts: dict[str, JointInfo] = {}
+    for child in element.iterchildren(tag):
+        name = _required_name(child, f"<{tag}> of {where}")
+        if name in parts:
+            raise HardwareInfoError(
+                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
+            )
+        here = f"<{tag} name='{name}'> of {where}"
+        parts[name] = JointInfo(
+            name=name,
+            command_interfaces=_parse_interfaces(child, "command_interface", here),
+            state_interfaces=_parse_interfaces(child, "state_interface", here),
+            parameters=_parse_parameters(child, here),
+        )
+    return tuple(parts.values())
+
+
+def _parse_interfaces(element: "_Element", tag: str, where: str) -> tuple[InterfaceInfo, ...]:
+    interfaces: dict[str, InterfaceInfo] = {}
+    for child in element.iterchildren(tag):
+        name = _required_name(child, f"<{tag}> of {where}")
+        if name in interfaces:
+            raise HardwareInfoError(
+                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
+            )
+        here = f"<{tag} name='{name}'> of {where}"
+        parameters = _parse_parameters(child, here)
+
+        def number(
+            key: str,
+            parameters: Mapping[str, str] = parameters,
+            here: str = here,
+            child: "_Element" = child,
+        ) -> float | None:
+            return _parse_number(parameters.get(key), f"line {child.sourceline}: '{key}' of {here}")
+
+        interfaces[name] = InterfaceInfo(
+            name=name,
+            initial_value=number("initial_value"),
+            minimum=number("min"),
+            maximum=number("max"),
+            parameters=parameters,
+        )
+    return tuple(interfaces.values())
+
+
+def _parse_parameters(element: "_Element", where: str) -> dict[str, str]:
+    return {
+        _required_name(child, f"<param> of {where}"): (child.text or "").strip()
+        for child in element.iterchildren("param")
+    }
+
+
+def _parse_number(text: str | None, where: str) -> float | None:
+    if text is None or not text:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        raise HardwareInfoError(f"{where} is '{text}', which is not a number") from None
+    if not math.isfinite(value):
+        raise HardwareInfoError(f"{where} is '{text}'; it must be finite")
+    return value
+
+
+def _required_name(element: "_Element", what: str) -> str:
+    name = (element.get("name") or "").strip()
+    if not name:
+        raise HardwareInfoError(f"line {element.sourceline}: {what} has no name")
+    return name

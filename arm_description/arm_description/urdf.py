@@ -1,0 +1,41 @@
+"""URDF text to a Robot.
+
+What belongs to others (<gazebo>, <ros2_control>, <transmission>) and what is unknown is passed
+over; what is known is checked to the last number.
+"""
+
+from arm_description.errors import UrdfError
+from arm_description.robot import Robot
+from arm_description.urdf_element import UrdfElement
+from arm_description.urdf_joint import read_joint
+from arm_description.urdf_link import defined_materials, read_link
+from arm_description.xml_document import parse_xml
+
+
+def parse_urdf(text: str, source: str = "robot_description") -> Robot:
+    """Parse a URDF.
+
+    Args:
+        text: the URDF; a xacro file must be expanded first (`expand_xacro`).
+        source: what the text is called in messages.
+
+    Raises:
+        XmlError: the text is not XML.
+        UrdfError: it is not a robot; the message names source, line and element.
+    """
+    root = UrdfElement(parse_xml(text, source))
+    try:
+        return _read_robot(root)
+    except UrdfError as error:
+        raise type(error)(f"{source}, {error}") from error
+
+
+def _read_robot(root: UrdfElement) -> Robot:
+    if root.tag != "robot":
+        raise root.error("is not a robot; a URDF's outermost element is <robot>")
+    materials = defined_materials(root)
+    return Robot(
+        name=root.needed_text("name"),
+        links=tuple(read_link(link, materials) for link in root.children("link")),
+        joints=tuple(read_joint(joint) for joint in root.children("joint")),
+    )

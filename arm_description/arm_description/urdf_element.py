@@ -1,0 +1,129 @@
+"""Reading one element's attributes, with errors that name the element and its line."""
+
+import math
+import re
+from collections.abc import Iterator
+
+from lxml import etree
+
+from arm_description.errors import UrdfError
+from arm_description.robot import Pose, Vector
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+
+
+class UrdfElement:
+    """An XML element of a URDF, read attribute by attribute.
+
+    Every method raises UrdfError where something needed is missing or is not what it must be.
+    """
+
+    def __init__(self, element: etree._Element, within: str = "") -> None:
+        """Wrap an element.
+
+        Args:
+            element: the XML element.
+            within: what it belongs to, as messages say it: "joint 'j0'".
+        """
+        self._element = element
+        self._within = within
+
+    @property
+    def tag(self) -> str:
+        """The element's name without a namespace; empty for what is no element."""
+        return local_name(self._element)
+
+    @property
+    def line(self) -> int:
+        """The element's line in the text."""
+        return int(self._element.sourceline or 0)
+
+    def belonging_to(self, within: str) -> "UrdfElement":
+        """Return the same element, called otherwise in messages."""
+        return UrdfElement(self._element, within)
+
+    def error(self, problem: str) -> UrdfError:
+        """Return an error that says where: line, element, what it belongs to."""
+        owner = f" of {self._within}" if self._within else ""
+        return UrdfError(f"line {self.line}: <{self.tag}>{owner} {problem}")
+
+    def children(self, tag: str) -> Iterator["UrdfElement"]:
+        """Yield the children with this tag."""
+        for child in self._element:
+            if local_name(child) == tag:
+                yield UrdfElement(child, self._within)
+
+    def child(self, tag: str) -> "UrdfElement | None":
+        """Return the only child with this tag, or None."""
+        found = list(self.children(tag))
+        if len(found) > 1:
+            raise found[1].error(f"stands there twice, first in line {found[0].line}")
+        return found[0] if found else None
+
+    def needed_child(self, tag: str) -> "UrdfElement":
+        """Return the only child with this tag, which must be there."""
+        child = self.child(tag)
+        if child is None:
+            raise self.error(f"needs a <{tag}>")
+        return child
+
+    def text(self, attribute: str, default: str) -> str:
+        """Return an attribute without blanks around it, or a default."""
+        return str(self._element.get(attribute, default)).strip()
+
+    def needed_text(self, attribute: str) -> str:
+        """Return an attribute that must be there and not be empty."""
+        value = self.text(attribute, "")
+        if not value:
+            raise self.error(f"needs the attribute '{attribute}'")
+        return value
+
+    def number(self, attribute: str, default: float | None = None) -> float:
+        """Return a finite number; without a default it must be there."""
+        if default is not None and self._element.get(attribute) is None:
+            return default
+        return self._number(attribute, self.needed_text(attribute))
+
+    def size(self, attribute: str) -> float:
+        """Return a number that must be there and not be negative."""
+        value = self.number(attribute)
+        if value < 0.0:
+            raise self.error(f"has {attribute}={value:g}; it must not be negative")
+        return value
+
+    def numbers(self, attribute: str, count: int) -> tuple[float, ...]:
+        """Return an attribute's numbers, parted by blanks, which must be there."""
+        words = self.needed_text(attribute).split()
+        if len(words) != count:
+            raise self.error(
+                f"has {attribute}='{' '.join(words)}': {len(words)} values, not {count}"
+            )
+        return tuple(self._number(attribute, word) for word in words)
+
+    def vector(self, attribute: str, default: Vector | None = None) -> Vector:
+        """Return three numbers; without a default they must be there."""
+        if default is not None and self._element.get(attribute) is None:
+            return default
+        x, y, z = self.numbers(attribute, 3)
+        return x, y, z
+
+    def origin(self) -> Pose:
+        """Return the pose in this element's <origin>, or no displacement."""
+        origin = self.child("origin")
+        if origin is None:
+            return Pose()
+        zero = (0.0, 0.0, 0.0)
+        return Pose(origin.vector("xyz", zero), origin.vector("rpy", zero))
+
+    def _number(self, attribute: str, word: str) -> float:
+        # float() would also take "nan", "1_000" and digits of other scripts.
+        value = float(word) if _NUMBER.fullmatch(word) else math.nan
+        if not math.isfinite(value):
+            raise self.error(f"has {attribute}='{word}', which is not a finite number")
+        return value
+
+
+def local_name(element: etree._Element) -> str:
+    """Return an element's name without its namespace; empty for what is no element."""
+    tag = element.tag
+    return tag.rpartition("}")[2] if isinstance(tag, str) else ""

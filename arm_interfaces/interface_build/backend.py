@@ -1,0 +1,74 @@
+"""What pip calls: setuptools' own hooks, after a look at whether the build can work at all."""
+
+import platform
+import sys
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+from setuptools import build_meta
+
+from interface_build.errors import BuildError
+from interface_build.toolchain import find_toolchain
+
+build_sdist = build_meta.build_sdist
+get_requires_for_build_sdist = build_meta.get_requires_for_build_sdist
+prepare_metadata_for_build_wheel = build_meta.prepare_metadata_for_build_wheel
+
+_PROJECT = Path(__file__).parent.parent / "pyproject.toml"
+_NOT_EDITABLE = (
+    "arm_interfaces cannot be installed editable, because its modules are compiled and not in the "
+    "source tree; install it without -e, and again after a change of a definition"
+)
+
+_Settings = Mapping[str, str | list[str] | None] | None
+
+
+def get_requires_for_build_wheel(config_settings: _Settings = None) -> list[str]:
+    """Check for the compilers, then ask for what the packages need at run time.
+
+    The generators, headers and libraries come in the same wheels as the run time, and must be of
+    the same version, so that one list serves both.
+    """
+    _check_machine()
+    project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
+    return [*build_meta.get_requires_for_build_wheel(config_settings), *project["dependencies"]]
+
+
+def build_wheel(
+    wheel_directory: str,
+    config_settings: _Settings = None,
+    metadata_directory: str | None = None,
+) -> str:
+    """Build the wheel; an error of the build is one message instead of a traceback."""
+    try:
+        return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
+    except BuildError as error:
+        raise SystemExit(str(error)) from error
+
+
+def get_requires_for_build_editable(config_settings: _Settings = None) -> list[str]:
+    """Refuse before anything is downloaded."""
+    raise SystemExit(_NOT_EDITABLE)
+
+
+def build_editable(
+    wheel_directory: str,
+    config_settings: _Settings = None,
+    metadata_directory: str | None = None,
+) -> str:
+    """Refuse; pip looks for this hook before it asks for the requirements of it."""
+    raise SystemExit(_NOT_EDITABLE)
+
+
+def _check_machine() -> None:
+    """End with one sentence where the ROS 2 wheels or the compilers are missing."""
+    if sys.platform != "linux" or platform.machine() != "x86_64":
+        raise SystemExit(
+            "arm_interfaces needs the ROS 2 wheels, which exist for Linux on x86_64 only; "
+            f"this is {sys.platform} on {platform.machine()}"
+        )
+    try:
+        find_toolchain()
+    except BuildError as error:
+        raise SystemExit(str(error)) from error

@@ -1,0 +1,112 @@
+"""Link the three shared libraries of a package.
+
+``rosidl_typesupport_c`` opens the type supports at run time, by the library names
+``lib<package>__rosidl_typesupport_{fastrtps,introspection}_c.so``, and looks on no path of ours.
+The dynamic loader returns a library that is already loaded under the same soname, so the
+extension module, which Python finds by its path, names both as needed and thereby loads them.
+All code lies in the first; the second is empty, because a symbol lookup in it goes on into what
+it needs.
+"""
+
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+
+from interface_build.interface_package import InterfacePackage
+from interface_build.ros_prefix import RosPrefix
+from interface_build.toolchain import Toolchain
+from interface_build.translation_unit import find_units
+from interface_build.work_folder import WorkFolder
+
+_RUNTIME_LIBRARIES = (
+    "rosidl_runtime_c",
+    "rosidl_typesupport_c",
+    "rosidl_typesupport_fastrtps_c",
+    "rosidl_typesupport_fastrtps_cpp",
+    "rosidl_typesupport_introspection_c",
+    "fastcdr",
+    "rcutils",
+)
+
+# From <prefix>/lib/python3.x/site-packages/<package> to <prefix>/lib.
+_ROS_LIBRARIES_FROM_PACKAGE = "$ORIGIN/../../.."
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryNames:
+    """File names of the three libraries of one package."""
+
+    package: str
+
+    @property
+    def code(self) -> str:
+        """The library that holds everything, found as the Fast DDS type support."""
+        return f"lib{self.package}__rosidl_typesupport_fastrtps_c.so"
+
+    @property
+    def stub(self) -> str:
+        """The empty library, found as the introspection type support."""
+        return f"lib{self.package}__rosidl_typesupport_introspection_c.so"
+
+    @property
+    def extension(self) -> str:
+        """The module that rclpy imports."""
+        suffix = sysconfig.get_config_var("EXT_SUFFIX")
+        return f"{self.package}_s__rosidl_typesupport_c{suffix}"
+
+
+def entry_point(package: InterfacePackage, work: WorkFolder) -> Path:
+    """Return the generated source of the extension module."""
+    return work.generated / f"_{package.name}_s.ep.rosidl_typesupport_c.c"
+
+
+def link_libraries(
+    package: InterfacePackage,
+    work: WorkFolder,
+    prefix: RosPrefix,
+    toolchain: Toolchain,
+    includes: tuple[Path, ...],
+    target: Path,
+) -> None:
+    """Compile the extension module and link all three libraries into the folder ``target``.
+
+    Raises:
+        CompileError: a linker run failed.
+    """
+    target.mkdir(parents=True, exist_ok=True)
+    names = LibraryNames(package.name)
+    objects = [path for unit in find_units(package, work) for path in unit.object_files]
+    toolchain.link(objects, target / names.code, _code_flags(names, prefix))
+    toolchain.link([], target / names.stub, _flags(names.stub, target, [names.code]))
+
+    extension = work.objects / "extension.o"
+    toolchain.compile(entry_point(package, work), extension, includes, "-O1")
+    flags = _flags(names.extension, target, [names.stub, names.code])
+    toolchain.link([extension], target / names.extension, flags)
+
+
+def _code_flags(names: LibraryNames, prefix: RosPrefix) -> list[str]:
+    """Link with those libraries of the wheels that the objects refer to."""
+    folder = prefix.library_folder
+    messages = sorted(
+        path.name for path in folder.glob("lib*__rosidl_*.so") if not path.stem.endswith("_cpp")
+    )
+    return [
+        f"-Wl,-soname,{names.code}",
+        f"-L{folder}",
+        "-Wl,--as-needed",
+        *(f"-l:{name}" for name in messages),
+        *(f"-l{name}" for name in _RUNTIME_LIBRARIES),
+        f"-Wl,-rpath,{_ROS_LIBRARIES_FROM_PACKAGE}",
+    ]
+
+
+def _flags(soname: str, folder: Path, needed: list[str]) -> list[str]:
+    """Link with libraries in the same folder, whether or not a symbol asks for them."""
+    return [
+        f"-Wl,-soname,{soname}",
+        f"-L{folder}",
+        "-Wl,--no-as-needed",
+        *(f"-l:{name}" for name in needed),
+        "-Wl,-rpath,$ORIGIN",
+    ]

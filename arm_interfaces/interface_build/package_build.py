@@ -1,0 +1,94 @@
+"""The steps that turn one interface package into an importable one."""
+
+import functools
+import shutil
+import sysconfig
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from interface_build import generation, library
+from interface_build.interface_package import InterfacePackage
+from interface_build.ros_prefix import RosPrefix
+from interface_build.toolchain import Toolchain
+from interface_build.translation_unit import TranslationUnit, find_units
+from interface_build.work_folder import WorkFolder
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Work for one process.
+
+    Attributes:
+        label: what the user reads when it is done.
+        run: a picklable function without arguments.
+    """
+
+    label: str
+    run: Callable[[], None]
+
+
+@dataclass(frozen=True, slots=True)
+class PackageBuild:
+    """All that the build of one package needs to know; sent to the worker processes.
+
+    Attributes:
+        package: what to build.
+        work: folder for intermediate files.
+        prefix: the ROS 2 wheels.
+        toolchain: the compilers.
+        target: the package's folder in the finished tree.
+    """
+
+    package: InterfacePackage
+    work: WorkFolder
+    prefix: RosPrefix
+    toolchain: Toolchain
+    target: Path
+
+    def stages(self) -> list[list[Step]]:
+        """List the stages; the steps of a stage may run side by side."""
+        name = self.package.name
+        return [
+            [Step(f"described {name}", self._describe)],
+            [
+                Step(f"generated {name} {label}", functools.partial(self._generate, label))
+                for label in generation.GENERATORS
+            ],
+            [
+                Step(f"compiled {name} {unit.name}", functools.partial(self._compile, unit))
+                for unit in find_units(self.package, self.work)
+            ],
+            [Step(f"finished {name}", self._finish)],
+        ]
+
+    @property
+    def _includes(self) -> tuple[Path, ...]:
+        """Include folders, the package's own first."""
+        return (
+            *self.work.include_folders,
+            *self.prefix.include_folders(),
+            Path(sysconfig.get_path("include")),
+            Path(np.get_include()),
+        )
+
+    def _describe(self) -> None:
+        generation.describe(self.package, self.work, self.prefix)
+
+    def _generate(self, label: str) -> None:
+        generation.GENERATORS[label](self.package, self.work, self.prefix)
+
+    def _compile(self, unit: TranslationUnit) -> None:
+        unit.compile(self.toolchain, self._includes)
+
+    def _finish(self) -> None:
+        """Link, and copy the Python modules beside the libraries."""
+        library.link_libraries(
+            self.package, self.work, self.prefix, self.toolchain, self._includes, self.target
+        )
+        for module in sorted(self.work.generated.rglob("*.py")):
+            copy = self.target / module.relative_to(self.work.generated)
+            copy.parent.mkdir(exist_ok=True)
+            shutil.copyfile(module, copy)

@@ -1,0 +1,58 @@
+"""Where the ROS 2 wheels put their headers, libraries and templates."""
+
+import importlib.util
+from dataclasses import dataclass
+from pathlib import Path
+
+from interface_build.errors import MissingRosError
+
+
+@dataclass(frozen=True, slots=True)
+class RosPrefix:
+    """The folder that holds ``include``, ``lib`` and ``share`` of the wheels."""
+
+    root: Path
+
+    def template_folder(self, generator: str) -> Path:
+        """Return the folder with the templates of one rosidl generator."""
+        return self.root / "share" / generator / "resource"
+
+    def description_folders(self) -> dict[str, Path]:
+        """Map each interface package of the wheels to its type descriptions."""
+        return {
+            folder.name: folder
+            for folder in sorted((self.root / "share").iterdir())
+            if next(folder.glob("msg/*.json"), None) or next(folder.glob("srv/*.json"), None)
+        }
+
+    def include_folders(self) -> list[Path]:
+        """List the include folders; most packages keep one level more: ``<p>/<p>/x.h``."""
+        include = self.root / "include"
+        nested = [path for path in sorted(include.iterdir()) if (path / path.name).is_dir()]
+        return [include, *nested]
+
+    @property
+    def library_folder(self) -> Path:
+        """Return the folder with the shared libraries."""
+        return self.root / "lib"
+
+
+def find_ros_prefix() -> RosPrefix:
+    """Find the prefix by a package that is certainly in it.
+
+    ``sys.prefix`` would be wrong: in pip's build isolation the wheels lie in an overlay.
+
+    Raises:
+        MissingRosError: the wheels are not installed, or are laid out in another way.
+    """
+    spec = importlib.util.find_spec("rosidl_runtime_c")
+    for location in (spec and spec.submodule_search_locations) or ():
+        for folder in Path(location).resolve().parents:
+            headers = folder / "include" / "rosidl_runtime_c"
+            templates = folder / "share" / "rosidl_generator_c"
+            if headers.is_dir() and templates.is_dir():
+                return RosPrefix(folder)
+    raise MissingRosError(
+        "arm_interfaces needs the ROS 2 wheels to build and does not find them; "
+        "install it by 'pip install' with build isolation, which fetches them"
+    )

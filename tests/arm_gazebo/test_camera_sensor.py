@@ -1,0 +1,185 @@
+"""Cameras as a URDF describes them."""
+
+import logging
+import math
+
+import pytest
+
+from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.errors import CameraError
+
+LINKS = '<link name="base_link"/><link name="camera_link"/><link name="eye"/>'
+OPTICAL_JOINT = (
+    '<joint name="optical" type="fixed"><parent link="camera_link"/><child link="eye"/>'
+    '<origin xyz="0 0 0" rpy="-1.5708 0 -1.5708"/></joint>'
+)
+
+
+def robot(*sensors: str, extra: str = "", link: str = "camera_link") -> str:
+    gazebo = "".join(f'<gazebo reference="{link}">{sensor}</gazebo>' for sensor in sensors)
+    return f'<?xml version="1.0"?>\n<robot name="r">{LINKS}{extra}{gazebo}</robot>'
+
+
+def sensor(inside: str = "", name: str = "camera") -> str:
+    return f'<sensor name="{name}" type="camera">{inside}</sensor>'
+
+
+def camera(inside: str = "", extra: str = "") -> CameraSensor:
+    (found,) = parse_cameras(robot(sensor(inside), extra=extra))
+    return found
+
+
+def test_a_robot_without_sensors_has_no_cameras():
+    assert parse_cameras(robot()) == ()
+
+
+def test_every_tag_is_read():
+    found = camera(
+        "<always_on>1</always_on><update_rate>15</update_rate><topic>/videocamera</topic>"
+        "<optical_frame_id>camera_optical_frame</optical_frame_id>"
+        "<camera><horizontal_fov>1.396</horizontal_fov>"
+        "<image><width>800</width><height>600</height><format>R8G8B8</format></image>"
+        "<clip><near>0.02</near><far>300</far></clip>"
+        "<noise><type>gaussian</type><mean>0.01</mean><stddev>0.007</stddev></noise></camera>"
+        "<pose>0.1 0.2 0.3 0 0.5 0</pose>"
+    )
+    assert found == CameraSensor(
+        name="camera",
+        link="camera_link",
+        optical_frame="camera_optical_frame",
+        width=800,
+        height=600,
+        hfov=1.396,
+        near=0.02,
+        far=300.0,
+        rate_hz=15.0,
+        noise_mean=0.01,
+        noise_stddev=0.007,
+        image_topics=("/videocamera",),
+        info_topics=("/videocamera/camera_info", "/camera_info"),
+        xyz=(0.1, 0.2, 0.3),
+        rpy=(0.0, 0.5, 0.0),
+    )
+
+
+def test_what_is_left_out_has_gazebos_defaults():
+    assert camera() == CameraSensor(
+        name="camera",
+        link="camera_link",
+        optical_frame="camera_link",
+        width=320,
+        height=240,
+        hfov=1.047,
+        near=0.1,
+        far=100.0,
+        rate_hz=30.0,
+        image_topics=("camera",),
+        info_topics=("camera/camera_info", "camera_info"),
+    )
+
+
+def test_rate_zero_is_the_default_rate():
+    assert camera("<update_rate>0</update_rate>").rate_hz == 30.0
+
+
+def test_several_topics_and_named_info_topics():
+    found = camera(
+        "<topic>/camera/image_raw</topic><topic>/videocamera</topic>"
+        "<camera_info_topic>/a/info</camera_info_topic><camera_info_topic>b</camera_info_topic>"
+    )
+    assert found.image_topics == ("/camera/image_raw", "/videocamera")
+    assert found.info_topics == ("/a/info", "b")
+
+
+@pytest.mark.parametrize("tag", ["optical_frame_id", "gz_frame_id", "ignition_frame_id"])
+def test_the_optical_frame_has_several_names(tag):
+    assert camera(f"<camera><{tag}>eye</{tag}></camera>").optical_frame == "eye"
+
+
+def test_the_optical_frame_is_found_by_its_orientation():
+    assert camera(extra=OPTICAL_JOINT).optical_frame == "eye"
+
+
+def test_noise_of_type_none_is_none():
+    found = camera("<camera><noise><type>none</type><stddev>0.1</stddev></noise></camera>")
+    assert found.noise_stddev == 0.0
+
+
+def test_a_name_that_is_no_topic_becomes_one():
+    (found,) = parse_cameras(robot(sensor(name="front-camera 1")))
+    assert found.image_topics == ("front_camera_1",)
+
+
+def test_a_second_camera_leaves_the_shared_info_topic_to_the_first():
+    first, second = parse_cameras(robot(sensor(name="a"), sensor(name="b")))
+    assert first.info_topics == ("a/camera_info", "camera_info")
+    assert second.info_topics == ("b/camera_info",)
+
+
+def test_other_sensors_are_named_and_left_out(caplog):
+    lidar = '<sensor name="laser" type="gpu_lidar"/>'
+    with caplog.at_level(logging.WARNING):
+        assert parse_cameras(robot(lidar)) == ()
+    assert "'laser'" in caplog.text
+    assert "'gpu_lidar'" in caplog.text
+
+
+def test_focal_length_and_vertical_field_of_view():
+    found = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047)
+    assert found.focal_length == pytest.approx(277.19, abs=0.01)
+    assert math.tan(found.vfov / 2) * 4 / 3 == pytest.approx(math.tan(1.047 / 2))
+
+
+@pytest.mark.parametrize(
+    ("inside", "tag", "said"),
+    [
+        ("<camera><image><width>0</width></image></camera>", "image/width", "'0'"),
+        ("<camera><image><height>2.5</height></image></camera>", "image/height", "whole number"),
+        ("<camera><image><width>99999</width></image></camera>", "image/width", "8192"),
+        ("<camera><image><format>L8</format></image></camera>", "image/format", "R8G8B8"),
+        ("<camera><horizontal_fov>3.2</horizontal_fov></camera>", "horizontal_fov", "(0, pi)"),
+        ("<camera><horizontal_fov>nan</horizontal_fov></camera>", "horizontal_fov", "'nan'"),
+        ("<camera><clip><near>0</near></clip></camera>", "clip/near", "above 0"),
+        ("<camera><clip><near>2</near><far>1</far></clip></camera>", "clip/far", "above near, 2"),
+        ("<update_rate>-5</update_rate>", "update_rate", "at least 0, not '-5'"),
+        ("<update_rate>fast</update_rate>", "update_rate", "'fast'"),
+        ("<update_rate>inf</update_rate>", "update_rate", "'inf'"),
+        ("<topic>/bad topic</topic>", "topic", "'/bad topic' is not a valid ROS topic"),
+        ("<topic>t</topic><camera_info_topic>t</camera_info_topic>", "topic", "taken"),
+        ("<camera><noise><type>salt</type></noise></camera>", "noise/type", "gaussian"),
+        (
+            "<camera><noise><type>gaussian</type><stddev>-1</stddev></noise></camera>",
+            "noise/stddev",
+            "from 0 to 1",
+        ),
+        ("<pose>1 2 3</pose>", "pose", "six numbers"),
+        ("<pose>1 2 3 4 5 x</pose>", "pose", "six numbers"),
+    ],
+)
+def test_nonsense_names_sensor_tag_and_line(inside, tag, said):
+    with pytest.raises(CameraError) as caught:
+        camera(inside)
+    message = str(caught.value)
+    assert message.startswith(f"camera sensor 'camera', <{tag}> (line 2): ")
+    assert said in message
+
+
+def test_an_unknown_link_is_refused_naming_the_known_ones():
+    with pytest.raises(CameraError, match="no link 'head'; the robot has base_link, camera_link"):
+        parse_cameras(robot(sensor(), link="head"))
+
+
+def test_two_cameras_of_one_name_are_refused():
+    with pytest.raises(CameraError, match="second camera of this name"):
+        parse_cameras(robot(sensor("<topic>a</topic>"), sensor("<topic>b</topic>")))
+
+
+def test_two_cameras_on_one_topic_are_refused():
+    cameras = (sensor("<topic>/t</topic>", name=name) for name in ("a", "b"))
+    with pytest.raises(CameraError, match=r"'b'.*'/t' is taken by camera 'a'"):
+        parse_cameras(robot(*cameras))
+
+
+def test_a_sensor_without_a_name_is_refused():
+    with pytest.raises(CameraError, match="needs a name"):
+        parse_cameras(robot(sensor(name="")))
