@@ -168,20 +168,12 @@ def _parse_interfaces(element: "_Element", tag: str, where: str) -> tuple[Interf
             )
         here = f"<{tag} name='{name}'> of {where}"
         parameters = _parse_parameters(child, here)
-
-        def number(
-            key: str,
-            parameters: Mapping[str, str] = parameters,
-            here: str = here,
-            child: "_Element" = child,
-        ) -> float | None:
-            return _parse_number(parameters.get(key), f"line {child.sourceline}: '{key}' of {here}")
-
+        where_exactly = f"line {child.sourceline}: %s of {here}"
         interfaces[name] = InterfaceInfo(
             name=name,
-            initial_value=number("initial_value"),
-            minimum=number("min"),
-            maximum=number("max"),
+            initial_value=_parse_number(parameters, "initial_value", where_exactly),
+            minimum=_parse_number(parameters, "min", where_exactly),
+            maximum=_parse_number(parameters, "max", where_exactly),
             parameters=parameters,
         )
     return tuple(interfaces.values())
@@ -194,15 +186,16 @@ def _parse_parameters(element: "_Element", where: str) -> dict[str, str]:
     }
 
 
-def _parse_number(text: str | None, where: str) -> float | None:
-    if text is None or not text:
+def _parse_number(parameters: Mapping[str, str], key: str, where: str) -> float | None:
+    text = parameters.get(key)
+    if not text:
         return None
     try:
         value = float(text)
     except ValueError:
-        raise HardwareInfoError(f"{where} is '{text}', which is not a number") from None
+        value = math.nan
     if not math.isfinite(value):
-        raise HardwareInfoError(f"{where} is '{text}'; it must be finite")
+        raise HardwareInfoError(f"{where % repr(key)} is '{text}'; it must be a finite number")
     return value
 
 

@@ -3,25 +3,26 @@
 import logging
 from dataclasses import dataclass
 
-from arm_control.clock import Clock
+from arm_control.clock import Clock, MonotonicClock
 
 CATCH_UP_S = 0.05
 """A stall up to this long is made up for; of a longer one the rest is given up."""
 
+WINDOW_S = 1.0
 WARNING_INTERVAL_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class PacerStatistics:
-    """How a pacer has done since it was made.
+    """How a pacer has done so far, in wall time.
 
     Attributes:
         ticks: number of ticks.
-        overruns: ticks that were not finished when the next was due.
+        overruns: ticks that were not finished when the next one was due.
         lag_s: how late the last tick started.
-        max_lag_s: how late the latest tick ever started.
-        lost_s: wall time given up because stalls were longer than the catch-up cap.
-        achieved_factor: simulated over wall time in the last full second or so; 0 before that.
+        max_lag_s: how late the latest one ever started.
+        lost_s: time given up because a stall was longer than the catch-up cap.
+        achieved_factor: time ticked over wall time in the last full second; 0.0 before that.
     """
 
     ticks: int = 0
@@ -30,3 +31,124 @@ class PacerStatistics:
     max_lag_s: float = 0.0
     lost_s: float = 0.0
     achieved_factor: float = 0.0
+
+
+class Pacer:
+    """Sets absolute deadlines for ticks: period / real_time_factor apart, without drift.
+
+    After a stall the ticks that were missed follow one another without a wait, up to
+    `catch_up_s` of wall time; what is beyond is given up and counted. Loop thread only, except
+    `statistics`, which any thread may read.
+    """
+
+    def __init__(
+        self,
+        period_s: float,
+        *,
+        real_time_factor: float = 1.0,
+        clock: Clock | None = None,
+        catch_up_s: float = CATCH_UP_S,
+        print_warnings: bool = True,
+    ) -> None:
+        """Make a pacer whose first tick is due at once.
+
+        Args:
+            period_s: time that one tick advances, in seconds of the ticked time.
+            real_time_factor: ticked over wall time; 0 runs as fast as possible.
+            clock: wall time; default the operating system's monotonic clock.
+            catch_up_s: longest stall that is made up for.
+            print_warnings: whether to say in the log that ticks come too late.
+        """
+        if not period_s > 0.0:
+            raise ValueError(f"the period must be positive, not {period_s!r} s")
+        self.period_s = period_s
+        self.print_warnings = print_warnings
+        self._catch_up_s = catch_up_s
+        self._now_s = (clock or MonotonicClock()).now_s
+        self._ticks = self._overruns = 0
+        self._lag_s = self._max_lag_s = self._lost_s = self._achieved_factor = 0.0
+        self._warned_s = -WARNING_INTERVAL_S
+        self.real_time_factor = real_time_factor
+
+    @property
+    def real_time_factor(self) -> float:
+        """Ticked over wall time; 0 runs as fast as possible."""
+        return self._real_time_factor
+
+    @real_time_factor.setter
+    def real_time_factor(self, factor: float) -> None:
+        if not 0.0 <= factor < float("inf"):
+            raise ValueError(
+                f"real_time_factor must be 0 (as fast as possible) or positive, not {factor!r}"
+            )
+        self._real_time_factor = factor
+        self._wall_period_s = self.period_s / factor if factor else 0.0
+        self.restart()
+
+    @property
+    def statistics(self) -> PacerStatistics:
+        """A snapshot of how it went so far."""
+        return PacerStatistics(
+            self._ticks,
+            self._overruns,
+            self._lag_s,
+            self._max_lag_s,
+            self._lost_s,
+            self._achieved_factor,
+        )
+
+    def restart(self) -> None:
+        """Forget the deadlines, for example after a pause: the next tick is due now."""
+        self._due_s = self._window_start_s = self._now_s()
+        self._window_ticks = self._window_overruns = 0
+        self._window_lost_s = self._window_max_lag_s = 0.0
+
+    def remaining_s(self) -> float:
+        """Return how long the next tick is still to wait; 0 or less when it is due."""
+        return self._due_s - self._now_s() if self._wall_period_s else 0.0
+
+    def begin(self) -> None:
+        """Note that a tick starts, and set the deadline of the next one."""
+        if not self._wall_period_s:
+            return
+        now_s = self._now_s()
+        self._lag_s = lag_s = max(0.0, now_s - self._due_s)
+        if lag_s > self._window_max_lag_s:
+            self._window_max_lag_s = lag_s
+            self._max_lag_s = max(self._max_lag_s, lag_s)
+        if lag_s > self._catch_up_s:
+            self._window_lost_s += lag_s - self._catch_up_s
+            self._lost_s += lag_s - self._catch_up_s
+            self._due_s = now_s - self._catch_up_s
+        self._due_s += self._wall_period_s
+
+    def end(self) -> None:
+        """Note that the tick is done."""
+        now_s = self._now_s()
+        self._ticks += 1
+        self._window_ticks += 1
+        if self._wall_period_s and now_s > self._due_s:
+            self._overruns += 1
+            self._window_overruns += 1
+        if now_s - self._window_start_s >= WINDOW_S:
+            self._close_window(now_s)
+
+    def _close_window(self, now_s: float) -> None:
+        elapsed_s = now_s - self._window_start_s
+        self._achieved_factor = self._window_ticks * self.period_s / elapsed_s
+        warn_again = now_s - self._warned_s >= WARNING_INTERVAL_S
+        if self._window_lost_s and self.print_warnings and warn_again:
+            self._warned_s = now_s
+            logging.getLogger(__name__).warning(
+                "the control loop cannot keep its pace: real-time factor %.2f instead of %g, "
+                "%d of %d ticks overran, latest start %.1f ms after its time, %.3f s given up",
+                self._achieved_factor,
+                self._real_time_factor,
+                self._window_overruns,
+                self._window_ticks,
+                1e3 * self._window_max_lag_s,
+                self._window_lost_s,
+            )
+        self._window_start_s = now_s
+        self._window_ticks = self._window_overruns = 0
+        self._window_lost_s = self._window_max_lag_s = 0.0

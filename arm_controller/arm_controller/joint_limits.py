@@ -64,6 +64,13 @@ class JointLimits:
         return name, longest_s
 
 
+def no_limits(joint_names: Sequence[str]) -> JointLimits:
+    """Return limits that allow everything: those of a robot that is not known."""
+    return JointLimits(
+        tuple(JointRange(name, -math.inf, math.inf, math.inf, "rad") for name in joint_names)
+    )
+
+
 def limits_of(robot: "Robot", joint_names: Sequence[str]) -> JointLimits:
     """Return the limits of these joints.
 
@@ -81,7 +88,6 @@ def _range_of(joint: "Joint") -> JointRange:
     limit = joint.limit
     if limit is None:
         return JointRange(joint.name, -math.inf, math.inf, math.inf, unit)
+    # A speed limit of zero is how some descriptions say that they know none.
     velocity = limit.velocity if limit.velocity > 0.0 else math.inf
-    if joint.type == "continuous":
-        return JointRange(joint.name, -math.inf, math.inf, velocity, unit)
     return JointRange(joint.name, limit.lower, limit.upper, velocity, unit)

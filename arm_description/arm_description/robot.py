@@ -201,7 +201,9 @@ class Robot:
         check_mimics(self.joints)
         object.__setattr__(self, "_links", {link.name: link for link in self.links})
         object.__setattr__(self, "_joints", {joint.name: joint for joint in self.joints})
-        object.__setattr__(self, "_children", {name: tuple(group) for name, group in children.items()})
+        object.__setattr__(
+            self, "_children", {name: tuple(group) for name, group in children.items()}
+        )
 
     def link(self, name: str) -> Link:
         """Return a link by name; UrdfError names those that exist."""

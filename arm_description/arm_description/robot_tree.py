@@ -94,9 +94,7 @@ def _carriers(links: Sequence["Link"], joints: Sequence["Joint"]) -> dict[str, "
     return carriers
 
 
-def _check_no_loop(
-    links: Sequence["Link"], carriers: dict[str, "Joint"], root: str | None
-) -> None:
+def _check_no_loop(links: Sequence["Link"], carriers: dict[str, "Joint"], root: str | None) -> None:
     reached = {root}
     for link in links:
         path: dict[str, None] = {}

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Iterator
 
-from lxml import etree
+import lxml.etree as etree
 
 from arm_description.errors import UrdfError
 from arm_description.robot import Pose, Vector
@@ -18,19 +18,20 @@ class UrdfElement:
     Every method raises UrdfError where something needed is missing or is not what it must be.
     """
 
-    def __init__(self, element: etree._Element, within: str = "") -> None:
+    def __init__(self, element: etree._Element, owner: str = "") -> None:
         """Wrap an element.
 
         Args:
             element: the XML element.
-            within: what it belongs to, as messages say it: "joint 'j0'".
+            owner: the named element that it is part of, as messages say it: "joint 'j0'".
         """
         self._element = element
-        self._within = within
+        self._owner = owner
+        self._label = f"<{self.tag}> of {owner}" if owner else f"<{self.tag}>"
 
     @property
     def tag(self) -> str:
-        """The element's name without a namespace; empty for what is no element."""
+        """The element's name without a namespace."""
         return local_name(self._element)
 
     @property
@@ -38,20 +39,21 @@ class UrdfElement:
         """The element's line in the text."""
         return int(self._element.sourceline or 0)
 
-    def belonging_to(self, within: str) -> "UrdfElement":
-        """Return the same element, called otherwise in messages."""
-        return UrdfElement(self._element, within)
+    def named(self, name: str) -> "UrdfElement":
+        """Return the same element, which messages about it and its parts call by this name."""
+        element = UrdfElement(self._element, f"{self.tag} '{name}'")
+        element._label = element._owner
+        return element
 
     def error(self, problem: str) -> UrdfError:
-        """Return an error that says where: line, element, what it belongs to."""
-        owner = f" of {self._within}" if self._within else ""
-        return UrdfError(f"line {self.line}: <{self.tag}>{owner} {problem}")
+        """Return an error that says where: the line, the element, what it is part of."""
+        return UrdfError(f"line {self.line}: {self._label} {problem}")
 
     def children(self, tag: str) -> Iterator["UrdfElement"]:
         """Yield the children with this tag."""
         for child in self._element:
             if local_name(child) == tag:
-                yield UrdfElement(child, self._within)
+                yield UrdfElement(child, self._owner)
 
     def child(self, tag: str) -> "UrdfElement | None":
         """Return the only child with this tag, or None."""

@@ -27,7 +27,7 @@ def read_joint(element: UrdfElement) -> Joint:
         UrdfError: naming element and line.
     """
     name = element.needed_text("name")
-    element = element.belonging_to(f"joint '{name}'")
+    element = element.named(name)
     kind = element.needed_text("type")
     if kind not in _TYPES:
         raise element.error(f"has type '{kind}'; the types are {', '.join(_TYPES)}")

@@ -12,7 +12,6 @@ from arm_description.robot import (
     Link,
     Material,
     Mesh,
-    Pose,
     Sphere,
     Visual,
 )
@@ -29,7 +28,7 @@ def read_link(element: UrdfElement, materials: Materials) -> Link:
         UrdfError: naming element and line.
     """
     name = element.needed_text("name")
-    element = element.belonging_to(f"link '{name}'")
+    element = element.named(name)
     inertial = element.child("inertial")
     return Link(
         name=name,
@@ -138,5 +137,3 @@ _SHAPES = {
     "capsule": lambda e: Capsule(e.size("radius"), e.size("length")),
     "mesh": _read_mesh,
 }
-
-__all__ = ["Pose", "defined_materials", "read_link", "read_material"]

@@ -1,10 +1,12 @@
 """xacro files to URDF text, with $(find package) and $(arg ...) working from pip."""
 
+import io
 import os
 import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
+from typing import Any
 
 from arm_description.errors import XacroError
 
@@ -42,9 +44,37 @@ def _process(file: Path, arguments: dict[str, str]) -> str:
 
     with _own_prefix_findable():
         try:
-            document = xacro.process_file(str(file), mappings=arguments)
+            document: Any = xacro.process_file(str(file), mappings=arguments)
         # xacro runs the file's own expressions: whatever those raise comes out here.
         except Exception as error:
-            where = "".join(f" in {name}" for name in _included_files(xacro, file))
-            raise XacroError(f"cannot expand {file}: {_describe(error)}{where}") from error
-        return str(document.toprettyxml(indent="  "))
+            place = _place(xacro.print_location)
+            raise XacroError(f"cannot expand {file}: {_first_line(error)}; {place}") from error
+    return str(document.toprettyxml(indent="  "))
+
+
+def _place(print_location: Callable[[], None]) -> str:
+    # xacro tells its stack of macros and files only to stderr.
+    told = io.StringIO()
+    with redirect_stderr(told):
+        print_location()
+    return ", ".join(told.getvalue().split("\n")).strip(", ")
+
+
+def _first_line(error: BaseException) -> str:
+    text = str(error).strip()
+    return text.splitlines()[0] if text else type(error).__name__
+
+
+@contextmanager
+def _own_prefix_findable() -> Iterator[None]:
+    # $(find) reads AMENT_PREFIX_PATH of this process, which pip does not set.
+    before = os.environ.get("AMENT_PREFIX_PATH")
+    prefixes = [prefix for prefix in (before or "").split(os.pathsep) if prefix]
+    os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["AMENT_PREFIX_PATH"]
+        else:
+            os.environ["AMENT_PREFIX_PATH"] = before

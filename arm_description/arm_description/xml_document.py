@@ -2,13 +2,14 @@
 
 import re
 
-from lxml import etree
+import lxml.etree as etree
 
 from arm_description.errors import XmlError
 
 MAX_BYTES = 20_000_000
 
 _DECLARATION = re.compile(r"\A\ufeff?\s*(<\?xml\s[^>]*\?>)?\s*")
+_POSITION = re.compile(r"(, line \d+, column \d+)+\Z")
 
 
 def parse_xml(text: str, source: str = "robot_description") -> etree._Element:
@@ -37,7 +38,8 @@ def parse_xml(text: str, source: str = "robot_description") -> etree._Element:
     try:
         root = etree.fromstring(data, _parser())
     except etree.XMLSyntaxError as error:
-        raise XmlError(f"{source}, line {error.lineno or 1}: not XML: {error.msg}") from error
+        problem = _POSITION.sub("", error.msg)
+        raise XmlError(f"{source}, line {error.lineno or 1}: not XML: {problem}") from error
     if root.getroottree().docinfo.internalDTD is not None:
         raise XmlError(f"{source} has a DOCTYPE, which is not accepted; remove it")
     return root

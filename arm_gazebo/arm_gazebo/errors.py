@@ -1,7 +1,12 @@
 """The errors of this package.
 
 GazeboError
-└── CameraError     a camera's description or its process
+├── CameraError     a camera's description or its process
+├── WorldError      a world file that is missing or is no MJCF
+├── ModelError      a robot that cannot be made into a model
+│   └── MeshError   a mesh file that cannot be used
+├── TimingError     a control rate or a physics step that cannot be
+└── ServoError      a joint or a command interface that the servos do not have
 """
 
 
@@ -11,3 +16,23 @@ class GazeboError(Exception):
 
 class CameraError(GazeboError):
     """A camera is described wrongly, or its process cannot do its work."""
+
+
+class WorldError(GazeboError):
+    """A world file does not exist or does not compile; the message names the shipped worlds."""
+
+
+class ModelError(GazeboError):
+    """The robot cannot be simulated as described; the message names the element and its line."""
+
+
+class MeshError(ModelError):
+    """A mesh file cannot be found or read."""
+
+
+class TimingError(GazeboError):
+    """The control rate is not positive, or a fixed physics step does not divide its period."""
+
+
+class ServoError(GazeboError):
+    """A command interface is asked of a joint that does not have it."""

@@ -1,0 +1,259 @@
+"""The one thread that owns the hardware (or the simulation) and the controllers."""
+
+import logging
+import os
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from queue import Empty, SimpleQueue
+from typing import Any, TypeVar
+
+from arm_control.errors import LoopStoppedError
+from arm_control.pacer import Pacer
+
+ResultT = TypeVar("ResultT")
+
+logger = logging.getLogger(__name__)
+
+
+class ControlLoop:
+    """Runs ticks at the pacer's deadlines, and between them functions that other threads hand in.
+
+    A function handed in while the loop waits for its next deadline, or while it is paused, runs
+    at once. Every public method may be called from any thread.
+    """
+
+    def __init__(
+        self,
+        tick: Callable[[], None],
+        pacer: Pacer,
+        *,
+        on_failure: Callable[[Exception], None] | None = None,
+        fifo_priority: int | None = None,
+    ) -> None:
+        """Prepare the thread; `start` starts it.
+
+        Args:
+            tick: one cycle; if it raises, the loop ends.
+            pacer: says when a tick is due; from now on it belongs to the loop thread.
+            on_failure: called on the loop thread with what the tick raised, after it was logged.
+            fifo_priority: ask for the SCHED_FIFO scheduler with this priority (1 to 99); where
+                the process lacks the right, the loop says so and runs without.
+        """
+        self.pacer = pacer
+        self._tick = tick
+        self._on_failure = on_failure
+        self._fifo_priority = fifo_priority
+        self._calls: SimpleQueue[_Call] = SimpleQueue()
+        self._step_requests: deque[_StepRequest] = deque()
+        self._paused = False
+        self._stopping = False
+        self._closed = False
+        self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
+
+    @property
+    def paused(self) -> bool:
+        """Whether time stands still."""
+        return self._paused
+
+    @property
+    def running(self) -> bool:
+        """Whether the thread is alive: started, and neither stopped nor failed."""
+        return self._thread.is_alive() and not self._closed
+
+    def start(self, *, paused: bool = False) -> None:
+        """Start the thread, with time standing still if asked to."""
+        self._paused = paused
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Let the loop end after the present tick; does not wait, see `join`."""
+        self.call(self._stop)
+
+    def join(self, timeout_s: float | None = None) -> bool:
+        """Wait until the thread has ended; return whether it has."""
+        if self._thread.ident is not None:
+            self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    def call(self, function: Callable[[], ResultT]) -> "Future[ResultT]":
+        """Run a function on the loop thread between two ticks, paused or not.
+
+        Returns:
+            Its result, or what it raised; `LoopStoppedError` where the loop runs no more. A
+            future that is cancelled in time is skipped. Do not wait for it on the loop thread.
+        """
+        call = _Call(function)
+        self._calls.put(call)
+        if self._closed:
+            # The loop may have emptied the queue for the last time before this call came.
+            self._refuse_calls()
+        return call.future
+
+    def pause(self) -> "Future[None]":
+        """Let time stand still after the present tick."""
+        return self.call(self._pause)
+
+    def resume(self) -> "Future[None]":
+        """Let time go on; steps not yet done are dropped."""
+        return self.call(self._resume)
+
+    def step(self, count: int = 1) -> "Future[int]":
+        """Run this many ticks while paused, without pacing.
+
+        Returns:
+            The number of ticks done: less than `count` where `resume` came between.
+        """
+        request = _StepRequest(count)
+
+        def enqueue() -> None:
+            if not self._paused:
+                request.future.set_exception(
+                    ValueError("steps are for a paused loop; pause it first")
+                )
+            elif count < 1:
+                request.future.set_exception(
+                    ValueError(f"the number of steps must be positive, not {count}")
+                )
+            else:
+                self._step_requests.append(request)
+
+        self.call(enqueue).add_done_callback(request.fail_with)
+        return request.future
+
+    def _run(self) -> None:
+        self._raise_priority()
+        self.pacer.restart()
+        try:
+            self._loop()
+        except Exception as error:
+            logger.exception("the control loop ends: a tick failed")
+            self._close()
+            if self._on_failure is not None:
+                self._on_failure(error)
+        else:
+            self._close()
+
+    def _loop(self) -> None:
+        pacer = self.pacer
+        while not self._stopping:
+            if self._paused:
+                self._idle()
+                continue
+            remaining_s = pacer.remaining_s()
+            if remaining_s > 0.0:
+                self._wait_for_call(remaining_s)
+                continue
+            self._serve_calls()
+            pacer.begin()
+            self._tick()
+            pacer.end()
+
+    def _idle(self) -> None:
+        if not self._step_requests:
+            self._wait_for_call(None)
+            return
+        self._tick()
+        request = self._step_requests[0]
+        request.done += 1
+        if request.done == request.count:
+            self._step_requests.popleft()
+            request.future.set_result(request.done)
+        self._serve_calls()
+
+    def _wait_for_call(self, timeout_s: float | None) -> None:
+        try:
+            self._calls.get(timeout=timeout_s).run()
+        except Empty:
+            return
+
+    def _serve_calls(self) -> None:
+        # Only what is there now: callers that keep coming must not hold up the tick.
+        for _ in range(self._calls.qsize()):
+            self._calls.get_nowait().run()
+
+    def _pause(self) -> None:
+        self._paused = True
+
+    def _resume(self) -> None:
+        self._finish_steps()
+        if self._paused:
+            self._paused = False
+            self.pacer.restart()
+
+    def _stop(self) -> None:
+        self._stopping = True
+
+    def _close(self) -> None:
+        self._closed = True
+        self._finish_steps()
+        self._refuse_calls()
+
+    def _finish_steps(self) -> None:
+        while self._step_requests:
+            request = self._step_requests.popleft()
+            request.future.set_result(request.done)
+
+    def _refuse_calls(self) -> None:
+        error = LoopStoppedError("the control loop has ended")
+        while True:
+            try:
+                call = self._calls.get_nowait()
+            except Empty:
+                return
+            call.refuse(error)
+
+    def _raise_priority(self) -> None:
+        if self._fifo_priority is None:
+            return
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._fifo_priority))
+        except OSError as error:
+            logger.warning(
+                "the control loop runs without SCHED_FIFO priority %d: %s",
+                self._fifo_priority,
+                error.strerror,
+            )
+
+
+class _Call:
+    """A function to run on the loop thread, and where its result goes."""
+
+    __slots__ = ("_function", "future")
+
+    def __init__(self, function: Callable[[], Any]) -> None:
+        self._function = function
+        self.future: Future[Any] = Future()
+
+    def run(self) -> None:
+        if not self.future.set_running_or_notify_cancel():
+            return
+        try:
+            result = self._function()
+        except Exception as error:
+            # It is the caller's: whoever waits for the result gets it, and the loop goes on.
+            self.future.set_exception(error)
+        else:
+            self.future.set_result(result)
+
+    def refuse(self, error: LoopStoppedError) -> None:
+        if self.future.set_running_or_notify_cancel():
+            self.future.set_exception(error)
+
+
+class _StepRequest:
+    """Ticks asked for while the loop is paused."""
+
+    __slots__ = ("count", "done", "future")
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.done = 0
+        self.future: Future[int] = Future()
+
+    def fail_with(self, call: "Future[None]") -> None:
+        """Pass on why the request never reached the loop."""
+        error = call.exception()
+        if error is not None:
+            self.future.set_exception(error)

@@ -1,0 +1,27 @@
+"""The one place where code of controllers and hardware, written by anybody, is allowed to fail."""
+
+import logging
+from collections.abc import Callable
+
+from arm_control.errors import ControllerError
+
+logger = logging.getLogger(__name__)
+
+
+def failure_of(step: Callable[[], object], what: str) -> str:
+    """Run a life-cycle step of outside code; return why it failed, empty if it did not.
+
+    A step fails by returning False, by raising `ControllerError` with its reason, or by raising
+    anything else: then the traceback is logged.
+
+    Args:
+        step: the call.
+        what: names it in the log: "on_activate of controller 'x'".
+    """
+    try:
+        return f"{what} returned False" if step() is False else ""
+    except ControllerError as error:
+        return str(error)
+    except Exception as error:
+        logger.exception("%s failed", what)
+        return f"{what} raised {type(error).__name__}: {error}"

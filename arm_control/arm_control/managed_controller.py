@@ -1,0 +1,131 @@
+"""A loaded controller in the manager's care: its state, its rate, its interfaces."""
+
+import logging
+from typing import Any
+
+from arm_control.controller import Controller, ReturnType
+from arm_control.lifecycle import LifecycleState
+from arm_control.resource_manager import ResourceManager
+from arm_control.status import ControllerStatus
+
+logger = logging.getLogger(__name__)
+
+
+class ManagedController:
+    """A controller and what the manager knows about it. Loop thread only.
+
+    Attributes:
+        controller: the controller itself.
+        type_name: its ros2_control type string.
+        fallback_names: controllers to activate in its place when an update fails.
+        state: of its life cycle.
+        commands: full names of the command interfaces it asks for; empty while unconfigured.
+        states: full names of the state interfaces it asks for; empty while unconfigured.
+    """
+
+    def __init__(
+        self,
+        controller: Controller[Any],
+        type_name: str,
+        fallback_names: tuple[str, ...],
+        manager_rate_hz: int,
+    ) -> None:
+        self.controller = controller
+        self.type_name = type_name
+        self.fallback_names = fallback_names
+        self.state = LifecycleState.UNCONFIGURED
+        self.commands: tuple[str, ...] = ()
+        self.states: tuple[str, ...] = ()
+        self._manager_rate_hz = manager_rate_hz
+        self._own_period_s = 0.0
+        self._last_update_s: float | None = None
+        self.update_rate_hz = manager_rate_hz
+
+    @property
+    def name(self) -> str:
+        """The controller's name."""
+        return self.controller.name
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it is being updated."""
+        return self.state is LifecycleState.ACTIVE
+
+    def set_update_rate(self, requested_hz: int) -> None:
+        """Choose the rate nearest to the one asked for that divides the manager's; 0 = that."""
+        rate_hz = self._manager_rate_hz
+        if requested_hz > rate_hz:
+            logger.warning(
+                "controller '%s' asks for %d Hz; it runs at the controller manager's %d Hz",
+                self.name,
+                requested_hz,
+                rate_hz,
+            )
+        elif 0 < requested_hz < rate_hz:
+            rate_hz = rate_hz // round(rate_hz / requested_hz)
+            if rate_hz != requested_hz:
+                logger.warning(
+                    "controller '%s' asks for %d Hz, which does not divide the controller "
+                    "manager's %d Hz; it runs at %d Hz",
+                    self.name,
+                    requested_hz,
+                    self._manager_rate_hz,
+                    rate_hz,
+                )
+        self.update_rate_hz = rate_hz
+        self._own_period_s = 1.0 / rate_hz if rate_hz < self._manager_rate_hz else 0.0
+
+    def resolve_interfaces(self, resources: ResourceManager) -> None:
+        """Ask the controller what it wants, and look up what that means now."""
+        self.commands = self.controller.command_interface_configuration().resolve(
+            resources.available_commands()
+        )
+        self.states = self.controller.state_interface_configuration().resolve(
+            resources.available_states()
+        )
+
+    def forget_interfaces(self) -> None:
+        """Ask for nothing any more."""
+        self.commands = self.states = ()
+
+    def restart_cadence(self) -> None:
+        """Let the next cycle be the first: it runs at once, with the nominal period."""
+        self._last_update_s = None
+
+    def run(self, time_s: float, period_s: float) -> bool:
+        """Update the controller if its cycle has come; return False where that failed."""
+        if self._own_period_s:
+            period_s = self._due_period_s(time_s, period_s)
+            if period_s <= 0.0:
+                return True
+        try:
+            return self.controller.update(time_s, period_s) is ReturnType.OK
+        except Exception:
+            # A controller is outside code; the manager deactivates it and goes on.
+            logger.exception("controller '%s' raised in its update", self.name)
+            return False
+
+    def status(self) -> ControllerStatus:
+        """Return a snapshot for the list services."""
+        return ControllerStatus(
+            name=self.name,
+            type_name=self.type_name,
+            state=self.state,
+            update_rate_hz=self.update_rate_hz,
+            claimed_interfaces=self.commands if self.is_active else (),
+            required_command_interfaces=self.commands,
+            required_state_interfaces=self.states,
+        )
+
+    def _due_period_s(self, time_s: float, tick_s: float) -> float:
+        """Return the period to update with, 0 where a later tick is nearer to the own period."""
+        last_s = self._last_update_s
+        if last_s is None or time_s < last_s:
+            elapsed_s = self._own_period_s
+        else:
+            elapsed_s = time_s - last_s
+            error_s = abs(elapsed_s - self._own_period_s)
+            if error_s > abs(elapsed_s + tick_s - self._own_period_s):
+                return 0.0
+        self._last_update_s = time_s
+        return elapsed_s

@@ -1,0 +1,228 @@
+"""The hardware side of the manager: components, their interfaces, and who claims which."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from arm_control.errors import ControllerManagerError
+from arm_control.guarded import failure_of
+from arm_control.hardware import Hardware, HardwareReturn
+from arm_control.hardware_component import HardwareComponent
+from arm_control.lifecycle import LifecycleState
+from arm_control.loaned_interfaces import LoanedInterfaces
+from arm_control.status import HardwareComponentStatus, InterfaceStatus
+
+Trouble = tuple[HardwareComponent, HardwareReturn]
+"""A component whose read or write was not OK."""
+
+
+class ResourceManager:
+    """All states and all commands of all components, each in one contiguous array.
+
+    Loop thread only.
+
+    Attributes:
+        states: shape (number of state interfaces,); NaN where nothing was read yet.
+        commands: shape (number of command interfaces,); NaN where nothing was commanded yet.
+        components: by name, in the order given.
+    """
+
+    def __init__(self, hardware: Sequence[Hardware]) -> None:
+        """Lay out the arrays and hand each component its part.
+
+        Raises:
+            ControllerManagerError: two components, or two interfaces, have the same name.
+        """
+        self.components: dict[str, HardwareComponent] = {}
+        self._state_owner: dict[str, HardwareComponent] = {}
+        self._command_owner: dict[str, HardwareComponent] = {}
+        for driver in hardware:
+            self._add(HardwareComponent(driver))
+        self.states = np.full(len(self._state_owner), np.nan)
+        self.commands = np.full(len(self._command_owner), np.nan)
+        self._read_only_states = self.states.view()
+        self._read_only_states.setflags(write=False)
+        self._state_index = {name: i for i, name in enumerate(self._state_owner)}
+        self._command_index = {name: i for i, name in enumerate(self._command_owner)}
+        self._claims: dict[str, str] = {}
+        self._reading: tuple[HardwareComponent, ...] = ()
+        self._writing: tuple[HardwareComponent, ...] = ()
+        self._bind()
+
+    def available_states(self) -> tuple[str, ...]:
+        """Full names of the state interfaces of configured components."""
+        return tuple(name for name, owner in self._state_owner.items() if owner.is_available)
+
+    def available_commands(self) -> tuple[str, ...]:
+        """Full names of the command interfaces of configured components."""
+        return tuple(name for name, owner in self._command_owner.items() if owner.is_available)
+
+    def is_state_available(self, name: str) -> bool:
+        """Whether the state interface exists and its component is configured."""
+        owner = self._state_owner.get(name)
+        return owner is not None and owner.is_available
+
+    def is_command_available(self, name: str) -> bool:
+        """Whether the command interface exists and its component is configured."""
+        owner = self._command_owner.get(name)
+        return owner is not None and owner.is_available
+
+    def claimant(self, command: str) -> str | None:
+        """Name of the controller that holds a command interface, None where nobody does."""
+        return self._claims.get(command)
+
+    def claim(self, controller: str, commands: Iterable[str]) -> None:
+        """Give command interfaces to a controller; the switch has checked that they are free."""
+        self._claims.update(dict.fromkeys(commands, controller))
+
+    def release(self, controller: str) -> None:
+        """Take every command interface back from a controller."""
+        self._claims = {name: c for name, c in self._claims.items() if c != controller}
+
+    def loan_commands(self, names: Sequence[str]) -> LoanedInterfaces:
+        """Open a window on these commands."""
+        return LoanedInterfaces(names, self.commands, [self._command_index[n] for n in names])
+
+    def loan_states(self, names: Sequence[str]) -> LoanedInterfaces:
+        """Open a read-only window on these states."""
+        return LoanedInterfaces(names, self._read_only_states, [self._state_index[n] for n in names])
+
+    def components_of(self, states: Iterable[str], commands: Iterable[str]) -> frozenset[str]:
+        """Names of the components that these interfaces belong to."""
+        owners = [self._state_owner[name] for name in states]
+        owners += [self._command_owner[name] for name in commands]
+        return frozenset(owner.name for owner in owners)
+
+    def prepare_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
+        """Ask each component concerned; return why one refuses, or nothing."""
+        for component, ours, theirs in self._concerned(start, stop):
+            if ours and component.state is not LifecycleState.ACTIVE:
+                return f"hardware component '{component.name}' is {component.state.label}"
+            reason = failure_of(
+                lambda c=component, a=ours, b=theirs: c.hardware.prepare_command_mode_switch(a, b),
+                f"prepare_command_mode_switch of hardware component '{component.name}'",
+            )
+            if reason:
+                return reason
+        return ""
+
+    def perform_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
+        """Tell each component concerned; return why one failed, or nothing."""
+        for component, ours, theirs in self._concerned(start, stop):
+            reason = failure_of(
+                lambda c=component, a=ours, b=theirs: c.hardware.perform_command_mode_switch(a, b),
+                f"perform_command_mode_switch of hardware component '{component.name}'",
+            )
+            if reason:
+                return reason
+        return ""
+
+    def read(self, time_s: float, period_s: float) -> list[Trouble]:
+        """Read every configured component; return those that had trouble."""
+        trouble: list[Trouble] = []
+        for component in self._reading:
+            outcome = component.read(time_s, period_s)
+            if outcome is not HardwareReturn.OK:
+                trouble.append((component, outcome))
+        return trouble
+
+    def write(self, time_s: float, period_s: float) -> list[Trouble]:
+        """Write every active component; return those that had trouble."""
+        trouble: list[Trouble] = []
+        for component in self._writing:
+            outcome = component.write(time_s, period_s)
+            if outcome is not HardwareReturn.OK:
+                trouble.append((component, outcome))
+        return trouble
+
+    def set_component_state(self, name: str, target: LifecycleState) -> str:
+        """Walk a component to a state; return why it stopped short, or nothing."""
+        reason = self.components[name].go_to(target)
+        self._select_components()
+        return reason
+
+    def take_down(self, component: HardwareComponent) -> None:
+        """Put a component that failed out of use."""
+        component.fail()
+        self._select_components()
+
+    def list_interfaces(
+        self,
+    ) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
+        """Return the command and the state interfaces, each sorted by name."""
+        return (
+            tuple(self._command_status(name) for name in sorted(self._command_owner)),
+            tuple(self._state_status(name) for name in sorted(self._state_owner)),
+        )
+
+    def list_components(self, rate_hz: int) -> tuple[HardwareComponentStatus, ...]:
+        """Return every component, read and written at this rate."""
+        return tuple(
+            HardwareComponentStatus(
+                name=component.name,
+                type=component.hardware.info.type,
+                plugin=component.hardware.info.plugin,
+                state=component.state,
+                read_write_rate_hz=rate_hz,
+                command_interfaces=tuple(
+                    map(self._command_status, component.hardware.command_interfaces)
+                ),
+                state_interfaces=tuple(
+                    map(self._state_status, component.hardware.state_interfaces)
+                ),
+            )
+            for component in self.components.values()
+        )
+
+    def _command_status(self, name: str) -> InterfaceStatus:
+        return InterfaceStatus(name, self.is_command_available(name), name in self._claims)
+
+    def _state_status(self, name: str) -> InterfaceStatus:
+        return InterfaceStatus(name, self.is_state_available(name), is_claimed=False)
+
+    def _concerned(
+        self, start: Sequence[str], stop: Sequence[str]
+    ) -> list[tuple[HardwareComponent, tuple[str, ...], tuple[str, ...]]]:
+        """Split a switch by component; a component hears only of its own interfaces."""
+        split = [
+            (
+                component,
+                tuple(name for name in start if self._command_owner[name] is component),
+                tuple(name for name in stop if self._command_owner[name] is component),
+            )
+            for component in self.components.values()
+        ]
+        return [part for part in split if part[1] or part[2]]
+
+    def _add(self, component: HardwareComponent) -> None:
+        if component.name in self.components:
+            raise ControllerManagerError(f"two hardware components are named '{component.name}'")
+        self.components[component.name] = component
+        for names, owners, kind in (
+            (component.hardware.state_interfaces, self._state_owner, "state"),
+            (component.hardware.command_interfaces, self._command_owner, "command"),
+        ):
+            for name in names:
+                if name in owners:
+                    raise ControllerManagerError(
+                        f"{kind} interface '{name}' belongs to hardware component "
+                        f"'{owners[name].name}' already; '{component.name}' has it too"
+                    )
+                owners[name] = component
+
+    def _bind(self) -> None:
+        first_state = first_command = 0
+        for component in self.components.values():
+            hardware = component.hardware
+            end_state = first_state + len(hardware.state_interfaces)
+            end_command = first_command + len(hardware.command_interfaces)
+            hardware.bind(
+                self.states[first_state:end_state], self.commands[first_command:end_command]
+            )
+            first_state, first_command = end_state, end_command
+
+    def _select_components(self) -> None:
+        every = tuple(self.components.values())
+        self._reading = tuple(c for c in every if c.is_available)
+        self._writing = tuple(c for c in every if c.state is LifecycleState.ACTIVE)
+

@@ -1,0 +1,56 @@
+"""Snapshots of what a controller manager holds, as its list services show it."""
+
+from dataclasses import dataclass
+
+from arm_control.lifecycle import LifecycleState
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceStatus:
+    """A command or state interface.
+
+    Attributes:
+        name: full name, 'j0/position'.
+        is_available: whether its component is configured.
+        is_claimed: whether a controller commands it; False for every state interface.
+    """
+
+    name: str
+    is_available: bool
+    is_claimed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareComponentStatus:
+    """A hardware component and its interfaces."""
+
+    name: str
+    type: str
+    plugin: str
+    state: LifecycleState
+    read_write_rate_hz: int
+    command_interfaces: tuple[InterfaceStatus, ...]
+    state_interfaces: tuple[InterfaceStatus, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerStatus:
+    """A loaded controller.
+
+    Attributes:
+        name: of the controller.
+        type_name: its ros2_control type string.
+        state: of its life cycle.
+        update_rate_hz: how often it really runs.
+        claimed_interfaces: command interfaces it holds; empty unless active.
+        required_command_interfaces: what it asks for; empty unless inactive or active.
+        required_state_interfaces: what it asks for; empty unless inactive or active.
+    """
+
+    name: str
+    type_name: str
+    state: LifecycleState
+    update_rate_hz: int
+    claimed_interfaces: tuple[str, ...]
+    required_command_interfaces: tuple[str, ...]
+    required_state_interfaces: tuple[str, ...]

@@ -1,0 +1,180 @@
+"""Decides what a switch request comes to, in ros2_control's own order, before anything changes."""
+
+import logging
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from arm_control.controller_switch import SwitchRequest
+from arm_control.errors import ControllerManagerError
+from arm_control.lifecycle import LifecycleState
+from arm_control.managed_controller import ManagedController
+from arm_control.resource_manager import ResourceManager
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class SwitchPlan:
+    """The controllers to deactivate, then those to activate."""
+
+    activate: tuple[ManagedController, ...]
+    deactivate: tuple[ManagedController, ...]
+
+    @property
+    def start_interfaces(self) -> tuple[str, ...]:
+        """Command interfaces that will be claimed."""
+        return tuple(name for controller in self.activate for name in controller.commands)
+
+    @property
+    def stop_interfaces(self) -> tuple[str, ...]:
+        """Command interfaces that will be released."""
+        return tuple(name for controller in self.deactivate for name in controller.commands)
+
+
+class SwitchRefusedError(ControllerManagerError):
+    """A switch that will not be done; the message is the service's answer."""
+
+
+class SwitchPlanner:
+    """Checks one request against the controllers and interfaces there are."""
+
+    def __init__(
+        self,
+        controllers: Mapping[str, ManagedController],
+        resources: ResourceManager,
+        request: SwitchRequest,
+    ) -> None:
+        self._controllers = controllers
+        self._resources = resources
+        self._request = request
+
+    def plan(self) -> SwitchPlan:
+        """Return what to do; an empty plan where nothing remains to be done.
+
+        Raises:
+            SwitchRefusedError: nothing is to be switched.
+        """
+        deactivate = self._known(self._request.deactivate, "deactivate")
+        activate = self._known(self._request.activate, "activate")
+        activate = self._accepted(activate, self._why_not_activate)
+        deactivate = self._accepted(deactivate, self._why_not_deactivate)
+        plan = SwitchPlan(tuple(activate), tuple(deactivate))
+        self._check_interfaces(plan)
+        return plan
+
+    def _known(self, names: Sequence[str], action: str) -> list[ManagedController]:
+        """Return the controllers of these names, each once; unknown names end it or are dropped."""
+        known: list[ManagedController] = []
+        complaints: list[str] = []
+        for name in dict.fromkeys(names):
+            controller = self._controllers.get(name)
+            if controller is not None:
+                known.append(controller)
+                continue
+            complaint = (
+                f"Could not {action} controller with name '{name}' "
+                "because no controller with this name exists"
+            )
+            self._complain(complaint)
+            complaints.append(complaint)
+        if complaints and not known:
+            raise SwitchRefusedError("".join(f"{complaint}\n" for complaint in complaints))
+        return known
+
+    def _accepted(
+        self,
+        candidates: Iterable[ManagedController],
+        why_not: Callable[[ManagedController], str],
+    ) -> list[ManagedController]:
+        """Return the candidates without those that have a reason against them."""
+        accepted: list[ManagedController] = []
+        for candidate in candidates:
+            reason = why_not(candidate)
+            if reason:
+                self._complain(reason)
+            else:
+                accepted.append(candidate)
+        return accepted
+
+    def _complain(self, reason: str) -> None:
+        """End a strict switch; say what a best-effort one leaves out."""
+        if self._request.is_strict:
+            raise SwitchRefusedError(reason)
+        logger.warning("%s", reason)
+
+    def _why_not_activate(self, controller: ManagedController) -> str:
+        if controller.state is LifecycleState.ACTIVE:
+            if controller.name in self._request.deactivate:
+                return ""
+            return f"Controller with name '{controller.name}' is already active."
+        if controller.state is not LifecycleState.INACTIVE:
+            return (
+                f"Controller with name '{controller.name}' can not be activated "
+                f"since it is {controller.state.label}; it must be configured first."
+            )
+        return self._why_not_fall_back(controller)
+
+    def _why_not_deactivate(self, controller: ManagedController) -> str:
+        if controller.is_active:
+            return ""
+        return (
+            f"Controller with name '{controller.name}' can not be deactivated "
+            "since it is not active."
+        )
+
+    def _why_not_fall_back(self, controller: ManagedController) -> str:
+        """Say why the controller's fallbacks could not take over, before they are needed."""
+        for name in controller.fallback_names:
+            fallback = self._controllers.get(name)
+            usable = (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
+            if fallback is None or fallback.state not in usable:
+                state = "not loaded" if fallback is None else fallback.state.label
+                return (
+                    f"Controller with name '{controller.name}' can not be activated "
+                    f"since its fallback controller '{name}' is {state}."
+                )
+            missing = self._first_missing(fallback)
+            if missing:
+                return (
+                    f"Controller with name '{controller.name}' can not be activated "
+                    f"since its fallback controller '{name}' lacks the interface '{missing}'."
+                )
+        return ""
+
+    def _first_missing(self, controller: ManagedController) -> str:
+        for name in controller.commands:
+            if not self._resources.is_command_available(name):
+                return name
+        for name in controller.states:
+            if not self._resources.is_state_available(name):
+                return name
+        return ""
+
+    def _check_interfaces(self, plan: SwitchPlan) -> None:
+        """Refuse the whole plan, strict or not, where an interface is missing or taken."""
+        released = {controller.name for controller in plan.deactivate}
+        taken: set[str] = set()
+        for controller in plan.activate:
+            for name in controller.commands:
+                claimant = self._resources.claimant(name)
+                if not self._resources.is_command_available(name):
+                    trouble = "is not available."
+                elif claimant is not None and claimant not in released:
+                    trouble = "is currently claimed by another controller."
+                elif name in taken:
+                    trouble = "will be used by another controller that is being activated."
+                else:
+                    taken.add(name)
+                    continue
+                self._refuse_interface(controller, f"command interface '{name}' {trouble}")
+            for name in controller.states:
+                if not self._resources.is_state_available(name):
+                    self._refuse_interface(
+                        controller, f"state interface '{name}' is not available."
+                    )
+
+    @staticmethod
+    def _refuse_interface(controller: ManagedController, trouble: str) -> None:
+        raise SwitchRefusedError(
+            f"Unable to activate controller '{controller.name}' since the {trouble}"
+        )

@@ -1,0 +1,49 @@
+"""Turns the values of parameters into what a node works with.
+
+ROS takes the type of a parameter from how the user writes it: `2` is no double, `[1, 0]` no list
+of doubles. These readers accept both, and say what is wrong with anything else.
+"""
+
+import math
+from pathlib import Path
+
+from arm_controller.errors import ParameterValueError
+
+
+def read_number(value: object, *, positive: bool = True) -> float:
+    """Return a finite number, above zero or, if not `positive`, zero as well.
+
+    Raises:
+        ParameterValueError: it is something else.
+    """
+    wanted = "a number above 0" if positive else "0 or a number above"
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ParameterValueError(f"must be {wanted}, not {value!r}")
+    if value < 0 or (positive and value == 0):
+        raise ParameterValueError(f"must be {wanted}, not {value:g}")
+    return float(value)
+
+
+def read_joint_names(value: object) -> tuple[str, ...]:
+    """Return a list of one or more different names.
+
+    Raises:
+        ParameterValueError: it is something else.
+    """
+    names = tuple(value) if isinstance(value, (list, tuple)) else ()
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ParameterValueError(f"must be a list of joint names, not {value!r}")
+    if len(set(names)) != len(names):
+        raise ParameterValueError(f"names a joint twice: {', '.join(names)}")
+    return names
+
+
+def read_path(value: object) -> Path:
+    """Return the path of a file, `~` expanded; whether the file is there is not asked.
+
+    Raises:
+        ParameterValueError: it is not a text or an empty one.
+    """
+    if not isinstance(value, str) or not value:
+        raise ParameterValueError(f"must be the path of a file, not {value!r}")
+    return Path(value).expanduser()

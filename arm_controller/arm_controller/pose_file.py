@@ -1,0 +1,92 @@
+"""Reads the file of poses that publisher_defined goes through.
+
+    poses:
+      - [0.5, 0.5, 0.5, 0.5]
+      - [0.0, 0.0, 0.0, 0.0]
+
+Works on YAML's nodes instead of its values: only they know their line.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import yaml
+
+from arm_controller.errors import PoseError, PoseFileError
+from arm_controller.pose import JointPose
+
+POSES_KEY = "poses"
+
+
+def read_pose_file(path: Path, joint_names: Sequence[str]) -> tuple[JointPose, ...]:
+    """Return the poses of a file, at least one.
+
+    Args:
+        path: the YAML file.
+        joint_names: the joints that each pose gives a position for, in its order.
+
+    Raises:
+        PoseFileError: the file is missing, no YAML, or anything but a list of poses; the message
+            names the file and the line.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise PoseFileError(f"there is no pose file {path}") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise PoseFileError(f"cannot read the pose file {path}: {error}") from error
+    try:
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+    except yaml.YAMLError as error:
+        raise PoseFileError(f"{path} is not YAML: {_problem(error)}") from error
+    return tuple(_pose(item, path, joint_names) for item in _pose_items(root, path))
+
+
+def _pose_items(root: yaml.Node | None, path: Path) -> list[yaml.Node]:
+    if not isinstance(root, yaml.MappingNode):
+        raise PoseFileError(f"{path} must hold the key '{POSES_KEY}' with a list of poses")
+    items: list[yaml.Node] | None = None
+    for key, value in root.value:
+        if key.value != POSES_KEY:
+            raise PoseFileError(
+                f"{_place(key, path)}: unknown key '{key.value}'; the only key is '{POSES_KEY}'"
+            )
+        if not isinstance(value, yaml.SequenceNode):
+            raise PoseFileError(f"{_place(value, path)}: '{POSES_KEY}' must be a list of poses")
+        items = value.value
+    if not items:
+        raise PoseFileError(f"{path} holds no pose under the key '{POSES_KEY}'")
+    return items
+
+
+def _pose(item: yaml.Node, path: Path, joint_names: Sequence[str]) -> JointPose:
+    if not isinstance(item, yaml.SequenceNode):
+        raise PoseFileError(
+            f"{_place(item, path)}: a pose is a list of {len(joint_names)} numbers, "
+            f"such as [{', '.join('0.0' for _ in joint_names)}]"
+        )
+    try:
+        return JointPose.of(joint_names, [_number(value, path) for value in item.value])
+    except PoseError as error:
+        raise PoseFileError(f"{_place(item, path)}: {error}") from error
+
+
+def _number(node: yaml.Node, path: Path) -> float:
+    # YAML 1.1 takes 1e-3 for a text, so what is a number is for Python to say.
+    if isinstance(node, yaml.ScalarNode) and node.style is None:
+        try:
+            return float(node.value)
+        except ValueError:
+            pass
+    shown = f"'{node.value}'" if isinstance(node, yaml.ScalarNode) else "a list or mapping"
+    raise PoseFileError(f"{_place(node, path)}: a pose is made of numbers; {shown} is not one")
+
+
+def _place(node: yaml.Node, path: Path) -> str:
+    return f"{path}, line {node.start_mark.line + 1}"
+
+
+def _problem(error: yaml.YAMLError) -> str:
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
+        return f"line {error.problem_mark.line + 1}: {error.problem}"
+    return str(error)

@@ -1,0 +1,40 @@
+"""Declares parameters whose type the user need not get right."""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.exceptions import ParameterException
+from rclpy.node import Node
+
+from arm_controller.errors import ArmControllerError, ParameterValueError
+
+DEFAULT_JOINTS = ["j0", "j1", "j2", "j3"]
+DEFAULT_MATCH_TIMEOUT_S = 10.0
+
+Value = TypeVar("Value")
+
+
+def declare(
+    node: Node,
+    name: str,
+    default: object,
+    read: Callable[[object], Value],
+    description: str,
+    *,
+    read_only: bool = True,
+) -> Value:
+    """Declare a parameter and return what `read` makes of its value.
+
+    The declaration is dynamically typed: rclpy itself would refuse an integer for a double.
+
+    Raises:
+        ParameterValueError: `read` refused the value that the user gave.
+    """
+    descriptor = ParameterDescriptor(
+        description=description, dynamic_typing=True, read_only=read_only
+    )
+    try:
+        return read(node.declare_parameter(name, default, descriptor).value)
+    except (ArmControllerError, ParameterException) as error:
+        raise ParameterValueError(f"parameter {name}: {error}") from error

@@ -1,0 +1,137 @@
+"""The node publisher_defined: goes through the poses of a file."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from ament_index_python.packages import get_package_share_directory
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+
+from arm_controller.errors import PoseError
+from arm_controller.joint_readings import JointReadings
+from arm_controller.parameter_values import read_joint_names, read_number, read_path
+from arm_controller.pose import JointPose
+from arm_controller.pose_file import read_pose_file
+from arm_controller.pose_sequence import PoseSequence
+from arm_controller.ros.command_publisher import (
+    GRACE_S,
+    NANOSECOND_S,
+    POLL_S,
+    CommandPublisher,
+)
+from arm_controller.ros.parameters import DEFAULT_JOINTS, DEFAULT_MATCH_TIMEOUT_S, declare
+
+
+class PublisherDefined(Node):
+    """Publishes a pose, waits until the joints are there, goes on with the next.
+
+    Args:
+        on_end: called in the executor's thread when all is done, with the number of poses that
+            were not reached.
+
+    Raises:
+        ParameterValueError: a parameter that was given makes no sense.
+        PoseFileError: the file of poses cannot be used.
+    """
+
+    def __init__(self, on_end: Callable[[int], None]) -> None:
+        super().__init__("publisher_defined")
+        self._on_end = on_end
+        joint_names = declare(
+            self, "joints", DEFAULT_JOINTS, read_joint_names, "Joints, in the controller's order"
+        )
+        default_file = Path(get_package_share_directory("arm_controller")) / "config/poses.yaml"
+        poses_file = declare(
+            self, "poses_file", str(default_file), read_path, "YAML file with the poses"
+        )
+        self._match_timeout_s = declare(
+            self,
+            "match_timeout",
+            DEFAULT_MATCH_TIMEOUT_S,
+            read_number,
+            "How long to wait for somebody who listens to the commands (s)",
+        )
+        self._sequence = PoseSequence(
+            read_pose_file(poses_file, joint_names),
+            tolerance=declare(
+                self, "tolerance", 0.02, read_number, "How near each joint must come (rad or m)"
+            ),
+            timeout_s=declare(self, "timeout", 30.0, read_number, "How long one pose may take (s)"),
+        )
+        self._readings = JointReadings()
+        self._subscription = self.create_subscription(
+            JointState, "joint_states", self._take_states, qos_profile_sensor_data
+        )
+        self._commands = CommandPublisher(self, joint_names)
+        # Of the steady clock: a simulation that stands still is something to notice.
+        self._timer = self.create_timer(
+            POLL_S, self._go_on, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+
+    def _take_states(self, message: JointState) -> None:
+        if not self._readings.update(list(message.name), message.position):
+            return
+        said = self._sequence.on_positions(self._readings.positions, self._now_s())
+        if said is not None:
+            self.get_logger().info(said)
+            self._go_on()
+
+    def _go_on(self) -> None:
+        if self._sequence.finished:
+            return
+        self._commands.observe()
+        said = self._sequence.on_time(self._readings.positions, self._now_s())
+        if said is not None:
+            self.get_logger().error(said)
+        pose = self._sequence.waiting_pose
+        if self._commands.silence_s >= self._match_timeout_s:
+            self._give_up(f"{self._commands.audience}: is the position_controller active?")
+        elif pose is not None:
+            self._publish_if_ready(pose)
+        if self._sequence.finished:
+            self._end()
+
+    def _publish_if_ready(self, pose: JointPose) -> None:
+        label = self._sequence.label
+        try:
+            self._commands.limits.check(pose)
+        except PoseError as error:
+            self.get_logger().error(f"{label} {pose} is left out: {error}")
+            self._sequence.refuse()
+            return
+        if not self._commands.is_ready:
+            return
+        waited_s = self._commands.lasting_s
+        if self._now_s() == 0.0:
+            # With use_sim_time the clock shows 0 until /clock comes; no time-out would ever pass.
+            if waited_s >= self._match_timeout_s:
+                self._give_up("use_sim_time is true and /clock is silent: does a simulation run?")
+            return
+        if not self._readings.names and waited_s < GRACE_S:
+            return
+        self.get_logger().info(f"{label}: publishing positions: {pose}")
+        approach = self._sequence.begin(
+            self._commands.limits, self._readings.positions, self._now_s()
+        )
+        self._commands.publish(pose)
+        forecast = approach.forecast()
+        if forecast is not None:
+            self.get_logger().warning(f"{label} cannot be reached in time: {forecast}")
+
+    def _give_up(self, reason: str) -> None:
+        self.get_logger().error(reason)
+        self._sequence.give_up()
+
+    def _end(self) -> None:
+        missed, count = self._sequence.missed, self._sequence.count
+        if missed:
+            self.get_logger().error(f"{missed} of {count} poses not reached")
+        else:
+            self.get_logger().info(f"All {count} poses reached")
+        self._on_end(missed)
+
+    def _now_s(self) -> float:
+        return self.get_clock().now().nanoseconds * NANOSECOND_S

@@ -1,0 +1,72 @@
+"""The node publisher_terminal: its half of the dialogue that needs ROS."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from rclpy.node import Node
+
+from arm_controller.errors import DeliveryError
+from arm_controller.parameter_values import read_joint_names, read_number
+from arm_controller.pose import JointPose
+from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
+from arm_controller.ros.parameters import DEFAULT_JOINTS, DEFAULT_MATCH_TIMEOUT_S, declare
+
+if TYPE_CHECKING:
+    from arm_node.process import NodeProcess
+
+PACE_S = 0.1
+"""The controller keeps the latest command only: lines from a pipe must not overtake each other."""
+
+
+class PublisherTerminal(Node):
+    """Delivers poses, one after the other, for a thread that may wait.
+
+    Args:
+        process: the process, whose end ends every waiting.
+
+    Raises:
+        ParameterValueError: a parameter that was given makes no sense.
+    """
+
+    def __init__(self, process: "NodeProcess") -> None:
+        super().__init__("publisher_terminal")
+        self._process = process
+        self.joint_names = declare(
+            self, "joints", DEFAULT_JOINTS, read_joint_names, "Joints, in the controller's order"
+        )
+        self._match_timeout_s = declare(
+            self,
+            "match_timeout",
+            DEFAULT_MATCH_TIMEOUT_S,
+            read_number,
+            "How long to wait for somebody who listens to the commands (s)",
+        )
+        self._commands = CommandPublisher(self, self.joint_names)
+
+    def deliver(self, pose: JointPose, announce: Callable[[], None]) -> None:
+        """Publish a pose as soon as it can arrive, and give it the time to.
+
+        Not in the executor's thread, which must stay free meanwhile.
+
+        Args:
+            pose: what to publish.
+            announce: called right before.
+
+        Raises:
+            PoseError: beyond the robot's limits.
+            DeliveryError: nobody has listened for the parameter match_timeout.
+        """
+        while not self._process.stopping:
+            self._commands.observe()
+            self._commands.limits.check(pose)
+            if self._commands.is_ready:
+                announce()
+                self._commands.publish(pose)
+                self._process.wait(PACE_S)
+                return
+            if self._commands.silence_s >= self._match_timeout_s:
+                raise DeliveryError(
+                    f"Not published: {self._commands.audience}. Is the position_controller active?"
+                )
+            self._process.wait(POLL_S)
+        raise DeliveryError("Not published: the program ends.")

@@ -1,0 +1,27 @@
+"""The executable robot_state_publisher: /tf, /tf_static and /robot_description of a robot."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from arm_node.process import NodeProcess, run_process
+
+from arm_description.errors import DescriptionError
+
+
+@contextmanager
+def application(process: NodeProcess) -> Iterator[None]:
+    """Run the node."""
+    from arm_description.ros.robot_state_publisher import RobotStatePublisher
+
+    process.executor.add_node(RobotStatePublisher())
+    yield
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the process; return its exit code."""
+    return run_process(application, argv, user_errors=(DescriptionError,))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

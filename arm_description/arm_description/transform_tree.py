@@ -1,0 +1,129 @@
+"""A robot's joints as transforms between frames: those that stand still and those that move.
+
+A moving joint's transform is an affine function of three numbers of its position: itself for
+the translation of a prismatic joint, sine and cosine of its half for the rotation of a revolute
+one. So all joints of a message are computed at once, whatever their number.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.robot import Joint, Robot
+from arm_description.transforms import quaternion_from_rpy, quaternion_product, rotation_from_rpy
+
+Array = NDArray[np.float64]
+
+TURNING = ("revolute", "continuous")
+STANDING = ("fixed", "planar")
+"""Joints sent as static transforms; a planar joint stays at its origin, as upstream."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A child frame in its parent's: the link names."""
+
+    parent: str
+    child: str
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The transforms that one kind of joint state message moves.
+
+    Joint k of m is at `multiplier[k]` x position `source[k]` of the message + `offset[k]`.
+    """
+
+    frames: tuple[Frame, ...]
+    source: NDArray[np.intp]
+    multiplier: Array
+    offset: Array
+    constant: Array
+    per_metre: Array
+    per_sine: Array
+    per_cosine: Array
+
+    def transforms(self, positions: Array) -> Array:
+        """Return (m, 7): x, y, z in m and the quaternion x, y, z, w of every frame.
+
+        Args:
+            positions: (n,) of the message, in its own order, rad or m.
+        """
+        value = (self.multiplier * positions[self.source] + self.offset)[:, np.newaxis]
+        half = value * 0.5
+        return (
+            self.constant
+            + self.per_metre * value
+            + self.per_sine * np.sin(half)
+            + self.per_cosine * np.cos(half)
+        )
+
+
+class TransformTree:
+    """The transforms of a robot's joints; floating joints have none, as upstream."""
+
+    def __init__(self, robot: Robot) -> None:
+        """Compute what does not change with the positions."""
+        joints = robot.joints_in_tree_order
+        standing = [joint for joint in joints if joint.type in STANDING]
+        self.static_frames = tuple(Frame(joint.parent, joint.child) for joint in standing)
+        self.static_transforms = np.array([_origin(joint) for joint in standing]).reshape(-1, 7)
+        self._robot = robot
+        self._moving = [joint for joint in joints if joint.type in (*TURNING, "prismatic")]
+
+    def motion(self, names: Sequence[str]) -> Motion:
+        """Return what moves with a message that names these joints.
+
+        A joint that mimics moves with the nearest of its leaders that the message names, unless
+        the message names the joint itself. Names that the robot does not have are passed over;
+        of a name that stands twice the first counts.
+        """
+        index = {name: i for i, name in reversed(list(enumerate(names)))}
+        joints: list[Joint] = []
+        rules: list[tuple[int, float, float]] = []
+        for joint in self._moving:
+            rule = self._rule(joint, index)
+            if rule is not None:
+                joints.append(joint)
+                rules.append(rule)
+        parts = np.array([_parts(joint) for joint in joints]).reshape(-1, 4, 7)
+        return Motion(
+            frames=tuple(Frame(joint.parent, joint.child) for joint in joints),
+            source=np.array([source for source, _, _ in rules], dtype=np.intp),
+            multiplier=np.array([multiplier for _, multiplier, _ in rules]),
+            offset=np.array([offset for _, _, offset in rules]),
+            constant=parts[:, 0],
+            per_metre=parts[:, 1],
+            per_sine=parts[:, 2],
+            per_cosine=parts[:, 3],
+        )
+
+    def _rule(self, joint: Joint, index: dict[str, int]) -> tuple[int, float, float] | None:
+        multiplier, offset = 1.0, 0.0
+        while joint.name not in index:
+            if joint.mimic is None:
+                return None
+            offset += multiplier * joint.mimic.offset
+            multiplier *= joint.mimic.multiplier
+            joint = self._robot.joint(joint.mimic.joint)
+        return index[joint.name], multiplier, offset
+
+
+def _origin(joint: Joint) -> Array:
+    return np.concatenate((joint.origin.xyz, quaternion_from_rpy(joint.origin.rpy)))
+
+
+def _parts(joint: Joint) -> Array:
+    """Return a moving joint's rows (4, 7): constant, per metre, per sine, per cosine."""
+    rows = np.zeros((4, 7))
+    rows[0, :3] = joint.origin.xyz
+    turned = quaternion_from_rpy(joint.origin.rpy)
+    if joint.type in TURNING:
+        rows[2, 3:] = quaternion_product(turned, np.array([*joint.axis, 0.0]))
+        rows[3, 3:] = turned
+    else:
+        rows[0, 3:] = turned
+        rows[1, :3] = rotation_from_rpy(joint.origin.rpy) @ joint.axis
+    return rows

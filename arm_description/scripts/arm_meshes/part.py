@@ -1,0 +1,98 @@
+"""A part of the arm: what it looks like, what it weighs, and what others bump into."""
+
+import math
+from dataclasses import dataclass
+
+from manifold3d import Manifold
+
+from arm_meshes.solid import Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One mesh file of one colour.
+
+    Attributes:
+        mesh: name of the file without its ending.
+        material: name of a material of arm_materials.xacro.
+        solid: the shape, in mm.
+    """
+
+    mesh: str
+    material: str
+    solid: Manifold
+
+
+@dataclass(frozen=True, slots=True)
+class BoxCollision:
+    """A box that stands for the part in contacts.
+
+    Attributes:
+        centre: position of the centre, in mm.
+        size: lengths of the edges, in mm.
+        rpy: orientation, in rad.
+    """
+
+    centre: Vector
+    size: Vector
+    rpy: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class CylinderCollision:
+    """An upright cylinder that stands for the part in contacts.
+
+    Attributes:
+        centre: position of the centre, in mm.
+        radius: in mm.
+        length: along z, in mm.
+    """
+
+    centre: Vector
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What the URDF says about one link.
+
+    Attributes:
+        name: the xacro macro is `part_<name>`.
+        pieces: the visuals.
+        collisions: the shapes that touch; none for a part that only looks.
+        body: the shape that the mass is spread over, in mm; None for a part without mass.
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    collisions: tuple[BoxCollision | CylinderCollision, ...] = ()
+    body: Manifold | None = None
+
+
+def box_between(lower: Vector, upper: Vector) -> BoxCollision:
+    """Return the box between two opposite corners, in mm."""
+    centre = tuple((a + b) / 2 for a, b in zip(lower, upper, strict=True))
+    size = tuple(b - a for a, b in zip(lower, upper, strict=True))
+    return BoxCollision((centre[0], centre[1], centre[2]), (size[0], size[1], size[2]))
+
+
+def box_around(solid: Manifold) -> BoxCollision:
+    """Return the upright box that just holds a solid."""
+    x0, y0, z0, x1, y1, z1 = solid.bounding_box()
+    return box_between((x0, y0, z0), (x1, y1, z1))
+
+
+def board_between(
+    start: tuple[float, float], end: tuple[float, float], thickness: float, width: float
+) -> BoxCollision:
+    """Return a board that leans: its outer face runs between two points (x, z), in mm.
+
+    The board lies on the right of the way from start to end, seen from +y with z up and x to the
+    left, and reaches `width / 2` to both sides of y = 0.
+    """
+    dx, dz = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(dx, dz)
+    inward = (dz / length * thickness / 2, -dx / length * thickness / 2)
+    centre = ((start[0] + end[0]) / 2 + inward[0], 0.0, (start[1] + end[1]) / 2 + inward[1])
+    return BoxCollision(centre, (length, width, thickness), (0.0, -math.atan2(dz, dx), 0.0))

@@ -1,0 +1,114 @@
+"""Inertias that a rigid body can have, made from those that a URDF gives."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from arm_description.robot import Inertial
+from arm_description.transforms import rotation_from_rpy
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SMALLEST_MASS_KG = 1e-3
+SMALLEST_INERTIA = 1e-9
+"""Below this, in kg m2, an inertia about an axis is taken for missing: a 1 mg bead of 30 mm."""
+DEFAULT_INERTIA = 1e-6
+LARGEST_GYRATION_M2 = 4.0
+"""Inertia over mass that no link of an arm has: a mesh in millimetres taken for metres has it."""
+ROUNDING = 1e-3
+"""How far decimals in a URDF may break the triangle inequality without a word."""
+
+
+@dataclass(frozen=True, slots=True)
+class PrincipalInertia:
+    """A body's mass and its inertia about its principal axes.
+
+    Attributes:
+        mass: kg.
+        position: centre of mass in the link's frame, shape (3,).
+        quaternion: orientation (w, x, y, z) of the principal axes in the link's frame.
+        moments: kg m2 about the principal axes, shape (3,).
+        remarks: what was repaired or is doubtful, one sentence each.
+    """
+
+    mass: float
+    position: NDArray[np.float64]
+    quaternion: NDArray[np.float64]
+    moments: NDArray[np.float64]
+    remarks: tuple[str, ...] = ()
+
+
+def massless() -> PrincipalInertia:
+    """Return what a moving link without any mass gets: too little to be felt."""
+    return PrincipalInertia(
+        SMALLEST_MASS_KG, np.zeros(3), np.array([1.0, 0, 0, 0]), np.full(3, DEFAULT_INERTIA)
+    )
+
+
+def repair_inertia(
+    inertial: Inertial, box: NDArray[np.float64] | None = None
+) -> PrincipalInertia:
+    """Return the inertia of a link, repaired where no rigid body can have it.
+
+    Args:
+        inertial: as in the URDF.
+        box: lowest and highest corner of the link's shapes in the link's frame, shape (2, 3);
+            None where it has none. It replaces an inertia that its size cannot have.
+    """
+    remarks: list[str] = []
+    mass = inertial.mass
+    if mass <= 0:
+        remarks.append(f"a mass of {mass:g} kg is not above 0; {SMALLEST_MASS_KG:g} kg is used")
+        mass = SMALLEST_MASS_KG
+    ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
+    moments, axes = np.linalg.eigh(np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]))
+    axes = rotation_from_rpy(inertial.origin.rpy) @ axes
+    if moments[2] > LARGEST_GYRATION_M2 * mass:
+        moments, axes = _implausible(mass, moments, axes, box, remarks)
+    moments = _physical(moments, remarks)
+    if np.linalg.det(axes) < 0:
+        axes = axes * (1.0, 1.0, -1.0)
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(axes).ravel())
+    return PrincipalInertia(
+        mass, np.array(inertial.origin.xyz), quaternion, moments, tuple(remarks)
+    )
+
+
+def _implausible(
+    mass: float, moments: Array, axes: Array, box: Array | None, remarks: list[str]
+) -> tuple[Array, Array]:
+    """Replace, or only remark on, an inertia that wants the mass metres away from its centre."""
+    finding = (
+        f"an inertia of {moments[2]:.3g} kg m2 on {mass:g} kg looks like a mesh in millimetres "
+        "taken for metres"
+    )
+    if box is None:
+        remarks.append(f"{finding}; it is used as it is")
+        return moments, axes
+    x, y, z = (box[1] - box[0]) ** 2
+    moments = mass / 12 * np.array([y + z, x + z, x + y])
+    remarks.append(f"{finding}; that of its bounding box is used, up to {moments.max():.3g} kg m2")
+    return moments, np.eye(3)
+
+
+def _physical(moments: Array, remarks: list[str]) -> Array:
+    """Return moments above 0, none of which exceeds the sum of the other two."""
+    if moments[-1] < SMALLEST_INERTIA and moments.max() < SMALLEST_INERTIA:
+        remarks.append(f"it has no inertia; {DEFAULT_INERTIA:g} kg m2 is used")
+        return np.full(3, DEFAULT_INERTIA)
+    largest = moments.max()
+    floor = ROUNDING * largest
+    if moments.min() < -floor:
+        remarks.append(f"its inertia has a principal moment below 0 ({moments.min():.3g} kg m2)")
+    moments = np.maximum(moments, floor)
+    missing = 2 * largest - moments.sum()
+    if missing > ROUNDING * largest:
+        remarks.append(
+            f"its inertia is impossible: {largest:.4g} kg m2 about one principal axis is more "
+            "than about the other two together; those were raised"
+        )
+    if missing > 0:
+        moments = np.where(moments == largest, moments, moments + missing / 2)
+    return moments

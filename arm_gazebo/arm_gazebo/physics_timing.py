@@ -1,0 +1,61 @@
+"""How the physics step follows from the control rate."""
+
+import math
+from dataclasses import dataclass
+
+from arm_gazebo.errors import TimingError
+
+LARGEST_STEP_S = 0.002
+DIVIDES_WITHIN = 1e-6
+"""Relative error up to which a step counts as a divisor: decimal steps are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhysicsTiming:
+    """One control period and the physics steps that fill it.
+
+    Attributes:
+        period_s: control period.
+        steps: physics steps in one control period.
+    """
+
+    period_s: float
+    steps: int
+
+    @property
+    def step_s(self) -> float:
+        """Length of one physics step."""
+        return self.period_s / self.steps
+
+
+def physics_timing(
+    update_rate_hz: float,
+    fixed_step_s: float | None = None,
+    largest_step_s: float = LARGEST_STEP_S,
+) -> PhysicsTiming:
+    """Return the largest physics step that divides the control period.
+
+    Args:
+        update_rate_hz: control rate.
+        fixed_step_s: a step that the user insists on; it must divide the period.
+        largest_step_s: bound on a step that is free to choose.
+
+    Raises:
+        TimingError: a rate that is not above 0, or a fixed step that does not divide the period.
+    """
+    if not (math.isfinite(update_rate_hz) and update_rate_hz > 0):
+        raise TimingError(f"update_rate must be above 0 Hz, not {update_rate_hz:g}")
+    period_s = 1.0 / update_rate_hz
+    if fixed_step_s is None:
+        # The margin keeps 500 Hz at one step of 2 ms, whatever the rounding.
+        return PhysicsTiming(period_s, math.ceil(period_s / largest_step_s * (1 - DIVIDES_WITHIN)))
+    if not (math.isfinite(fixed_step_s) and fixed_step_s > 0):
+        raise TimingError(f"the physics step must be above 0 s, not {fixed_step_s:g}")
+    steps = max(1, round(period_s / fixed_step_s))
+    if abs(steps * fixed_step_s - period_s) > DIVIDES_WITHIN * period_s:
+        raise TimingError(
+            f"a physics step of {fixed_step_s:g} s does not divide the control period of "
+            f"{period_s:.6g} s (update_rate {update_rate_hz:g} Hz); "
+            f"{period_s / steps:.6g} s would"
+        )
+    return PhysicsTiming(period_s, steps)

@@ -1,0 +1,239 @@
+"""A black-box view of the suite: the real launcher in processes of its own, and a client beside it.
+
+Nothing here sleeps: every wait is on a condition, with a generous time-out.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import psutil
+import pytest
+
+START_TIMEOUT_S = 60.0
+WAIT_TIMEOUT_S = 30.0
+
+
+class Launched:
+    """A running `arm launch` and everything that it printed."""
+
+    def __init__(self, arguments: list[str], environment: dict[str, str]) -> None:
+        self.lines: list[str] = []
+        self._changed = threading.Condition()
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "arm_cli.main", "launch", *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            env={**os.environ, **environment},
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            with self._changed:
+                self.lines.append(line.rstrip("\n"))
+                self._changed.notify_all()
+        with self._changed:
+            self.lines.append("<end of output>")
+            self._changed.notify_all()
+
+    @property
+    def output(self) -> str:
+        """All that was printed so far."""
+        return "\n".join(self.lines)
+
+    def wait_for_line(self, text: str, timeout_s: float = START_TIMEOUT_S) -> str:
+        """Block until a line that contains `text` has been printed; return it."""
+        deadline = time.monotonic() + timeout_s
+        with self._changed:
+            while True:
+                found = next((line for line in self.lines if text in line), None)
+                if found is not None:
+                    return found
+                ended = bool(self.lines) and self.lines[-1] == "<end of output>"
+                left = deadline - time.monotonic()
+                if ended or left <= 0:
+                    pytest.fail(f"no line with {text!r} was printed:\n{self.output}")
+                self._changed.wait(left)
+
+    def wait_until_ready(self) -> None:
+        """Block until the launcher says that everything runs."""
+        self.wait_for_line("ready ")
+
+    def descendants(self) -> list[psutil.Process]:
+        """All processes below the launcher."""
+        return psutil.Process(self.process.pid).children(recursive=True)
+
+    def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:
+        """Send a signal, wait for the end, and return the exit code."""
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        code = self.wait(timeout_s)
+        return code
+
+    def wait(self, timeout_s: float = START_TIMEOUT_S) -> int:
+        """Wait for the end and return the exit code."""
+        code = self.process.wait(timeout_s)
+        self._reader.join(timeout_s)
+        return code
+
+    def close(self) -> None:
+        """Make sure that nothing stays behind, whatever the test did."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            try:
+                self.process.wait(20.0)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait(10.0)
+        self._reader.join(10.0)
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+
+
+@pytest.fixture
+def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
+    """Start `arm launch ARGUMENTS`; ended with the test at the latest."""
+    started: list[Launched] = []
+
+    def start(*arguments: str, **environment: str) -> Launched:
+        launched = Launched(list(arguments), {"ROS_LOG_DIR": str(tmp_path / "log"), **environment})
+        started.append(launched)
+        return launched
+
+    yield start
+    for launched in started:
+        launched.close()
+
+
+class Collector:
+    """The messages of one topic as they arrive."""
+
+    def __init__(self) -> None:
+        self.messages: list = []
+        self.arrivals_s: list[float] = []
+        self.changed = threading.Condition()
+
+    def __call__(self, message: object) -> None:
+        with self.changed:
+            self.messages.append(message)
+            self.arrivals_s.append(time.monotonic())
+            self.changed.notify_all()
+
+    def clear(self) -> None:
+        """Forget what came so far."""
+        with self.changed:
+            self.messages.clear()
+            self.arrivals_s.clear()
+
+    def wait_until(
+        self,
+        condition: Callable[[list], bool],
+        what: str,
+        timeout_s: float = WAIT_TIMEOUT_S,
+    ) -> list:
+        """Block until the condition holds for the messages so far; return a copy of them."""
+        deadline = time.monotonic() + timeout_s
+        with self.changed:
+            while not condition(self.messages):
+                left = deadline - time.monotonic()
+                if left <= 0:
+                    last = self.messages[-1] if self.messages else None
+                    pytest.fail(
+                        f"not within {timeout_s} s: {what}; "
+                        f"{len(self.messages)} messages, last {last}"
+                    )
+                self.changed.wait(left)
+            return list(self.messages)
+
+    def wait_for(self, count: int = 1, timeout_s: float = WAIT_TIMEOUT_S) -> list:
+        """Block until that many messages have come."""
+        return self.wait_until(lambda m: len(m) >= count, f"{count} messages", timeout_s)
+
+
+class Client:
+    """A stranger's rclpy node: everything default, its executor in a thread."""
+
+    def __init__(self) -> None:
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+        from rclpy.signals import SignalHandlerOptions
+
+        self.context = Context()
+        rclpy.init(context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node("test_client", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while not self._stop.is_set():
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def subscribe(self, message_type: type, topic: str, qos: object = 10) -> Collector:
+        """Collect a topic's messages from now on."""
+        collector = Collector()
+        self.node.create_subscription(message_type, topic, collector, qos)
+        return collector
+
+    def wait_until(
+        self, condition: Callable[[], object], what: str, timeout_s: float = WAIT_TIMEOUT_S
+    ) -> object:
+        """Poll a condition of the ROS graph until it is true; return its value."""
+        deadline = time.monotonic() + timeout_s
+        while True:
+            value = condition()
+            if value:
+                return value
+            if time.monotonic() > deadline:
+                pytest.fail(f"not within {timeout_s} s: {what}")
+            self._stop.wait(0.02)
+
+    def publisher(self, message_type: type, topic: str, qos: object = 10):
+        """Return a publisher that a subscription has matched, ready for a single message."""
+        publisher = self.node.create_publisher(message_type, topic, qos)
+        self.wait_until(publisher.get_subscription_count, f"a subscription on {topic}")
+        # A best-effort reader may miss what is sent at the very instant of the match.
+        self._stop.wait(0.2)
+        return publisher
+
+    def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
+        """Call a service once it is there; return its answer."""
+        client = self.node.create_client(service_type, name)
+        if not client.wait_for_service(timeout_sec=timeout_s):
+            pytest.fail(f"no service {name} within {timeout_s} s")
+        future = client.call_async(request)
+        done = threading.Event()
+        future.add_done_callback(lambda _: done.set())
+        if not done.wait(timeout_s):
+            pytest.fail(f"no answer from {name} within {timeout_s} s")
+        return future.result()
+
+    def close(self) -> None:
+        """End the executor, then the node, then the context."""
+        self._stop.set()
+        self._thread.join(10.0)
+        self.executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+
+@pytest.fixture
+def client() -> Iterator[Client]:
+    """Return a default rclpy client in this process."""
+    connected = Client()
+    yield connected
+    connected.close()

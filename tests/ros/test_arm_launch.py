@@ -1,0 +1,154 @@
+"""The main job: `arm launch`, as a stranger with rclpy sees it."""
+
+import signal
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+pytestmark = pytest.mark.ros
+
+POSE = [0.5, 0.3, -0.4, 0.2]
+
+
+def positions_by_name(message) -> dict[str, float]:
+    return dict(zip(message.name, message.position, strict=True))
+
+
+def test_a_float64_multi_array_moves_the_arm(launch, client):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    launch("camera:=none").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+    client.publisher(Float64MultiArray, "/position_controller/commands").publish(
+        Float64MultiArray(data=POSE)
+    )
+    reached = states.wait_until(
+        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
+    )
+    assert reached[-1].name == ["j0", "j1", "j2", "j3"]
+    assert reached[-1].header.frame_id == "base_link"
+    assert len(reached[-1].velocity) == len(reached[-1].effort) == 4
+
+
+def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
+    from rosgraph_msgs.msg import Clock
+    from sensor_msgs.msg import JointState
+
+    launch("camera:=none").wait_until_ready()
+    clock = client.subscribe(Clock, "/clock")
+    states = client.subscribe(JointState, "/joint_states")
+    ticks = clock.wait_for(100)
+    samples = states.wait_for(100)
+    clock_ns = [m.clock.sec * 10**9 + m.clock.nanosec for m in ticks]
+    state_ns = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in samples]
+    assert all(b > a for a, b in zip(clock_ns, clock_ns[1:], strict=False))
+    assert {b - a for a, b in zip(state_ns, state_ns[1:], strict=False)} == {10_000_000}
+    assert set(state_ns) & set(clock_ns)
+
+
+def test_the_camera_sends_pictures_and_a_matching_camera_info(launch, client):
+    from sensor_msgs.msg import CameraInfo, Image
+
+    launch("world:=objects").wait_until_ready()
+    images = client.subscribe(Image, "/videocamera")
+    infos = client.subscribe(CameraInfo, "/camera_info")
+    paired = client.subscribe(CameraInfo, "/videocamera/camera_info")
+    image = images.wait_for(3)[-1]
+    info = infos.wait_for(3)[-1]
+    paired.wait_for(3)
+    assert (image.width, image.height, image.encoding, image.step) == (320, 240, "rgb8", 960)
+    assert image.header.frame_id == info.header.frame_id == "camera_optical_frame"
+    assert info.k[0] == pytest.approx(160 / np.tan(1.047 / 2), rel=1e-3)
+    assert (info.width, info.height) == (320, 240)
+    pixels = np.frombuffer(image.data, np.uint8).reshape(240, 320, 3)
+    assert pixels.std() > 10, "the picture shows something"
+
+
+def test_the_frames_of_the_arm_are_in_tf(launch, client):
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from tf2_msgs.msg import TFMessage
+
+    launch("camera:=front").wait_until_ready()
+    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    static = client.subscribe(TFMessage, "/tf_static", latched)
+    moving = client.subscribe(TFMessage, "/tf")
+    fixed = {t.child_frame_id for m in static.wait_for(1) for t in m.transforms}
+    assert {"base_link", "camera_link", "camera_optical_frame", "crawer_left"} <= fixed
+    frames = moving.wait_for(2)[-1].transforms
+    assert {t.child_frame_id for t in frames} == {
+        "base_turn_rot",
+        "dyn2_r",
+        "dyn3_r",
+        "dyn4_r",
+    }
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_everything_with_exit_code_0(launch, number):
+    before = set(Path("/dev/shm").iterdir())
+    launched = launch()
+    launched.wait_until_ready()
+    children = launched.descendants()
+    assert len(children) >= 3
+    assert launched.stop(number) == 0, launched.output
+    _, alive = psutil.wait_procs(children, timeout=5.0)
+    assert alive == []
+    assert set(Path("/dev/shm").iterdir()) - before == set()
+
+
+def test_the_initial_pose_is_a_launch_argument(launch, client):
+    from sensor_msgs.msg import JointState
+
+    launch("camera:=none", "j1_pos:=0.5", "j2_pos:=0.5", "j3_pos:=1.0").wait_until_ready()
+    first = client.subscribe(JointState, "/joint_states").wait_for(1)[0]
+    assert first.position == pytest.approx([0.0, 0.5, 0.5, 1.0], abs=0.01)
+
+
+def test_a_second_commander_is_not_fought(launch, client):
+    """The controller node of `arm launch` has no pose of its own, so the first command stands."""
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    launch("camera:=none").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+    commands = client.subscribe(Float64MultiArray, "/position_controller/commands")
+    client.publisher(Float64MultiArray, "/position_controller/commands").publish(
+        Float64MultiArray(data=POSE)
+    )
+    states.wait_until(
+        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
+    )
+    states.clear()
+    held = states.wait_for(100)
+    assert np.allclose([m.position for m in held], POSE, atol=0.01)
+    assert len(commands.messages) == 1
+
+
+def test_parameters_of_the_controller_node_move_the_arm(launch, client):
+    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+    from rcl_interfaces.srv import SetParameters
+    from sensor_msgs.msg import JointState
+
+    launch("camera:=none").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=POSE)
+    answer = client.call(
+        SetParameters,
+        "/arm_controller_node/set_parameters",
+        SetParameters.Request(parameters=[Parameter(name="desired_param", value=value)]),
+    )
+    assert answer.results[0].successful, answer.results[0].reason
+    states.wait_until(
+        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
+    )
+    value.double_array_value = [0.0, 0.0]
+    refused = client.call(
+        SetParameters,
+        "/arm_controller_node/set_parameters",
+        SetParameters.Request(parameters=[Parameter(name="desired_param", value=value)]),
+    )
+    assert not refused.results[0].successful
+    assert "4" in refused.results[0].reason

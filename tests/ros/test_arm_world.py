@@ -1,0 +1,123 @@
+"""The world without controllers, the other rates, and every refusal of the simulation node."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.ros
+
+
+def test_without_holding_the_arm_falls(launch, client):
+    from tf2_msgs.msg import TFMessage
+
+    launched = launch(
+        "arm_gazebo",
+        "arm_gazebo.launch.py",
+        "camera:=none",
+        "hold_joints:=false",
+        "spawn:=joint_state_broadcaster",
+        "j1_pos:=0.5",
+        "j2_pos:=0.5",
+    )
+    launched.wait_until_ready()
+    from sensor_msgs.msg import JointState
+
+    states = client.subscribe(JointState, "/joint_states")
+    states.wait_until(
+        lambda m: bool(m) and abs(m[-1].position[1]) > 1.2, "the arm lies on the floor"
+    )
+    del TFMessage
+
+
+def test_unclaimed_joints_hold_by_default(launch, client):
+    from sensor_msgs.msg import JointState
+
+    launch(
+        "camera:=none", "spawn:=joint_state_broadcaster", "j1_pos:=0.5", "j2_pos:=0.5"
+    ).wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states").wait_for(200)
+    assert np.allclose([m.position for m in states], [0.0, 0.5, 0.5, 0.0], atol=0.005)
+
+
+@pytest.mark.parametrize("rate_hz", [30, 225])
+def test_the_originals_update_rates_work(launch, client, tmp_path, rate_hz):
+    from sensor_msgs.msg import JointState
+
+    controllers = tmp_path / "controllers.yaml"
+    controllers.write_text(f"""\
+controller_manager:
+  ros__parameters:
+    update_rate: {rate_hz}
+    joint_state_broadcaster:
+      type: joint_state_broadcaster/JointStateBroadcaster
+    position_controller:
+      type: position_controllers/JointGroupPositionController
+position_controller:
+  ros__parameters:
+    joints: [j0, j1, j2, j3]
+""")
+    launch("camera:=none", f"controllers:={controllers}").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states").wait_for(2 * rate_hz)
+    stamps = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in states])
+    assert np.median(np.diff(stamps)) == pytest.approx(1 / rate_hz, rel=1e-3)
+
+
+def write_controllers(folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]") -> Path:
+    path = folder / "controllers.yaml"
+    path.write_text(f"""\
+controller_manager:
+  ros__parameters:
+    update_rate: {update_rate}
+    joint_state_broadcaster:
+      type: joint_state_broadcaster/JointStateBroadcaster
+    position_controller:
+      type: position_controllers/JointGroupPositionController
+position_controller:
+  ros__parameters:
+    joints: {joints}
+""")
+    return path
+
+
+def test_an_unknown_joint_in_the_controllers_file_is_named(launch, tmp_path):
+    path = write_controllers(tmp_path, joints="[j0, j1, j2, j9]")
+    launched = launch("camera:=none", f"controllers:={path}")
+    line = launched.wait_for_line("j9/position")
+    assert "not available" in line or "not exist" in line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["world:=/no/such/world.xml"], ["/no/such/world.xml", "empty", "objects"]),
+        (["physics_step:=0.003"], ["0.003", "0.01"]),
+        (["controllers:=/no/such.yaml"], ["/no/such.yaml"]),
+    ],
+)
+def test_nonsense_is_refused_with_a_sentence(launch, arguments, words):
+    launched = launch("camera:=none", *arguments)
+    assert launched.wait() != 0
+    assert "Traceback" not in launched.output
+    for word in words:
+        assert word in launched.output
+
+
+def test_an_update_rate_of_zero_is_refused(launch, tmp_path):
+    launched = launch("camera:=none", f"controllers:={write_controllers(tmp_path, 0)}")
+    assert launched.wait() != 0
+    assert "update_rate" in launched.output
+    assert "Traceback" not in launched.output
+
+
+def test_a_description_without_a_ros2_control_block_is_refused(launch, tmp_path):
+    model = tmp_path / "bare.urdf"
+    model.write_text("""\
+<robot name="bare"><link name="base_link"/><link name="arm"/>
+  <joint name="j0" type="revolute"><parent link="base_link"/><child link="arm"/>
+    <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>""")
+    launched = launch(f"model:={model}")
+    assert launched.wait() != 0
+    assert "<ros2_control>" in launched.output
+    assert "Traceback" not in launched.output
