@@ -6,9 +6,8 @@ Run by the backend only (``pip install ./arm_interfaces``). The rest of the meta
 
 from pathlib import Path
 
-from setuptools import Extension, setup
-
 from interface_build import command, interface_package
+from setuptools import Extension, setup
 
 PACKAGES = interface_package.find_packages(Path(__file__).parent / "interfaces")
 

@@ -4,16 +4,371 @@ import logging
 from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
-from arm_control.controller import Controller, ControllerContext
+from arm_control.controller import Controller
+from arm_control.controller_lifecycle import ControllerLifecycle
 from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
 from arm_control.errors import ControllerManagerError
-from arm_control.guarded import failure_of
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
-from arm_control.registry import controller_class
 from arm_control.resource_manager import ResourceManager, Trouble
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
 from arm_control.switch_planner import SwitchPlan, SwitchPlanner, SwitchRefusedError
 
 logger = logging.getLogger(__name__)
+
+NOTHING_TO_SWITCH = (
+    "After checking the controllers, no controllers need to be activated or deactivated."
+)
+PREPARE_REJECTED = "Could not switch controllers since prepare command mode switch was rejected."
+SWITCHED = "Successfully switched controllers!"
+SWITCH_FAILED = "Failed switching controllers.... "
+
+
+class ManagerObserver(Protocol):
+    """Hears of changes; called on the loop thread, so it must be quick and must not raise."""
+
+    def controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """A controller tried a transition; `end` is the transition's goal where it succeeded."""
+        ...
+
+    def activity_changed(self) -> None:
+        """The set of controllers or components, or the state of one of them, has changed."""
+        ...
+
+
+class ControllerManager:
+    """The heart of ros2_control: components below, controllers above, one tick at a time.
+
+    Single-threaded: every method belongs to the loop thread (or to the only thread there is).
+    A tick calls, in this order, `update`, `write`, then, once the world has moved on, `read`
+    and `publish`: commands take effect before the state that answers them is published.
+
+    Methods that change something raise `ControllerManagerError` with the reason for a refusal.
+
+    Attributes:
+        update_rate_hz: ticks per second.
+        resources: the components, and the arrays of states and commands.
+    """
+
+    def __init__(self, hardware: Sequence[Hardware], update_rate_hz: int) -> None:
+        """Take over the components, all still unconfigured; see `bring_up`.
+
+        Raises:
+            ControllerManagerError: the rate is not positive, or names are used twice.
+        """
+        if update_rate_hz < 1:
+            raise ControllerManagerError(f"update_rate must be positive, not {update_rate_hz} Hz")
+        self.update_rate_hz = update_rate_hz
+        self.resources = ResourceManager(hardware)
+        self._controllers: dict[str, ManagedController] = {}
+        self._commanding: tuple[ManagedController, ...] = ()
+        self._broadcasting: tuple[ManagedController, ...] = ()
+        self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
+        self._observers: list[ManagerObserver] = []
+
+    def add_observer(self, observer: ManagerObserver) -> None:
+        """Tell this observer of every change from now on."""
+        self._observers.append(observer)
+
+    # One tick
+
+    def update(self, time_s: float, period_s: float) -> None:
+        """Run the controllers that command something."""
+        failed = [c for c in self._commanding if not c.run(time_s, period_s)]
+        if failed:
+            self._stop_failed(failed)
+
+    def write(self, time_s: float, period_s: float) -> None:
+        """Hand the commands to the hardware."""
+        trouble = self.resources.write(time_s, period_s)
+        if trouble:
+            self._stop_troubled(trouble, "write")
+
+    def read(self, time_s: float, period_s: float) -> None:
+        """Fetch the states from the hardware."""
+        trouble = self.resources.read(time_s, period_s)
+        if trouble:
+            self._stop_troubled(trouble, "read")
+
+    def publish(self, time_s: float, period_s: float) -> None:
+        """Run the controllers that only look at states, such as broadcasters."""
+        failed = [c for c in self._broadcasting if not c.run(time_s, period_s)]
+        if failed:
+            self._stop_failed(failed)
+
+    # Hardware
+
+    def bring_up(self, unconfigured: Iterable[str] = (), inactive: Iterable[str] = ()) -> None:
+        """Activate every component but those named, which stop at the state named; read once.
+
+        Raises:
+            ControllerManagerError: a name is unknown, or a component did not get there.
+        """
+        targets = dict.fromkeys(self.resources.components, LifecycleState.ACTIVE)
+        targets.update(dict.fromkeys(inactive, LifecycleState.INACTIVE))
+        targets.update(dict.fromkeys(unconfigured, LifecycleState.UNCONFIGURED))
+        for name, target in targets.items():
+            self.set_hardware_component_state(name, target)
+        self.read(0.0, 0.0)
+
+    def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
+        """Walk a component to a state; controllers stop where their interfaces vanish."""
+        component = self.resources.components.get(name)
+        if component is None:
+            known = ", ".join(self.resources.components) or "no component"
+            raise ControllerManagerError(f"no hardware component '{name}'; there is {known}")
+        if target in (LifecycleState.UNCONFIGURED, LifecycleState.FINALIZED):
+            self._deactivate(self._users_of({name}))
+        reason = self.resources.set_component_state(name, target)
+        self._hardware_changed()
+        if reason:
+            raise ControllerManagerError(reason)
+
+    def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
+        """Return every component."""
+        return self.resources.list_components(self.update_rate_hz)
+
+    def list_hardware_interfaces(
+        self,
+    ) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
+        """Return the command and the state interfaces, each sorted by name."""
+        return self.resources.list_interfaces()
+
+    # Controllers
+
+    def list_controllers(self) -> tuple[ControllerStatus, ...]:
+        """Return every loaded controller, the newest first."""
+        return tuple(c.status() for c in self._controllers.values())
+
+    def load_controller(
+        self, controller: Controller[Any], type_name: str, fallback_names: Sequence[str] = ()
+    ) -> None:
+        """Take a new controller in; it is unconfigured."""
+        name = controller.name
+        if name in self._controllers:
+            raise ControllerManagerError(
+                f"A controller named '{name}' was already loaded inside the controller manager"
+            )
+        if name in fallback_names:
+            raise ControllerManagerError(f"controller '{name}' cannot be its own fallback")
+        managed = ManagedController(
+            controller, type_name, tuple(fallback_names), self.update_rate_hz
+        )
+        self._controllers = {name: managed, **self._controllers}
+        self._activity_changed()
+
+    def configure_controller(
+        self, name: str, parameters: object, requested_rate_hz: int = 0
+    ) -> None:
+        """Configure a controller; one that is inactive is cleaned up first.
+
+        Args:
+            name: of a loaded controller, unconfigured or inactive.
+            parameters: instance of its `parameters_type`.
+            requested_rate_hz: its own update rate; 0 for the manager's.
+        """
+        controller = self._find(name, "configure")
+        if controller.state is LifecycleState.INACTIVE:
+            self._lifecycle.clean_up(controller)
+        if controller.state is not LifecycleState.UNCONFIGURED:
+            raise ControllerManagerError(
+                f"Controller '{name}' can not be configured from '{controller.state.label}' state."
+            )
+        controller.set_update_rate(requested_rate_hz)
+        reason = self._lifecycle.configure(controller, parameters)
+        if reason:
+            raise ControllerManagerError(f"controller '{name}' was not configured: {reason}")
+
+    def cleanup_controller(self, name: str) -> None:
+        """Take a controller back to unconfigured; nothing to do where it is."""
+        controller = self._find(name, "clean up")
+        if controller.state in (LifecycleState.ACTIVE, LifecycleState.FINALIZED):
+            raise ControllerManagerError(
+                f"Controller '{name}' can not be cleaned-up from '{controller.state.label}' state."
+            )
+        if controller.state is LifecycleState.INACTIVE:
+            self._lifecycle.clean_up(controller)
+
+    def unload_controller(self, name: str) -> None:
+        """Clean a controller up, shut it down and forget it."""
+        controller = self._find(name, "unload")
+        if controller.is_active:
+            raise ControllerManagerError(
+                f"Could not unload controller with name '{name}' because it is still active"
+            )
+        if controller.state is LifecycleState.INACTIVE:
+            self._lifecycle.clean_up(controller)
+        self._lifecycle.shut_down(controller)
+        self._controllers = {n: c for n, c in self._controllers.items() if n != name}
+        self._activity_changed()
+
+    def switch_controller(self, request: SwitchRequest) -> SwitchResult:
+        """Deactivate and activate controllers in one go; never raises, the result says it all."""
+        try:
+            plan = SwitchPlanner(self._controllers, self.resources, request).plan()
+        except SwitchRefusedError as error:
+            logger.error("no controller is switched: %s", str(error).rstrip())
+            return SwitchResult(False, str(error))
+        if not plan.activate and not plan.deactivate:
+            return SwitchResult(True, NOTHING_TO_SWITCH)
+        reason = self.resources.prepare_mode_switch(plan.start_interfaces, plan.stop_interfaces)
+        if reason:
+            logger.error("%s (%s)", PREPARE_REJECTED, reason)
+            return SwitchResult(False, PREPARE_REJECTED)
+        return self._switch(plan, request)
+
+    def shutdown(self) -> None:
+        """Deactivate and finalize every controller, then every component."""
+        self._deactivate([c for c in self._controllers.values() if c.is_active])
+        for controller in self._controllers.values():
+            if controller.state is LifecycleState.INACTIVE:
+                self._lifecycle.clean_up(controller)
+            if controller.state is not LifecycleState.FINALIZED:
+                self._lifecycle.shut_down(controller)
+        for name, component in self.resources.components.items():
+            if component.state is not LifecycleState.FINALIZED:
+                reason = self.resources.set_component_state(name, LifecycleState.FINALIZED)
+                if reason:
+                    logger.error("%s", reason)
+        self._activity_changed()
+
+    def _find(self, name: str, action: str) -> ManagedController:
+        controller = self._controllers.get(name)
+        if controller is None:
+            raise ControllerManagerError(
+                f"Could not {action} controller with name '{name}' because no controller with "
+                f"this name exists; loaded: {', '.join(self._controllers) or 'none'}"
+            )
+        return controller
+
+    def _switch(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
+        reason = self.resources.perform_mode_switch(plan.start_interfaces, plan.stop_interfaces)
+        if reason:
+            logger.error("Error while performing mode switch: %s", reason)
+            return _failed(plan.activate, plan.deactivate)
+        stuck = [c for c in plan.deactivate if self._lifecycle.deactivate(c)]
+        refused = [c for c in plan.activate if self._lifecycle.activate(c)]
+        if refused:
+            self._leave_modes(refused)
+            if request.is_strict:
+                self._deactivate([c for c in plan.activate if c.is_active])
+        self._select_active()
+        if stuck or refused:
+            return _failed(refused, stuck)
+        return _succeeded(plan, request)
+
+    def _deactivate(self, controllers: Sequence[ManagedController]) -> None:
+        """Deactivate without asking anybody: after errors, and at the end."""
+        if not controllers:
+            return
+        self._leave_modes(controllers)
+        for controller in controllers:
+            self._lifecycle.deactivate(controller)
+        self._select_active()
+
+    def _leave_modes(self, controllers: Iterable[ManagedController]) -> None:
+        stop = [name for controller in controllers for name in controller.commands]
+        reason = self.resources.perform_mode_switch((), stop)
+        if reason:
+            logger.error("Error while performing mode switch: %s", reason)
+
+    def _stop_failed(self, failed: Sequence[ManagedController]) -> None:
+        """Deactivate controllers whose update failed, and let their fallbacks take over."""
+        names = " ".join(c.name for c in failed)
+        logger.error(
+            "Deactivating controllers : [ %s ] as their update resulted in an error!", names
+        )
+        self._deactivate(failed)
+        fallbacks = tuple(dict.fromkeys(name for c in failed for name in c.fallback_names))
+        if not fallbacks:
+            logger.error(
+                "Once the cause is gone: ros2 control switch_controllers --activate %s", names
+            )
+            return
+        logger.error("Activating fallback controllers : [ %s ]", " ".join(fallbacks))
+        inactive = tuple(n for n in fallbacks if not self._controllers[n].is_active)
+        holders = {
+            holder: None
+            for name in inactive
+            for command in self._controllers[name].commands
+            if (holder := self.resources.claimant(command))
+        }
+        self.switch_controller(SwitchRequest(inactive, tuple(holders), Strictness.STRICT))
+
+    def _stop_troubled(self, trouble: Sequence[Trouble], exchange: str) -> None:
+        """Take components down that failed, or deactivate those that asked for it."""
+        for component, outcome in trouble:
+            if outcome is HardwareReturn.DEACTIVATE:
+                logger.error("hardware component '%s' deactivates itself", component.name)
+                self._deactivate(self._users_of({component.name}, commanding_only=True))
+                self.resources.set_component_state(component.name, LifecycleState.INACTIVE)
+            else:
+                logger.error(
+                    "Deactivating following hardware components as their %s cycle resulted in "
+                    "an error: [ %s ]",
+                    exchange,
+                    component.name,
+                )
+                self._deactivate(self._users_of({component.name}))
+                self.resources.take_down(component)
+        self._hardware_changed()
+
+    def _users_of(
+        self, components: set[str], *, commanding_only: bool = False
+    ) -> list[ManagedController]:
+        return [
+            c
+            for c in self._controllers.values()
+            if c.is_active
+            and self.resources.components_of(() if commanding_only else c.states, c.commands)
+            & components
+        ]
+
+    def _hardware_changed(self) -> None:
+        """Let configured controllers see what is available now."""
+        for controller in self._controllers.values():
+            if controller.state is LifecycleState.INACTIVE:
+                self._lifecycle.resolve(controller)
+        self._activity_changed()
+
+    def _select_active(self) -> None:
+        active = [c for c in self._controllers.values() if c.is_active]
+        self._commanding = tuple(c for c in active if c.commands)
+        self._broadcasting = tuple(c for c in active if not c.commands)
+
+    def _controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        for observer in self._observers:
+            observer.controller_transitioned(name, transition, start, end)
+        if start is not end:
+            self._activity_changed()
+
+    def _activity_changed(self) -> None:
+        for observer in self._observers:
+            observer.activity_changed()
+
+
+def _succeeded(plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
+    message = SWITCHED
+    if not request.is_strict:
+        message += _listed("\nDeactivated controllers", plan.deactivate)
+        message += _listed("\nActivated controllers", plan.activate)
+    logger.info("%s", message.replace("\n", " "))
+    return SwitchResult(True, message)
+
+
+def _failed(
+    refused: Sequence[ManagedController], stuck: Sequence[ManagedController]
+) -> SwitchResult:
+    message = SWITCH_FAILED
+    message += _listed("\nUnable to activate controllers", refused)
+    message += _listed("\nUnable to deactivate controllers", stuck)
+    return SwitchResult(False, message)
+
+
+def _listed(title: str, controllers: Sequence[ManagedController]) -> str:
+    return f"{title}: [ {' '.join(c.name for c in controllers)} ]" if controllers else ""

@@ -5,12 +5,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from arm_control.errors import HardwareInfoError
 from arm_description.xml_document import parse_xml
 
-from arm_control.errors import HardwareInfoError
-
 if TYPE_CHECKING:
-    from lxml.etree import _Element
+    from lxml import etree
 
 COMPONENT_TYPES = ("system", "actuator", "sensor")
 
@@ -112,7 +111,7 @@ def parse_hardware_info(urdf_xml: str) -> tuple[HardwareInfo, ...]:
     return tuple(components.values())
 
 
-def _parse_component(element: "_Element") -> HardwareInfo:
+def _parse_component(element: "etree._Element") -> HardwareInfo:
     name = _required_name(element, "<ros2_control>")
     where = f"<ros2_control name='{name}'>"
     kind = element.get("type", "")
@@ -140,7 +139,7 @@ def _parse_component(element: "_Element") -> HardwareInfo:
     )
 
 
-def _parse_parts(element: "_Element", tag: str, where: str) -> tuple[JointInfo, ...]:
+def _parse_parts(element: "etree._Element", tag: str, where: str) -> tuple[JointInfo, ...]:
     parts: dict[str, JointInfo] = {}
     for child in element.iterchildren(tag):
         name = _required_name(child, f"<{tag}> of {where}")
@@ -158,7 +157,7 @@ def _parse_parts(element: "_Element", tag: str, where: str) -> tuple[JointInfo, 
     return tuple(parts.values())
 
 
-def _parse_interfaces(element: "_Element", tag: str, where: str) -> tuple[InterfaceInfo, ...]:
+def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[InterfaceInfo, ...]:
     interfaces: dict[str, InterfaceInfo] = {}
     for child in element.iterchildren(tag):
         name = _required_name(child, f"<{tag}> of {where}")
@@ -179,7 +178,7 @@ def _parse_interfaces(element: "_Element", tag: str, where: str) -> tuple[Interf
     return tuple(interfaces.values())
 
 
-def _parse_parameters(element: "_Element", where: str) -> dict[str, str]:
+def _parse_parameters(element: "etree._Element", where: str) -> dict[str, str]:
     return {
         _required_name(child, f"<param> of {where}"): (child.text or "").strip()
         for child in element.iterchildren("param")
@@ -199,7 +198,7 @@ def _parse_number(parameters: Mapping[str, str], key: str, where: str) -> float 
     return value
 
 
-def _required_name(element: "_Element", what: str) -> str:
+def _required_name(element: "etree._Element", what: str) -> str:
     name = (element.get("name") or "").strip()
     if not name:
         raise HardwareInfoError(f"line {element.sourceline}: {what} has no name")

@@ -1,6 +1,7 @@
 """The interfaces a controller holds while it is active."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,6 +48,6 @@ def _as_slice(positions: Sequence[int]) -> slice | None:
     if not positions:
         return slice(0, 0)
     step = positions[1] - positions[0] if len(positions) > 1 else 1
-    if step <= 0 or any(b - a != step for a, b in zip(positions, positions[1:], strict=False)):
+    if step <= 0 or any(b - a != step for a, b in pairwise(positions)):
         return None
     return slice(positions[0], positions[-1] + 1, step)

@@ -85,7 +85,9 @@ class ResourceManager:
 
     def loan_states(self, names: Sequence[str]) -> LoanedInterfaces:
         """Open a read-only window on these states."""
-        return LoanedInterfaces(names, self._read_only_states, [self._state_index[n] for n in names])
+        return LoanedInterfaces(
+            names, self._read_only_states, [self._state_index[n] for n in names]
+        )
 
     def components_of(self, states: Iterable[str], commands: Iterable[str]) -> frozenset[str]:
         """Names of the components that these interfaces belong to."""
@@ -225,4 +227,3 @@ class ResourceManager:
         every = tuple(self.components.values())
         self._reading = tuple(c for c in every if c.is_available)
         self._writing = tuple(c for c in every if c.state is LifecycleState.ACTIVE)
-

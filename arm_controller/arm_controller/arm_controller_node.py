@@ -4,9 +4,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from arm_node.process import run_node
-
 from arm_controller.errors import ArmControllerError
+from arm_node.process import run_node
 
 if TYPE_CHECKING:
     from rclpy.node import Node

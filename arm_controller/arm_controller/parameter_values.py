@@ -5,9 +5,12 @@ of doubles. These readers accept both, and say what is wrong with anything else.
 """
 
 import math
+from array import array
+from collections.abc import Sequence
 from pathlib import Path
 
 from arm_controller.errors import ParameterValueError
+from arm_controller.pose import JointPose
 
 
 def read_number(value: object, *, positive: bool = True) -> float:
@@ -22,6 +25,25 @@ def read_number(value: object, *, positive: bool = True) -> float:
     if value < 0 or (positive and value == 0):
         raise ParameterValueError(f"must be {wanted}, not {value:g}")
     return float(value)
+
+
+def read_pose(value: object, joint_names: Sequence[str]) -> JointPose | None:
+    """Return a pose, or None for a parameter that is not set.
+
+    A text is as good as the list that it shows: ROS has no list of integers and doubles together,
+    and its command line sends `[1, 0.5, 0, 0]` as a text.
+
+    Raises:
+        ParameterValueError: it is no list.
+        PoseError: it is a list, but no pose.
+    """
+    if value is None:
+        return None
+    values = _numbers_in(value) if isinstance(value, str) else value
+    # What comes through the parameter service is an array.
+    if not isinstance(values, (list, tuple, array)):
+        raise ParameterValueError(f"must be a list of {len(joint_names)} numbers, not {value!r}")
+    return JointPose.of(joint_names, values)
 
 
 def read_joint_names(value: object) -> tuple[str, ...]:
@@ -47,3 +69,13 @@ def read_path(value: object) -> Path:
     if not isinstance(value, str) or not value:
         raise ParameterValueError(f"must be the path of a file, not {value!r}")
     return Path(value).expanduser()
+
+
+def _numbers_in(text: str) -> list[float] | None:
+    words = text.strip()
+    if not (words.startswith("[") and words.endswith("]")):
+        return None
+    try:
+        return [float(word) for word in words[1:-1].split(",")]
+    except ValueError:
+        return None

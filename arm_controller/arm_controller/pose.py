@@ -48,4 +48,7 @@ def _number(value: object) -> float:
     # bool is a kind of int in Python, but a pose of truth values is a mistake.
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise PoseError(f"a pose is made of numbers; {value!r} is not one")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError as error:
+        raise PoseError(f"{str(value)[:20]}... is too large a number for a joint") from error

@@ -4,9 +4,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
-
 from arm_controller.errors import ArmControllerError
+from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,11 +6,10 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
-
 from arm_controller.errors import ArmControllerError
 from arm_controller.input_lines import InputLines
 from arm_controller.terminal_dialogue import TerminalDialogue
+from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
 
 LINGER_S = 0.2
 """The last message may still be on its way when the input ends."""

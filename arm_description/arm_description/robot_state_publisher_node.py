@@ -10,12 +10,16 @@ from arm_description.errors import DescriptionError
 
 
 @contextmanager
-def application(process: NodeProcess) -> Iterator[None]:
+def application(_process: NodeProcess) -> Iterator[None]:
     """Run the node."""
+    from arm_description.ros.event_loop import spinning
+    from arm_description.ros.node_errors import user_mistakes_named
     from arm_description.ros.robot_state_publisher import RobotStatePublisher
 
-    process.executor.add_node(RobotStatePublisher())
-    yield
+    with user_mistakes_named():
+        node = RobotStatePublisher()
+    with spinning(node):
+        yield
 
 
 def main(argv: Sequence[str] | None = None) -> int:

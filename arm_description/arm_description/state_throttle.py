@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-NANOSECONDS = 1_000_000_000
-
 
 class StateThrottle:
     """Admits a joint state when its stamp lies one interval after those of its joints before.

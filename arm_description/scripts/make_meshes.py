@@ -4,17 +4,20 @@ Needs trimesh and manifold3d: `pip install '.[test]'` brings both.
 """
 
 import argparse
+import logging
 import sys
 from pathlib import Path
 
 from arm_meshes.part_files import write_macros, write_mesh
 from arm_meshes.parts import all_parts
 
+logger = logging.getLogger(__name__)
+
 PACKAGE = Path(__file__).resolve().parent.parent
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Write the files and print what each mesh weighs."""
+    """Write the files and say how large each mesh is."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument(
         "--output", type=Path, default=PACKAGE, help="folder that gets meshes/ and urdf/"
@@ -27,10 +30,11 @@ def main(argv: list[str] | None = None) -> int:
     for part in parts:
         for piece in part.pieces:
             path = write_mesh(piece, meshes)
-            print(f"{path.name}: {path.stat().st_size / 1000:.1f} kB")
+            logger.info("%s: %.1f kB", path.name, path.stat().st_size / 1000)
     write_macros(parts, urdf / "arm_parts.xacro")
     return 0
 
 
 if __name__ == "__main__":
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
     sys.exit(main())

@@ -31,11 +31,13 @@ class TreeOptions:
 
     Attributes:
         step_s: physics step.
+        default: values of what is not set: the world file's own defaults are for the world.
         free: whether a root link that is no `world` link can move.
         spawn: pose of the root in the world.
     """
 
     step_s: float
+    default: mujoco.MjsDefault
     free: bool
     spawn: Pose
 
@@ -57,9 +59,14 @@ class BodyTree:
         self._spec = spec
         self._robot = robot
         self._geometry = geometry
-        self._options = options
+        self._step_s = options.step_s
+        self._default = options.default
+        self._free = options.free
+        self._spawn = options.spawn
         self._report = report
         self._bodies: dict[str, mujoco.MjsBody] = {}
+        # MuJoCo reads angles of the whole specification in the unit that the world file chose.
+        self._angle = math.degrees(1.0) if spec.compiler.degree else 1.0
 
     def add(self) -> dict[str, mujoco.MjsBody]:
         """Add every link and joint; return the bodies by link name."""
@@ -80,18 +87,19 @@ class BodyTree:
             self._bodies[root.name] = world
             self._geometry.add(world, root)
             return
-        spawn = self._options.spawn
-        body = world.add_body(name=root.name, pos=spawn.xyz, quat=wxyz(spawn.rpy))
+        body = world.add_body(
+            name=root.name, pos=self._spawn.xyz, quat=wxyz(self._spawn.rpy)
+        )
         self._bodies[root.name] = body
-        if self._options.free:
+        if self._free:
             body.add_freejoint(name=f"{root.name}_free")
-        self._add_link(body, root, moves=self._options.free)
+        self._add_link(body, root, moves=self._free)
 
     def _placement(self, parent: str, origin: Pose) -> dict[str, NDArray[np.float64]]:
         """Return position and quaternion of a child; the spawn pose moves the `world` link."""
         if parent != WORLD_LINK:
             return {"pos": np.asarray(origin.xyz), "quat": wxyz(origin.rpy)}
-        matrix = self._options.spawn.matrix() @ origin.matrix()
+        matrix = self._spawn.matrix() @ origin.matrix()
         quaternion = np.zeros(4)
         mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(matrix[:3, :3]).ravel())
         return {"pos": matrix[:3, 3], "quat": quaternion}
@@ -138,26 +146,27 @@ class BodyTree:
             case "floating":
                 # MuJoCo's free joint is for children of the world only.
                 for axis, direction in zip("xyz", np.eye(3), strict=True):
-                    body.add_joint(name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
-                body.add_joint(name=f"{joint.name}_rotation", type=BALL)
+                    body.add_joint(self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
+                body.add_joint(self._default, name=f"{joint.name}_rotation", type=BALL)
             case "planar":
                 for axis, direction in zip("xy", _plane(joint.axis), strict=True):
-                    body.add_joint(name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
-                body.add_joint(name=f"{joint.name}_yaw", type=HINGE, axis=joint.axis)
+                    body.add_joint(self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
+                body.add_joint(self._default, name=f"{joint.name}_yaw", type=HINGE, axis=joint.axis)
             case "fixed":
                 pass
 
     def _add_scalar(self, body: mujoco.MjsBody, joint: Joint, kind: mujoco.mjtJoint) -> None:
-        added = body.add_joint(name=joint.name, type=kind, axis=joint.axis)
+        added = body.add_joint(self._default, name=joint.name, type=kind, axis=joint.axis)
         # Stiff stops, two steps being the stiffest that MuJoCo's solver takes.
-        added.solref_limit = [max(0.004, 2 * self._options.step_s), 1.0]
+        added.solref_limit = [max(0.004, 2 * self._step_s), 1.0]
         added.damping = np.array([joint.dynamics.damping, 0.0, 0.0])
         added.frictionloss = joint.dynamics.friction
         bounds = self._bounds(joint)
         added.limited = mujoco.mjtLimited.mjLIMITED_FALSE
         if bounds is not None:
             added.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-            added.range = bounds
+            unit = self._angle if kind == HINGE else 1.0
+            added.range = [bound * unit for bound in bounds]
 
     def _bounds(self, joint: Joint) -> tuple[float, float] | None:
         if joint.limit is None or not math.isfinite(joint.limit.upper - joint.limit.lower):

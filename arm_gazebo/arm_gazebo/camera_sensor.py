@@ -7,8 +7,7 @@ from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lxml import etree
-
+from arm_description.xml_document import parse_xml
 from arm_gazebo.errors import CameraError
 
 logger = logging.getLogger(__name__)
@@ -83,8 +82,9 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
 
     Raises:
         CameraError: a value is nonsense; the message names sensor, element and line.
+        XmlError: the text is not XML.
     """
-    root = _parse_xml(urdf_xml, source)
+    root = parse_xml(urdf_xml, source)
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []
     taken: dict[str, str] = {}
@@ -98,14 +98,6 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
         _take_topics(camera, tags, taken)
         cameras.append(camera)
     return tuple(cameras)
-
-
-def _parse_xml(text: str, source: str) -> Any:
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False)
-    try:
-        return etree.fromstring(text.encode(), parser)
-    except etree.XMLSyntaxError as error:
-        raise CameraError(f"{source}: {error}") from error
 
 
 def _camera_elements(root: Any) -> Iterator[tuple[str, Any]]:

@@ -1,10 +1,14 @@
 """Which shapes touch which: Gazebo's defaults in MuJoCo's terms."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.build_report import BuildReport
 
 WORLD_CONTYPE = 1
 """MuJoCo's default for a geom: so any world file works, whatever it says."""
@@ -29,28 +33,56 @@ def masks_for(self_collide: bool) -> CollisionMasks:
     return SELF_TOO if self_collide else WORLD_ONLY
 
 
-def jointed_pairs(model: mujoco.MjModel, bodies: frozenset[int]) -> Iterator[tuple[int, int]]:
+def leave_out_neighbours(
+    spec: mujoco.MjSpec,
+    model: mujoco.MjModel,
+    qpos: NDArray[np.float64],
+    links: Sequence[str],
+    report: BuildReport,
+) -> None:
+    """Exclude from contact the links that one joint connects, and those that overlap at first.
+
+    Args:
+        spec: gets the exclusions.
+        model: compiled from it without them.
+        qpos: starting positions, shape (nq,).
+        links: names of the robot's bodies.
+        report: says which links were found overlapping.
+    """
+    bodies = {model.body(name).id: name for name in links}
+    jointed = set(_jointed_pairs(model, sorted(bodies)))
+    overlapping = _overlapping_pairs(model, qpos, bodies) - jointed
+    for first, second in sorted(jointed | overlapping):
+        spec.add_exclude(bodyname1=bodies[first], bodyname2=bodies[second])
+    for first, second in sorted(overlapping):
+        report.warn(
+            f"links '{bodies[first]}' and '{bodies[second]}'",
+            "they overlap in the starting pose; they will not collide with each other",
+        )
+
+
+def _jointed_pairs(model: mujoco.MjModel, bodies: Sequence[int]) -> Iterator[tuple[int, int]]:
     """Yield the pairs of bodies that one joint connects, through whatever is fixed to them.
 
     MuJoCo leaves out parent and child itself, but not where the parent is fixed to the world.
     """
-    parent_of_weld = {
-        model.body_weldid[body]: model.body_weldid[model.body_parentid[model.body_weldid[body]]]
-        for body in bodies
-    }
-    for first, second in combinations(sorted(bodies), 2):
-        weld, other = model.body_weldid[first], model.body_weldid[second]
-        if weld != other and (parent_of_weld[weld] == other or parent_of_weld[other] == weld):
+    weld = model.body_weldid
+    for first, second in combinations(bodies, 2):
+        one, other = weld[first], weld[second]
+        above, above_other = weld[model.body_parentid[one]], weld[model.body_parentid[other]]
+        if one != other and (above == other or above_other == one):
             yield first, second
 
 
-def overlapping_pairs(
-    model: mujoco.MjModel, data: mujoco.MjData, bodies: frozenset[int]
+def _overlapping_pairs(
+    model: mujoco.MjModel, qpos: NDArray[np.float64], bodies: Container[int]
 ) -> set[tuple[int, int]]:
-    """Return the pairs of these bodies that are in contact in the state of `data`."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = qpos
     mujoco.mj_fwdPosition(model, data)
     pairs = set()
-    for contact in data.contact[: data.ncon]:
+    for index in range(data.ncon):
+        contact = data.contact[index]
         first, second = sorted(int(model.geom_bodyid[geom]) for geom in contact.geom)
         if first in bodies and second in bodies and contact.dist < 0:
             pairs.add((first, second))

@@ -2,6 +2,7 @@
 
 GazeboError
 ├── CameraError     a camera's description or its process
+│   └── BackendError  an OpenGL library that starts but does not draw
 ├── WorldError      a world file that is missing or is no MJCF
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
@@ -16,6 +17,10 @@ class GazeboError(Exception):
 
 class CameraError(GazeboError):
     """A camera is described wrongly, or its process cannot do its work."""
+
+
+class BackendError(CameraError):
+    """An OpenGL library started in this process, but no picture comes out of it."""
 
 
 class WorldError(GazeboError):

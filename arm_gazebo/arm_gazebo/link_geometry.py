@@ -42,15 +42,22 @@ class LinkGeometry:
 
     Args:
         meshes: the model's meshes.
+        default: values of what is not set: the world file's own defaults are for the world.
         masks: what collisions touch.
         strict: whether a mesh that cannot be had is an error.
         report: gets a warning for every shape that is replaced.
     """
 
     def __init__(
-        self, meshes: MeshLibrary, masks: CollisionMasks, strict: bool, report: BuildReport
+        self,
+        meshes: MeshLibrary,
+        default: mujoco.MjsDefault,
+        masks: CollisionMasks,
+        strict: bool,
+        report: BuildReport,
     ) -> None:
         self._meshes = meshes
+        self._default = default
         self._masks = masks
         self._strict = strict
         self._report = report
@@ -66,13 +73,13 @@ class LinkGeometry:
             # A file of several colours knows better than the one colour of the URDF.
             colorful = len({shape.rgba for shape in shapes}) > 1
             for shape in shapes:
-                geom = _add_geom(body, visual.origin, shape)
+                geom = self._add_geom(body, visual.origin, shape)
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 geom.rgba = (shape.rgba if colorful else _color(visual, shape)) or DEFAULT_COLOR
         for collision in link.collisions:
             for shape in self._hulls(collision.geometry, link):
-                geom = _add_geom(body, collision.origin, shape)
+                geom = self._add_geom(body, collision.origin, shape)
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = self._masks.contype, self._masks.conaffinity
 
@@ -143,6 +150,21 @@ class LinkGeometry:
             else:
                 yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name)
 
+    def _add_geom(self, body: mujoco.MjsBody, origin: Pose, shape: _Shape) -> mujoco.MjsGeom:
+        geom = body.add_geom(
+            self._default,
+            type=shape.type,
+            pos=np.asarray(origin.xyz) + origin.matrix()[:3, :3] @ np.asarray(shape.offset),
+            quat=wxyz(origin.rpy),
+        )
+        if shape.mesh:
+            geom.meshname = shape.mesh
+        else:
+            geom.size = shape.size
+        # Mass comes from the link's inertial alone.
+        geom.mass = 0.0
+        return geom
+
     def _stand_in(self, error: MeshError, link: Link) -> _Shape:
         element = f"link '{link.name}'"
         if self._strict:
@@ -181,22 +203,6 @@ def _box_around(part: MeshData) -> _Shape:
     half = np.maximum((high - low) / 2, THINNEST_M).tolist()
     middle = ((low + high) / 2).tolist()
     return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half[0], half[1], half[2]), tuple(middle))
-
-
-def _add_geom(body: mujoco.MjsBody, origin: Pose, shape: _Shape) -> mujoco.MjsGeom:
-    rotation = origin.matrix()[:3, :3]
-    geom = body.add_geom(
-        type=shape.type,
-        pos=np.asarray(origin.xyz) + rotation @ np.asarray(shape.offset),
-        quat=wxyz(origin.rpy),
-    )
-    if shape.mesh:
-        geom.meshname = shape.mesh
-    else:
-        geom.size = shape.size
-    # Mass comes from the link's inertial alone.
-    geom.mass = 0.0
-    return geom
 
 
 def _color(visual: Visual, shape: _Shape) -> Color | None:

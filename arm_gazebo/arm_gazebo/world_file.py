@@ -46,11 +46,23 @@ def load_world(world: str | Path) -> mujoco.MjSpec:
     """
     path = find_world(world)
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        # The robot's own mistakes must not hide behind the world's, so it is tried alone.
-        spec.copy().compile()
+        return mujoco.MjSpec.from_file(str(path))
     except (ValueError, mujoco.FatalError) as error:
-        raise WorldError(f"the world {path} is not usable MuJoCo XML: {error}") from error
-    # Everything added from here on is in rad, whatever the file says about itself.
-    spec.compiler.degree = False
-    return spec
+        raise _unusable(path, error) from error
+
+
+def check_world(world: str | Path) -> None:
+    """Raise a WorldError where a world does not compile by itself.
+
+    Tells a world's mistakes from a robot's, once both together have failed.
+    """
+    spec = load_world(world)
+    try:
+        spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise _unusable(find_world(world), error) from error
+
+
+def _unusable(path: Path, error: Exception) -> WorldError:
+    reason = " ".join(str(error).split())
+    return WorldError(f"the world {path} is not usable MuJoCo XML: {reason}")

@@ -13,6 +13,7 @@ import rosidl_pycommon
 from rosidl_parser.definition import IdlFile, IdlLocator
 from rosidl_parser.parser import parse_idl_file
 
+_NAME = parse_idl_file.__name__
 _READERS = (
     rosidl_generator_py.generate_py_impl,
     rosidl_generator_type_description,
@@ -23,7 +24,7 @@ _READERS = (
 def install() -> None:
     """Put the cache before the parser in every generator; for a worker process of ours only."""
     for module in _READERS:
-        module.parse_idl_file = _parse
+        setattr(module, _NAME, _parse)
 
 
 def _parse(locator: IdlLocator) -> IdlFile:

@@ -7,9 +7,12 @@ thread joined, while services still answer), executor, nodes, context.
 """
 
 import logging
+import math
 import signal
 import sys
 import threading
+import time
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
+
+FAILURE_REPORT_PERIOD_S = 10.0
 
 EXIT_OK = 0
 EXIT_FAILED = 1
@@ -43,6 +48,7 @@ class NodeProcess:
         self._stop = threading.Event()
         self._spin_ended = threading.Event()
         self._spinning: threading.Thread | None = None
+        self._failures: dict[tuple[type[Exception], str, int | None], float] = {}
 
     @property
     def stopping(self) -> bool:
@@ -78,9 +84,18 @@ class NodeProcess:
                 self.executor.spin()
             except (ExternalShutdownException, ShutdownException):
                 return
-            except Exception:
+            except Exception as error:
                 # A callback raised. One bad message must not end the process: say it, go on.
-                logging.getLogger("arm_node").exception("a callback failed; the node goes on")
+                self._report_failed_callback(error)
+
+    def _report_failed_callback(self, error: Exception) -> None:
+        """Log the traceback, but the same failure at the same place at most every 10 s."""
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        place = (type(error), last.filename, last.lineno)
+        now = time.monotonic()
+        if now - self._failures.get(place, -math.inf) >= FAILURE_REPORT_PERIOD_S:
+            self._failures[place] = now
+            logging.getLogger("arm_node").exception("a callback failed; the node goes on")
 
 
 Application = Callable[[NodeProcess], AbstractContextManager[None]]

@@ -5,10 +5,15 @@ Each condition is a value; who watches it is decided by its kind: the output of 
 (the others: it alone talks to ROS and HTTP, so the supervisor stays small and single-threaded).
 """
 
+from __future__ import annotations
+
 import re
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from launch_py.errors import LaunchFileError
+from launch_py.names import join_names
+from launch_py.substitution import Text
 
 DEFAULT_TIMEOUT_S = 30.0
 
@@ -22,6 +27,10 @@ class Readiness:
     def missing(self) -> str:
         """Return what is missing while the condition does not hold, as part of a sentence."""
         raise NotImplementedError
+
+    def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
+        """Return the condition with its texts performed and relative names in `namespace`."""
+        return self
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +81,7 @@ class Probe(Readiness):
 class TopicPublished(Probe):
     """The topic has a publisher (of `type`, if given), or has brought a first message."""
 
-    topic: str
+    topic: Text
     type: str | None = None
     first_message: bool = False
 
@@ -85,35 +94,51 @@ class TopicPublished(Probe):
             else f"no publisher{what} on topic {self.topic}"
         )
 
+    def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
+        """Return the condition with its text performed."""
+        return replace(self, topic=join_names(namespace, perform(self.topic)))
+
 
 @dataclass(frozen=True, slots=True)
 class ServiceAvailable(Probe):
     """A server answers to this service name."""
 
-    service: str
+    service: Text
 
     def missing(self) -> str:
         """Return what is missing."""
         return f"no server of service {self.service}"
+
+    def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
+        """Return the condition with its text performed."""
+        return replace(self, service=join_names(namespace, perform(self.service)))
 
 
 @dataclass(frozen=True, slots=True)
 class ActionAvailable(Probe):
     """A server answers to this action name."""
 
-    action: str
+    action: Text
 
     def missing(self) -> str:
         """Return what is missing."""
         return f"no server of action {self.action}"
+
+    def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
+        """Return the condition with its text performed."""
+        return replace(self, action=join_names(namespace, perform(self.action)))
 
 
 @dataclass(frozen=True, slots=True)
 class HttpOk(Probe):
     """A GET of this URL answers 200."""
 
-    url: str
+    url: Text
 
     def missing(self) -> str:
         """Return what is missing."""
         return f"no answer 200 from {self.url}"
+
+    def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
+        """Return the condition with its text performed."""
+        return replace(self, url=perform(self.url))

@@ -1,5 +1,6 @@
 """The main job: `arm launch`, as a stranger with rclpy sees it."""
 
+import itertools
 import signal
 from pathlib import Path
 
@@ -44,8 +45,8 @@ def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
     samples = states.wait_for(100)
     clock_ns = [m.clock.sec * 10**9 + m.clock.nanosec for m in ticks]
     state_ns = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in samples]
-    assert all(b > a for a, b in zip(clock_ns, clock_ns[1:], strict=False))
-    assert {b - a for a, b in zip(state_ns, state_ns[1:], strict=False)} == {10_000_000}
+    assert all(b > a for a, b in itertools.pairwise(clock_ns))
+    assert {b - a for a, b in itertools.pairwise(state_ns)} == {10_000_000}
     assert set(state_ns) & set(clock_ns)
 
 

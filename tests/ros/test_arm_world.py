@@ -63,7 +63,9 @@ position_controller:
     assert np.median(np.diff(stamps)) == pytest.approx(1 / rate_hz, rel=1e-3)
 
 
-def write_controllers(folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]") -> Path:
+def write_controllers(
+    folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]"
+) -> Path:
     path = folder / "controllers.yaml"
     path.write_text(f"""\
 controller_manager:

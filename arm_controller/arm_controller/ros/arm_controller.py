@@ -11,7 +11,7 @@ from sensor_msgs.msg import JointState
 
 from arm_controller.errors import ArmControllerError, PoseError
 from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_joint_names, read_number
+from arm_controller.parameter_values import read_joint_names, read_number, read_pose
 from arm_controller.pose import JointPose
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
 from arm_controller.ros.parameters import DEFAULT_JOINTS, declare
@@ -69,12 +69,9 @@ class ArmController(Node):
         self.add_post_set_parameters_callback(self._apply_parameters)
 
     def _read_pose(self, value: object) -> JointPose | None:
-        if value is None:
-            return None
-        if not isinstance(value, (list, tuple)):
-            raise PoseError(f"a pose is a list of {len(self._joint_names)} numbers, not {value!r}")
-        pose = JointPose.of(self._joint_names, value)
-        self._commands.limits.check(pose)
+        pose = read_pose(value, self._joint_names)
+        if pose is not None:
+            self._commands.limits.check(pose)
         return pose
 
     def _read_period(self, value: object) -> float:

@@ -77,22 +77,19 @@ class PublisherDefined(Node):
         said = self._sequence.on_positions(self._readings.positions, self._now_s())
         if said is not None:
             self.get_logger().info(said)
-            self._go_on()
 
     def _go_on(self) -> None:
-        if self._sequence.finished:
-            return
         self._commands.observe()
         said = self._sequence.on_time(self._readings.positions, self._now_s())
         if said is not None:
             self.get_logger().error(said)
         pose = self._sequence.waiting_pose
-        if self._commands.silence_s >= self._match_timeout_s:
+        if self._sequence.finished:
+            self._end()
+        elif self._commands.silence_s >= self._match_timeout_s:
             self._give_up(f"{self._commands.audience}: is the position_controller active?")
         elif pose is not None:
             self._publish_if_ready(pose)
-        if self._sequence.finished:
-            self._end()
 
     def _publish_if_ready(self, pose: JointPose) -> None:
         label = self._sequence.label
@@ -126,6 +123,7 @@ class PublisherDefined(Node):
         self._sequence.give_up()
 
     def _end(self) -> None:
+        self._timer.cancel()
         missed, count = self._sequence.missed, self._sequence.count
         if missed:
             self.get_logger().error(f"{missed} of {count} poses not reached")

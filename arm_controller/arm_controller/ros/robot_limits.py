@@ -3,13 +3,13 @@
 import logging
 from collections.abc import Sequence
 
-from arm_description.errors import DescriptionError
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from arm_controller.errors import ArmControllerError
 from arm_controller.joint_limits import limits_of, no_limits
+from arm_description.errors import DescriptionError
 from arm_description.urdf import parse_urdf
 
 TOPIC = "robot_description"

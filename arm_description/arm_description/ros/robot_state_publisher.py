@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -15,10 +14,15 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from arm_description.errors import DescriptionError
+from arm_description.joint_state_encoding import (
+    EncodingError,
+    JointPositions,
+    read_joint_positions,
+)
 from arm_description.names import listing
 from arm_description.ros.transform_publisher import TransformPublisher
 from arm_description.state_publisher_settings import StatePublisherSettings
-from arm_description.state_throttle import NANOSECONDS, StateThrottle
+from arm_description.state_throttle import StateThrottle
 from arm_description.transform_tree import Motion, TransformTree
 from arm_description.urdf import parse_urdf
 
@@ -84,6 +88,7 @@ class RobotStatePublisher(Node):
             "joint_states",
             self._on_joint_state,
             qos_profile_sensor_data,
+            raw=True,
             qos_overriding_options=QoSOverridingOptions(policies),
         )
         # After all declarations: those of the QoS overrides would pass through these too.
@@ -129,30 +134,31 @@ class RobotStatePublisher(Node):
     def _now_ns(self) -> int:
         return self.get_clock().now().nanoseconds
 
-    def _on_joint_state(self, message: JointState) -> None:
-        if len(message.name) != len(message.position):
-            self._complain(message)
+    def _on_joint_state(self, data: bytes) -> None:
+        try:
+            state = read_joint_positions(data)
+        except EncodingError as error:
+            self._complain(f"a JointState whose bytes cannot be read: {error}")
             return
-        if self._throttle.went_back(self._now_ns()):
+        if len(state.names) != len(state.positions):
+            self._complain_of_sizes(state)
+            return
+        if self._throttle.went_back(self.get_clock().now().nanoseconds):
             self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
-        outlet = self._outlet(tuple(message.name))
-        stamp = message.header.stamp
-        stamp_ns = stamp.sec * NANOSECONDS + stamp.nanosec
+        outlet = self._outlet(state.names)
         if not outlet.names:
             return
-        if self._settings.ignore_timestamp or self._throttle.due(outlet.names, stamp_ns):
-            self._publish(outlet, np.array(message.position), stamp_ns)
+        if self._settings.ignore_timestamp or self._throttle.due(outlet.names, state.stamp_ns):
+            self._publish(outlet, state)
 
-    def _publish(self, outlet: _Outlet, positions: NDArray[np.float64], stamp_ns: int) -> None:
-        if not np.isfinite(positions[outlet.motion.source]).all():
-            self.get_logger().error(
-                f"ignored a JointState about {listing(outlet.names)}: "
-                "a position is not a finite number",
-                throttle_duration_sec=COMPLAINT_INTERVAL_S,
+    def _publish(self, outlet: _Outlet, state: JointPositions) -> None:
+        if not np.isfinite(state.positions[outlet.motion.source]).all():
+            self._complain(
+                f"a JointState about {listing(outlet.names)}: a position is not a finite number"
             )
             return
-        outlet.publisher.publish(outlet.motion.transforms(positions), stamp_ns)
-        self._throttle.passed_on(outlet.names, stamp_ns)
+        outlet.publisher.publish(outlet.motion.transforms(state.positions), state.stamp_ns)
+        self._throttle.passed_on(outlet.names, state.stamp_ns)
 
     def _outlet(self, names: tuple[str, ...]) -> _Outlet:
         outlet = self._outlets.get(names)
@@ -172,14 +178,15 @@ class RobotStatePublisher(Node):
             ),
         )
 
-    def _complain(self, message: JointState) -> None:
-        ignored = f"ignored a JointState about {listing(message.name)}"
-        if not message.position:
+    def _complain_of_sizes(self, state: JointPositions) -> None:
+        about = f"a JointState about {listing(state.names)}"
+        if len(state.positions) == 0:
+            # Lawful: a message of velocities only. Whoever wonders why nothing moves sees it.
             self.get_logger().warning(
-                f"{ignored}: it has no positions", throttle_duration_sec=COMPLAINT_INTERVAL_S
+                f"ignored {about}: it has no positions", throttle_duration_sec=COMPLAINT_INTERVAL_S
             )
-        else:
-            self.get_logger().error(
-                f"{ignored}: {len(message.name)} names, but {len(message.position)} positions",
-                throttle_duration_sec=COMPLAINT_INTERVAL_S,
-            )
+            return
+        self._complain(f"{about}: {len(state.names)} names, but {len(state.positions)} positions")
+
+    def _complain(self, about: str) -> None:
+        self.get_logger().error(f"ignored {about}", throttle_duration_sec=COMPLAINT_INTERVAL_S)

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from arm_node.message_template import MessageTemplate
 from geometry_msgs.msg import TransformStamped
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from arm_description.transform_tree import Frame
+from arm_node.message_template import MessageTemplate
 
 
 class TransformPublisher:

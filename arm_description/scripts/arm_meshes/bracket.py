@@ -40,7 +40,7 @@ def _ear(start: float, end: float, hole: float) -> Manifold:
 
 def _ear_outline() -> CrossSection:
     """Return a round end, a waist and a shoulder as wide as the cup."""
-    end = circle((EAR_Y, 0.0), EAR_RADIUS, segments=48)
+    end = circle((EAR_Y, 0.0), EAR_RADIUS, segments=36)
     waist = circle((-6.0, 0.0), 11.0)
     shoulder = rectangle((18.0, -EAR_HALF_WIDTH), (TOP, EAR_HALF_WIDTH))
     return CrossSection.batch_hull([end, waist]) + CrossSection.batch_hull([waist, shoulder])

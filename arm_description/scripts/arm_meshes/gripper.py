@@ -2,7 +2,7 @@
 
 from manifold3d import Manifold
 
-from arm_meshes.outline import Point, polygon, rectangle
+from arm_meshes.outline import Point, polygon, rectangle, slot
 from arm_meshes.part import Part, Piece, board_between, box_between
 from arm_meshes.solid import box, prism, union
 
@@ -24,6 +24,8 @@ FLOOR = -7.0
 """The scoop stands on the plate: the plate's top in the finger's x."""
 HALF_WIDTH = 15.6
 WALL = 2.4
+BEVEL = 1.2
+SLOT_XS = (8.0, 19.0, 30.0)
 CLAMP_LOWER = (-14.7, -11.5, -5.5)
 CLAMP_UPPER = (FLOOR, 11.5, 24.0)
 GAP = 0.05
@@ -54,23 +56,55 @@ def gripper_plate() -> Part:
 def finger() -> Part:
     """Return the links crawer_left and crawer_right."""
     body = _scoop() + _clamp()
-    collisions = [
-        box_between(CLAMP_LOWER, CLAMP_UPPER),
-        box_between((FLOOR, -HALF_WIDTH, INNER), (HEEL[0], HALF_WIDTH, HEEL[1])),
-        board_between((TIP, TIP_Z), HEEL, WALL, 2 * HALF_WIDTH),
-    ]
+    clamp_and_floor = box_between(
+        (CLAMP_LOWER[0], -HALF_WIDTH, CLAMP_LOWER[2]), (HEEL[0], HALF_WIDTH, HEEL[1])
+    )
+    collisions = [clamp_and_floor, board_between(HEEL, (TIP, TIP_Z), WALL, 2 * HALF_WIDTH)]
     for y0, y1 in ((-HALF_WIDTH, WALL - HALF_WIDTH), (HALF_WIDTH - WALL, HALF_WIDTH)):
         collisions.append(box_between((HEEL[0], y0, INNER), (16.0, y1, 9.0)))
-        collisions.append(box_between((16.0, y0, INNER), (36.0, y1, -3.0)))
+        collisions.append(box_between((16.0, y0, INNER), (TIP, y1, -6.0)))
     return Part("the_crawer", (Piece("the_crawer", "light", body),), tuple(collisions), body)
 
 
 def _scoop() -> Manifold:
     """Return a wedge, a right triangle from the side, hollow and open on its inner side."""
-    outside = [(INNER, FLOOR), (HEEL[1], FLOOR), (HEEL[1], HEEL[0]), (TIP_Z, TIP), (INNER, TIP)]
-    hollow = [(INNER - 1, HEEL[0]), (HEEL[1] - 6.0, HEEL[0]), (TIP_Z - 3.0, TIP - 4.0), (INNER - 1, TIP - 4.0)]
-    wedge = prism(polygon(outside), "y", -HALF_WIDTH, HALF_WIDTH)
-    return wedge - prism(polygon(hollow), "y", WALL - HALF_WIDTH, HALF_WIDTH - WALL)
+    inside: list[Point] = [
+        (INNER - 1, HEEL[0]),
+        (HEEL[1] - 6.0, HEEL[0]),
+        (TIP_Z - 2.5, TIP - 5.0),
+        (INNER - 1, TIP - 5.0),
+    ]
+    hollow = prism(polygon(inside), "y", WALL - HALF_WIDTH, HALF_WIDTH - WALL)
+    return _wedge() - hollow - union(_slope_slot(x) for x in SLOT_XS)
+
+
+def _wedge() -> Manifold:
+    """Return the scoop's outside: its outer edges are cut, the open side's are sharp."""
+    outside: list[Point] = [
+        (INNER, FLOOR),
+        (HEEL[1], FLOOR),
+        (HEEL[1], HEEL[0]),
+        (TIP_Z, TIP),
+        (INNER, TIP),
+    ]
+    inset: list[Point] = [
+        (INNER, FLOOR + BEVEL),
+        (HEEL[1] - BEVEL, FLOOR + BEVEL),
+        (HEEL[1] - BEVEL, HEEL[0] - BEVEL / 2),
+        (TIP_Z - BEVEL, TIP - BEVEL),
+        (INNER, TIP - BEVEL),
+    ]
+    return Manifold.batch_hull(
+        [
+            prism(polygon(outside), "y", BEVEL - HALF_WIDTH, HALF_WIDTH - BEVEL),
+            prism(polygon(inset), "y", -HALF_WIDTH, HALF_WIDTH),
+        ]
+    )
+
+
+def _slope_slot(x: float) -> Manifold:
+    """Return a cut through the sloping wall: it is only there that the scoop is not open."""
+    return prism(slot((x, -7.0), (x, 7.0), radius=2.2), "z", TIP_Z, HEEL[1] + 1)
 
 
 def _clamp() -> Manifold:

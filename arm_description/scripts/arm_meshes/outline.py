@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable
 
+import numpy as np
 from manifold3d import CrossSection, JoinType
 
 Point = tuple[float, float]
 
-CIRCLE_SEGMENTS = 32
+CIRCLE_SEGMENTS = 24
 CORNER_SEGMENTS = 16
 """Of a full turn: a rounded corner has a quarter of them."""
 
@@ -27,7 +28,18 @@ def rectangle(lower: Point, upper: Point, corner: float = 0.0) -> CrossSection:
 
 def polygon(points: Iterable[Point]) -> CrossSection:
     """Return a polygon; its corners are given counter-clockwise."""
-    return CrossSection([list(points)])
+    return CrossSection([np.array(list(points), dtype=np.float64)])
+
+
+def bevelled_square(half_width: float, bevel: float) -> CrossSection:
+    """Return a square around the origin whose corners are cut at 45 degrees."""
+    far, near = half_width, half_width - bevel
+    first: list[Point] = [(far, -near), (far, near)]
+    corners = list(first)
+    for _ in range(3):
+        first = [(-y, x) for x, y in first]
+        corners += first
+    return polygon(corners)
 
 
 def slot(start: Point, end: Point, radius: float) -> CrossSection:

@@ -83,13 +83,23 @@ def box_around(solid: Manifold) -> BoxCollision:
     return box_between((x0, y0, z0), (x1, y1, z1))
 
 
+def beam_between(start: Vector, end: Vector, width: float) -> BoxCollision:
+    """Return a square beam between the middles of its ends, in mm; it may lean."""
+    way = tuple(b - a for a, b in zip(start, end, strict=True))
+    length = math.hypot(*way)
+    centre = tuple((a + b) / 2 for a, b in zip(start, end, strict=True))
+    # The beam's z axis after roll and pitch: (sin p cos r, -sin r, cos p cos r).
+    rpy = (-math.asin(way[1] / length), math.atan2(way[0], way[2]), 0.0)
+    return BoxCollision((centre[0], centre[1], centre[2]), (width, width, length), rpy)
+
+
 def board_between(
     start: tuple[float, float], end: tuple[float, float], thickness: float, width: float
 ) -> BoxCollision:
-    """Return a board that leans: its outer face runs between two points (x, z), in mm.
+    """Return a board that leans, from the line between two points (x, z) in mm to its right.
 
-    The board lies on the right of the way from start to end, seen from +y with z up and x to the
-    left, and reaches `width / 2` to both sides of y = 0.
+    Right is as seen from -y, with x to the right and z up. The board reaches `width / 2` to both
+    sides of y = 0.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     length = math.hypot(dx, dz)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from manifold3d import Manifold
+from trimesh.exchange.stl import export_stl
 
 from arm_meshes.part import BoxCollision, CylinderCollision, Part, Piece
 from arm_meshes.solid import Vector
@@ -29,7 +30,7 @@ HEADER = """\
 def write_mesh(piece: Piece, folder: Path) -> Path:
     """Write one piece as a binary STL in metres and return its path."""
     path = folder / f"{piece.mesh}.stl"
-    path.write_bytes(to_trimesh(piece.solid).export(file_type="stl"))
+    path.write_bytes(export_stl(to_trimesh(piece.solid)))
     return path
 
 

@@ -16,7 +16,7 @@ TURN_Z_TO: dict[Axis, Vector] = {"x": (90, 0, 90), "y": (0, -90, -90), "z": (0, 
 
 def box(lower: Vector, upper: Vector) -> Manifold:
     """Return a box between two opposite corners."""
-    size = tuple(b - a for a, b in zip(lower, upper, strict=True))
+    size = (upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2])
     return Manifold.cube(size).translate(lower)
 
 

@@ -3,9 +3,9 @@
 from manifold3d import Manifold
 
 from arm_meshes.outline import Point, circle, rectangle
-from arm_meshes.part import CylinderCollision, Part, Piece, box_around, box_between
+from arm_meshes.part import CylinderCollision, Part, Piece, box_around
 from arm_meshes.servo import CASE_LOWER, CASE_UPPER
-from arm_meshes.solid import bevelled_box, box, bevelled_prism, cylinder, prism, union
+from arm_meshes.solid import bevelled_box, bevelled_prism, box, cylinder, prism, union
 
 PLATE_LOWER = (-28.53, -27.87)
 PLATE_UPPER = (31.47, 50.38)
@@ -28,23 +28,22 @@ GAP = 0.05
 def plate() -> Part:
     """Return the link base_turn: a rounded plate with a large round hole and a rim around it."""
     slab = prism(rectangle(PLATE_LOWER, PLATE_UPPER, corner=9.0), "z", PLATE_UNDERSIDE, PLATE_TOP)
-    rim = cylinder("z", AXIS, 26.0, PLATE_TOP - 1, RIM_TOP, segments=64)
-    hole = cylinder("z", AXIS, BEARING_RADIUS, PLATE_UNDERSIDE - 1, RIM_TOP + 1, segments=64)
+    rim = cylinder("z", AXIS, 26.0, PLATE_TOP - 1, RIM_TOP, segments=48)
+    hole = cylinder("z", AXIS, BEARING_RADIUS, PLATE_UNDERSIDE - 1, RIM_TOP + 1, segments=48)
     body = slab + rim - hole - union(_screw_hole(x, y) for x in (-22, 25) for y in (-21, 44))
-    collisions = (box_around(slab), box_between((-26, -10.5, PLATE_TOP), (26, 41.5, RIM_TOP)))
-    return Part("base_turn", (Piece("base_turn", "red", body),), collisions, body)
+    return Part("base_turn", (Piece("base_turn", "red", body),), (box_around(body),), body)
 
 
 def disc() -> Part:
     """Return the link base_turn_rot: a disc with four posts around the servo that stands on it."""
-    outline = circle((0.0, 0.0), DISC_RADIUS, segments=64)
+    outline = circle((0.0, 0.0), DISC_RADIUS, segments=48)
     slab = bevelled_prism(outline, "z", DISC_UNDERSIDE, DISC_TOP, bevel=1.0)
-    posts = [_post(sx, sy) for sx in (-1, 1) for sy in (-1, 1)]
-    body = slab + union(posts) - _servo_pocket()
-    height = -DISC_UNDERSIDE
+    pairs = [_post(sx, 1) + _post(sx, -1) for sx in (-1, 1)]
+    body = slab + union(pairs) - _servo_pocket()
+    height = DISC_TOP - DISC_UNDERSIDE
     collisions = (
         CylinderCollision((0.0, 0.0, DISC_UNDERSIDE + height / 2), DISC_RADIUS, height),
-        *(box_around(post) for post in posts),
+        *map(box_around, pairs),
     )
     piece = Piece("base_turn_table_rot", "red", body)
     return Part("base_turn_table_rot", (piece,), collisions, body)

@@ -43,7 +43,7 @@ def _axle_hole() -> Manifold:
 def _ear(start: float, end: float, hole: float) -> Manifold:
     """Return an ear: an outline in (y, z), round below, as wide as the plate above."""
     y, z = EAR_AXIS
-    end_circle = circle(EAR_AXIS, EAR_RADIUS, segments=48)
+    end_circle = circle(EAR_AXIS, EAR_RADIUS, segments=36)
     shoulder = rectangle((FRONT, PLATE_UNDERSIDE), (10.0, PLATE_TOP))
     outline = CrossSection.batch_hull([end_circle, shoulder]) - circle(EAR_AXIS, hole)
     for dy, dz in ((8.0, 0.0), (0.0, 8.0), (-8.0, 0.0), (0.0, -8.0)):

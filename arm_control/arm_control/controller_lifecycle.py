@@ -1,0 +1,108 @@
+"""Takes one controller through its life cycle, with the claims and loans that go with it."""
+
+import logging
+from collections.abc import Callable
+
+from arm_control.guarded import failure_of
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.managed_controller import ManagedController
+from arm_control.resource_manager import ResourceManager
+
+logger = logging.getLogger(__name__)
+
+TransitionListener = Callable[[str, Transition, LifecycleState, LifecycleState], None]
+"""Hears of a transition tried: controller, transition, state before, state after."""
+
+
+class ControllerLifecycle:
+    """The transitions of controllers; each method returns why it failed, empty if it did not.
+
+    Whether a transition is allowed from the present state is the manager's business. Loop thread
+    only.
+    """
+
+    def __init__(self, resources: ResourceManager, listener: TransitionListener) -> None:
+        self._resources = resources
+        self._listener = listener
+
+    def configure(self, managed: ManagedController, parameters: object) -> str:
+        """Hand the parameters over and ask for the interfaces."""
+        reason = self._run(
+            managed, Transition.CONFIGURE, lambda: managed.controller.on_configure(parameters)
+        )
+        reason = reason or self.resolve(managed)
+        return self._arrive(managed, Transition.CONFIGURE, reason)
+
+    def resolve(self, managed: ManagedController) -> str:
+        """Ask what interfaces the controller wants, and look up which these are now."""
+        reason = failure_of(
+            lambda: managed.resolve_interfaces(self._resources),
+            f"the interface configuration of controller '{managed.name}'",
+        )
+        reason = reason or _repetition("command", managed.commands)
+        reason = reason or _repetition("state", managed.states)
+        if reason:
+            managed.forget_interfaces()
+        return reason
+
+    def clean_up(self, managed: ManagedController) -> str:
+        """Let the controller forget; it counts as unconfigured even where its own part failed."""
+        reason = self._run(managed, Transition.CLEANUP, managed.controller.on_cleanup)
+        managed.forget_interfaces()
+        self._arrive(managed, Transition.CLEANUP, "")
+        return reason
+
+    def activate(self, managed: ManagedController) -> str:
+        """Claim and loan the interfaces, then start."""
+        self._resources.claim(managed.name, managed.commands)
+        managed.controller.assign_interfaces(
+            self._resources.loan_commands(managed.commands),
+            self._resources.loan_states(managed.states),
+        )
+        managed.restart_cadence()
+        reason = self._run(managed, Transition.ACTIVATE, managed.controller.on_activate)
+        if reason:
+            self._take_interfaces(managed)
+        return self._arrive(managed, Transition.ACTIVATE, reason)
+
+    def deactivate(self, managed: ManagedController) -> str:
+        """Stop, and take the interfaces back whatever the controller says.
+
+        A controller whose own part fails cannot be trusted to start again: it is cleaned up.
+        """
+        reason = self._run(managed, Transition.DEACTIVATE, managed.controller.on_deactivate)
+        self._take_interfaces(managed)
+        self._arrive(managed, Transition.DEACTIVATE, "")
+        if reason:
+            self.clean_up(managed)
+        return reason
+
+    def shut_down(self, managed: ManagedController) -> str:
+        """Let go for good; it counts as finalized even where its own part failed."""
+        reason = self._run(managed, Transition.SHUTDOWN, managed.controller.on_shutdown)
+        self._arrive(managed, Transition.SHUTDOWN, "")
+        return reason
+
+    def _run(
+        self, managed: ManagedController, transition: Transition, step: Callable[[], None]
+    ) -> str:
+        reason = failure_of(step, f"on_{transition.label} of controller '{managed.name}'")
+        if reason:
+            logger.error("controller '%s' failed to %s: %s", managed.name, transition.label, reason)
+        return reason
+
+    def _arrive(self, managed: ManagedController, transition: Transition, reason: str) -> str:
+        start = managed.state
+        if not reason:
+            managed.state = transition.goal
+        self._listener(managed.name, transition, start, managed.state)
+        return reason
+
+    def _take_interfaces(self, managed: ManagedController) -> None:
+        managed.controller.release_interfaces()
+        self._resources.release(managed.name)
+
+
+def _repetition(kind: str, names: tuple[str, ...]) -> str:
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    return f"it asks more than once for {kind} interface {', '.join(repeated)}" if repeated else ""

@@ -1,0 +1,92 @@
+"""Finds controllers and hardware by their ros2_control type string.
+
+Built-in ones stand in the tables below. Anybody's package adds its own through the entry-point
+groups 'arm_control.controllers' and 'arm_control.hardware': the entry point's name is the type
+string, its value 'module:Class'. Installed packages are searched only for types that are not
+built in, because that takes tens of milliseconds.
+"""
+
+import importlib
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+from arm_control.controller import Controller
+from arm_control.errors import RegistryError
+from arm_control.hardware import Hardware
+from arm_control.hardware_info import HardwareInfo
+
+CONTROLLER_GROUP = "arm_control.controllers"
+HARDWARE_GROUP = "arm_control.hardware"
+
+_FORWARD = "arm_control.forward_command_controller"
+_CONTROLLERS = {
+    "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
+    "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
+    "forward_command_controller/MultiInterfaceForwardCommandController": (
+        f"{_FORWARD}:MultiInterfaceForwardCommandController"
+    ),
+    "joint_state_broadcaster/JointStateBroadcaster": (
+        "arm_control.joint_state_broadcaster:JointStateBroadcaster"
+    ),
+    "position_controllers/JointGroupPositionController": f"{_FORWARD}:JointGroupPositionController",
+    "velocity_controllers/JointGroupVelocityController": f"{_FORWARD}:JointGroupVelocityController",
+}
+_HARDWARE = {"mock_components/GenericSystem": "arm_control.testing:FakeHardware"}
+
+
+def controller_types() -> tuple[str, ...]:
+    """Return every controller type there is, sorted."""
+    return tuple(sorted({*_CONTROLLERS, *(point.name for point in _installed(CONTROLLER_GROUP))}))
+
+
+def controller_class(type_name: str) -> type[Controller[Any]]:
+    """Return the class of a controller type.
+
+    Raises:
+        RegistryError: nothing offers the type, or what does cannot be imported or is no controller.
+    """
+    found = _find(type_name, _CONTROLLERS, CONTROLLER_GROUP, "controller type")
+    if not (isinstance(found, type) and issubclass(found, Controller)):
+        raise RegistryError(
+            f"controller type '{type_name}' is {found!r}, "
+            "which does not derive from arm_control.Controller"
+        )
+    return found
+
+
+def create_hardware(info: HardwareInfo) -> Hardware:
+    """Make the driver that a hardware component's plugin names.
+
+    Raises:
+        RegistryError: nothing offers the plugin, or what does cannot be imported.
+    """
+    return _find(info.plugin, _HARDWARE, HARDWARE_GROUP, "hardware plugin")(info)
+
+
+def load_object(path: str) -> Any:
+    """Import what 'module:Name' names.
+
+    Raises:
+        RegistryError: there is no such module or name, or importing it fails.
+    """
+    module_name, _, name = path.partition(":")
+    try:
+        return getattr(importlib.import_module(module_name), name)
+    except Exception as error:
+        # Importing runs anybody's code, so anything may come out of it.
+        raise RegistryError(f"cannot import '{path}': {type(error).__name__}: {error}") from error
+
+
+def _find(type_name: str, built_in: dict[str, str], group: str, what: str) -> Any:
+    if type_name in built_in:
+        return load_object(built_in[type_name])
+    points = _installed(group)
+    for point in points:
+        if point.name == type_name:
+            return load_object(point.value)
+    known = sorted({*built_in, *(point.name for point in points)})
+    raise RegistryError(f"no {what} '{type_name}'; there is {', '.join(known)}")
+
+
+def _installed(group: str) -> tuple[EntryPoint, ...]:
+    return tuple(entry_points(group=group))

@@ -1,0 +1,1 @@
+"""Pictures of a MuJoCo scene: by OpenGL without a display, or by casting rays without OpenGL."""

@@ -1,0 +1,86 @@
+"""Declares an argument of a launch file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from launch_py.actions.action import Action
+from launch_py.errors import LaunchError, UsageError
+from launch_py.near_names import describe_known
+from launch_py.substitution import Text, describe_text, perform_text
+from launch_py.survey import ArgumentInfo
+
+if TYPE_CHECKING:
+    from launch_py.conditions import Condition
+    from launch_py.launch_context import LaunchContext
+    from launch_py.survey import Survey
+
+
+class DeclareLaunchArgument(Action):
+    """An argument `name:=value` of the launch file, with default, description and choices.
+
+    Without a default the argument is required.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: Text | None = None,
+        description: Text | None = None,
+        choices: Iterable[str] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.name = name
+        self.default_value = default_value
+        self.description = None if description is None else describe_text(description)
+        self.choices = tuple(choices or ())
+
+    def expand(self, context: LaunchContext) -> None:
+        """Set the default where no value is given; check the value.
+
+        Raises:
+            UsageError: a required value is missing, or the value is not one of the choices.
+        """
+        if self.name not in context.launch_configurations:
+            if self.default_value is None:
+                meaning = f" ({self.description})" if self.description else ""
+                raise UsageError(
+                    f"launch argument {self.name!r}{meaning} has no default: "
+                    f"give {self.name}:=VALUE"
+                )
+            default = perform_text(context, self.default_value)
+            context.launch_configurations[self.name] = default
+        value = context.launch_configurations[self.name]
+        if self.choices and value not in self.choices:
+            known = describe_known(value, self.choices, "the choices are")
+            if known.startswith("did you mean"):
+                known += f" The choices are {', '.join(self.choices)}"
+            raise UsageError(f"launch argument {self.name!r} cannot be {value!r}; {known}")
+
+    def survey(self, survey: Survey, context: LaunchContext) -> None:
+        """List the argument unless an include fixes its value."""
+        super().survey(survey, context)
+        default = self._shown_default(context)
+        if self.name not in context.fixed_arguments:
+            survey.add_argument(
+                ArgumentInfo(
+                    self.name, default, self.description, self.choices, context.launch_file
+                )
+            )
+        if default is not None:
+            context.launch_configurations.setdefault(self.name, default)
+
+    def _shown_default(self, context: LaunchContext) -> str | None:
+        if self.default_value is None:
+            return None
+        try:
+            return perform_text(context, self.default_value)
+        except LaunchError:
+            return describe_text(self.default_value)
+
+    def describe(self) -> str:
+        """Return what to call it in a message."""
+        return f"launch argument {self.name!r}"

@@ -1,0 +1,224 @@
+"""Starts and supervises a process."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from launch_py.actions.action import Action, check_actions
+from launch_py.errors import LaunchError, LaunchFileError
+from launch_py.event_handlers import OnProcessExit, Reaction
+from launch_py.near_names import describe_known
+from launch_py.plan import GeneratedFile, ProcessStep, StopDelays, Trigger, TriggerKind
+from launch_py.programs import find_program
+from launch_py.readiness import Readiness
+from launch_py.restart_policy import RestartPolicy
+from launch_py.substitution import Text, perform_text
+from launch_py.truth import parse_truth
+
+if TYPE_CHECKING:
+    from launch_py.conditions import Condition
+    from launch_py.launch_context import LaunchContext
+    from launch_py.survey import Survey
+
+SHOWN_STREAMS = {
+    "screen": frozenset({"stdout", "stderr"}),
+    "both": frozenset({"stdout", "stderr"}),
+    "full": frozenset({"stdout", "stderr"}),
+    "log": frozenset({"stderr"}),
+    "own_log": frozenset({"stderr"}),
+}
+"""Which streams ROS's words for `output` put on the screen; the log file always gets both."""
+
+Variables = Mapping[Text, Text]
+
+
+class ExecuteProcess(Action):
+    """A command line, started when what it depends on is ready.
+
+    Args:
+        cmd: the words of the command, each a text.
+        name: what to call it in output, log files and `depends_on`; default the program's name.
+        ready: one `Readiness` or several that must all hold; none means ready once started.
+        depends_on: actions or process names that must be ready before this one starts.
+        restart: the restart policy; `respawn`, `respawn_delay` and `respawn_max_retries` are
+            ROS's way to say `RestartPolicy("always", ...)`.
+        on_exit: actions, or a function of event and context, for when it has ended for good;
+            `on_exit=Shutdown()` makes it a required process.
+        shell: run the words, joined by spaces, as one line of /bin/sh.
+        prefix: words put before the command, as in "gdb -ex run --args".
+        output: "screen" (default), or "log" for the log file only, where stderr still shows.
+        emulate_tty: give it a terminal to write to, for programs that colour or buffer otherwise.
+        cwd: the folder to run it in.
+        env: the whole environment, instead of the inherited one.
+        additional_env: variables added to the inherited environment.
+        sigterm_timeout: seconds from SIGINT to SIGTERM when it is stopped.
+        sigkill_timeout: seconds from SIGTERM to SIGKILL.
+        condition: whether it is started.
+    """
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[Text],
+        name: Text | None = None,
+        ready: Readiness | Iterable[Readiness] = (),
+        depends_on: Action | Text | Iterable[Action | str] = (),
+        restart: RestartPolicy | None = None,
+        on_exit: Reaction | None = None,
+        shell: bool = False,
+        prefix: Text = "",
+        output: Text = "screen",
+        emulate_tty: bool = False,
+        cwd: Text | None = None,
+        env: Variables | None = None,
+        additional_env: Variables | None = None,
+        respawn: bool | Text = False,
+        respawn_delay: float = 0.0,
+        respawn_max_retries: int = -1,
+        sigterm_timeout: float | Text = StopDelays().sigterm_timeout_s,
+        sigkill_timeout: float | Text = StopDelays().sigkill_timeout_s,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.cmd: Sequence[Text] = [cmd] if isinstance(cmd, str) else list(cmd)
+        self.name = name
+        self.ready = (ready,) if isinstance(ready, Readiness) else tuple(ready)
+        self.depends_on = (
+            (depends_on,) if isinstance(depends_on, Action | str) else tuple(depends_on)
+        )
+        self.restart = restart
+        self.on_exit = on_exit
+        self.shell = shell
+        self.prefix = prefix
+        self.output = output
+        self.emulate_tty = emulate_tty
+        self.cwd = cwd
+        self.env = env
+        self.additional_env = additional_env or {}
+        self.respawn = respawn
+        self.respawn_delay = respawn_delay
+        self.respawn_max_retries = respawn_max_retries
+        self.sigterm_timeout = sigterm_timeout
+        self.sigkill_timeout = sigkill_timeout
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add the process, and what follows its end, to the plan.
+
+        Raises:
+            LaunchError: its program does not exist, or something given does not make sense.
+        """
+        namespace = self.resolve_namespace(context)
+        command = self._with_prefix(context, self.command_words(context))
+        context.plan.add(
+            ProcessStep(
+                after=(*context.after, *(Trigger(TriggerKind.READY, t) for t in self.depends_on)),
+                delay_s=context.delay_s,
+                name=self.process_name(context),
+                command=command,
+                cwd=None if self.cwd is None else perform_text(context, self.cwd),
+                environment=self._environment(context),
+                replace_environment=self.env is not None,
+                shown=self._shown_streams(context),
+                emulate_tty=self.emulate_tty,
+                ready=tuple(
+                    condition.resolve(context.perform_substitution, namespace)
+                    for condition in self.ready
+                ),
+                restart=self._restart_policy(context),
+                stop_delays=StopDelays(
+                    _seconds(context, self.sigterm_timeout, "sigterm_timeout"),
+                    _seconds(context, self.sigkill_timeout, "sigkill_timeout"),
+                ),
+            )
+        )
+        if self.on_exit is not None:
+            OnProcessExit(target_action=self, on_exit=self.on_exit).expand(context)
+
+    def survey(self, survey: Survey, context: LaunchContext) -> None:
+        """Note the process's name where it is known, and the actions that follow its end."""
+        super().survey(survey, context)
+        with suppress(LaunchError):
+            survey.process_names.add(self.process_name(context))
+        if self.on_exit is not None and not callable(self.on_exit):
+            for action in check_actions(self.on_exit, "on_exit"):
+                action.survey(survey, context)
+
+    def process_name(self, context: LaunchContext) -> str:
+        """Return what to call the process."""
+        if self.name is not None:
+            return perform_text(context, self.name)
+        words = perform_text(context, self.cmd[0]).split() if self.cmd else []
+        return os.path.basename(words[0]) if words else "process"
+
+    def resolve_namespace(self, context: LaunchContext) -> str:
+        """Return the namespace in which relative names of its readiness are meant."""
+        return context.namespace
+
+    def command_words(self, context: LaunchContext) -> tuple[str | GeneratedFile, ...]:
+        """Return the command line, its program found."""
+        words = [perform_text(context, word) for word in self.cmd]
+        if not words or not words[0]:
+            raise LaunchFileError("ExecuteProcess needs cmd=[program, argument, ...]")
+        if self.shell:
+            return ("/bin/sh", "-c", " ".join(words))
+        return (self._find(context, words[0]), *words[1:])
+
+    def describe(self) -> str:
+        """Return what to call it in a message."""
+        return f"an ExecuteProcess of {self.name or self.cmd}"
+
+    def _with_prefix(
+        self, context: LaunchContext, command: tuple[str | GeneratedFile, ...]
+    ) -> tuple[str | GeneratedFile, ...]:
+        text = perform_text(context, self.prefix)
+        if not text:
+            return command
+        import shlex
+
+        words = shlex.split(text)
+        return (self._find(context, words[0]), *words[1:], *command)
+
+    def _find(self, context: LaunchContext, program: str) -> str:
+        path = context.environment_variable("PATH") or ""
+        if os.sep in program and self.cwd is not None:
+            program = os.path.join(perform_text(context, self.cwd), program)
+        return find_program(program, path)
+
+    def _environment(self, context: LaunchContext) -> dict[str, str | None]:
+        variables: dict[str, str | None] = {} if self.env is not None else dict(context.environment)
+        for name, value in {**(self.env or {}), **self.additional_env}.items():
+            variables[perform_text(context, name)] = perform_text(context, value)
+        return variables
+
+    def _shown_streams(self, context: LaunchContext) -> frozenset[str]:
+        word = perform_text(context, self.output)
+        if word not in SHOWN_STREAMS:
+            known = describe_known(word, SHOWN_STREAMS, "the choices are")
+            raise LaunchFileError(f"output={word!r} of {self.process_name(context)}; {known}")
+        return SHOWN_STREAMS[word]
+
+    def _restart_policy(self, context: LaunchContext) -> RestartPolicy:
+        if self.restart is not None:
+            return self.restart
+        respawn = self.respawn
+        if not isinstance(respawn, bool):
+            respawn = parse_truth(perform_text(context, respawn)) is True
+        if not respawn:
+            return RestartPolicy()
+        retries = None if self.respawn_max_retries < 0 else self.respawn_max_retries
+        return RestartPolicy(
+            "always", first_delay_s=self.respawn_delay, factor=1.0, max_restarts=retries
+        )
+
+
+def _seconds(context: LaunchContext, value: float | Text, name: str) -> float:
+    if isinstance(value, int | float):
+        return float(value)
+    text = perform_text(context, value)
+    try:
+        return float(text)
+    except ValueError:
+        raise LaunchFileError(f"{name} is {text!r}, not seconds") from None

@@ -1,0 +1,111 @@
+"""Includes another launch file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from launch_py.actions.action import Action
+from launch_py.errors import LaunchError, LaunchFileError, UsageError
+from launch_py.launch_description import LaunchDescription
+from launch_py.launch_description_sources import (
+    LaunchDescriptionSource,
+    PythonLaunchDescriptionSource,
+)
+from launch_py.near_names import describe_known
+from launch_py.substitution import Text, perform_text
+from launch_py.survey import Survey
+
+if TYPE_CHECKING:
+    from launch_py.conditions import Condition
+    from launch_py.launch_context import LaunchContext
+
+MAX_DEPTH = 20
+"""Launch files nested deeper than this include each other in a circle."""
+
+Source = LaunchDescriptionSource | LaunchDescription | Text
+
+
+class IncludeLaunchDescription(Action):
+    """The actions of another launch file, in a scope of their own.
+
+    The included file sees the arguments of the one that includes it, overridden by
+    `launch_arguments`. Unlike in ROS, nothing that it sets leaks back, and an argument that it
+    does not declare is refused.
+    """
+
+    def __init__(
+        self,
+        launch_description_source: Source,
+        *,
+        launch_arguments: Mapping[Text, Text] | Iterable[tuple[Text, Text]] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        if not isinstance(launch_description_source, LaunchDescriptionSource | LaunchDescription):
+            launch_description_source = PythonLaunchDescriptionSource(launch_description_source)
+        self.source = launch_description_source
+        pairs = launch_arguments.items() if isinstance(launch_arguments, Mapping) else None
+        self.launch_arguments = tuple(pairs or launch_arguments or ())
+
+    def expand(self, context: LaunchContext) -> None:
+        """Expand the included actions.
+
+        Raises:
+            UsageError: it passes an argument that the file does not declare.
+        """
+        arguments = self._perform_arguments(context)
+        path, description = self._load(context)
+        inner = context.included(path, arguments)
+        if len(inner.included_files) > MAX_DEPTH:
+            raise LaunchFileError(f"launch files include each other without end: {path}")
+        self._refuse_unknown(arguments, path, description, inner)
+        description.visit(inner)
+
+    def survey(self, survey: Survey, context: LaunchContext) -> None:
+        """Survey the included actions, as far as the file can be found without expanding."""
+        super().survey(survey, context)
+        try:
+            path, description = self._load(context)
+            arguments = self._perform_arguments(context)
+        except LaunchError:
+            return
+        if path is None or path not in context.included_files:
+            description.survey(survey, context.included(path, arguments))
+
+    def _load(self, context: LaunchContext) -> tuple[Path | None, LaunchDescription]:
+        if isinstance(self.source, LaunchDescription):
+            return context.launch_file, self.source
+        return self.source.load(context)
+
+    def _perform_arguments(self, context: LaunchContext) -> dict[str, str]:
+        return {
+            perform_text(context, name): perform_text(context, value)
+            for name, value in self.launch_arguments
+        }
+
+    def _refuse_unknown(
+        self,
+        arguments: Mapping[str, str],
+        path: Path | None,
+        description: LaunchDescription,
+        inner: LaunchContext,
+    ) -> None:
+        scope = inner.scoped()
+        scope.fixed_arguments = frozenset()
+        survey = Survey()
+        description.survey(survey, scope)
+        for name in arguments:
+            if name not in survey.arguments:
+                known = describe_known(name, survey.arguments, "it declares")
+                raise UsageError(
+                    f"{self.describe()} passes the argument {name!r}, "
+                    f"which {path or 'it'} does not declare; {known}"
+                )
+
+    def describe(self) -> str:
+        """Return what to call it in a message."""
+        if isinstance(self.source, LaunchDescription):
+            return "an included launch description"
+        return f"the include of {self.source.describe()}"

@@ -1,0 +1,63 @@
+"""Tells the user what to do once everything is ready."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from launch_py.actions.action import Action
+from launch_py.plan import PanelEntry
+from launch_py.substitution import Text, perform_text
+
+if TYPE_CHECKING:
+    from launch_py.conditions import Condition
+    from launch_py.launch_context import LaunchContext
+
+Rows = Mapping[Text, Text] | Iterable[tuple[Text, Text]]
+
+
+class ReadyPanel(Action):
+    """Topics, commands to paste and notes, shown when every process is ready.
+
+    Several panels, for instance of included files, are shown as one; the first title counts.
+    The supervisor adds the log folder, the domain id and how to stop.
+
+    Args:
+        title: what has been launched.
+        topics: pairs of topic and meaning.
+        commands: pairs of purpose and command line.
+        notes: pairs of heading and text.
+        condition: whether it is shown.
+    """
+
+    def __init__(
+        self,
+        *,
+        title: Text | None = None,
+        topics: Rows = (),
+        commands: Rows = (),
+        notes: Rows = (),
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.title = title
+        self.topics = topics
+        self.commands = commands
+        self.notes = notes
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add it to the plan."""
+        title = None if self.title is None else perform_text(context, self.title)
+        context.plan.add_panel(
+            PanelEntry(
+                title=title,
+                topics=_perform_rows(context, self.topics),
+                commands=_perform_rows(context, self.commands),
+                notes=_perform_rows(context, self.notes),
+            )
+        )
+
+
+def _perform_rows(context: LaunchContext, rows: Rows) -> tuple[tuple[str, str], ...]:
+    pairs = rows.items() if isinstance(rows, Mapping) else rows
+    return tuple((perform_text(context, left), perform_text(context, right)) for left, right in pairs)

@@ -1,0 +1,56 @@
+"""Delays actions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from launch_py.actions.action import Action, check_actions
+from launch_py.errors import LaunchFileError
+from launch_py.substitution import Text, perform_text
+
+if TYPE_CHECKING:
+    from launch_py.conditions import Condition
+    from launch_py.launch_context import LaunchContext
+    from launch_py.survey import Survey
+
+
+class TimerAction(Action):
+    """Takes its actions `period` seconds after the event they wait for, or after the start.
+
+    To wait for another process use `ready=` and `depends_on=` instead: no delay is right on
+    every machine.
+    """
+
+    def __init__(
+        self,
+        *,
+        period: float | Text,
+        actions: Iterable[Action],
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.period = period
+        self.actions = check_actions(actions, "TimerAction")
+
+    def expand(self, context: LaunchContext) -> None:
+        """Expand the actions with the delay added."""
+        inner = context.scoped()
+        inner.delay_s = context.delay_s + self._period_s(context)
+        for action in self.actions:
+            action.visit(inner)
+
+    def survey(self, survey: Survey, context: LaunchContext) -> None:
+        """Survey the actions."""
+        super().survey(survey, context)
+        for action in self.actions:
+            action.survey(survey, context)
+
+    def _period_s(self, context: LaunchContext) -> float:
+        if isinstance(self.period, int | float):
+            return float(self.period)
+        text = perform_text(context, self.period)
+        try:
+            return float(text)
+        except ValueError:
+            raise LaunchFileError(f"TimerAction's period is {text!r}, not seconds") from None

@@ -1,0 +1,50 @@
+"""The conditions of actions, named as in ROS 2's `launch.conditions`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from launch_py.errors import SubstitutionError
+from launch_py.substitution import Text, describe_text, perform_text
+from launch_py.truth import parse_truth
+
+if TYPE_CHECKING:
+    from launch_py.launch_context import LaunchContext
+
+
+class Condition:
+    """Decides whether an action is taken."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds."""
+        raise NotImplementedError
+
+
+class IfCondition(Condition):
+    """Holds where the text is true, 1, yes or on."""
+
+    def __init__(self, predicate_expression: Text) -> None:
+        self.predicate_expression = predicate_expression
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds.
+
+        Raises:
+            SubstitutionError: the text is neither a word for true nor one for false.
+        """
+        text = perform_text(context, self.predicate_expression)
+        truth = parse_truth(text)
+        if truth is None:
+            raise SubstitutionError(
+                f"a condition on {describe_text(self.predicate_expression)} needs true or false, "
+                f"not {text!r}"
+            )
+        return truth
+
+
+class UnlessCondition(IfCondition):
+    """Holds where the text is false, 0, no or off."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds; see `IfCondition.evaluate`."""
+        return not super().evaluate(context)

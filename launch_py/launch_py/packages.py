@@ -1,0 +1,158 @@
+"""Finds installed packages, their share folders and their executables.
+
+Reads the files themselves: importlib.metadata and ament_index_python give the same answers in ten
+times the time, and a launcher is waited for.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from launch_py.child_environment import ament_prefixes
+from launch_py.errors import NotFoundError
+from launch_py.near_names import describe_known
+
+MARKERS = "share/ament_index/resource_index/packages"
+
+
+@dataclass(frozen=True, slots=True)
+class ConsoleScript:
+    """A script of a Python distribution: it calls `function` of `module`."""
+
+    name: str
+    module: str
+    function: str
+
+    @property
+    def package(self) -> str:
+        """The package it belongs to: the top one of its module."""
+        return self.module.partition(".")[0]
+
+    def command(self) -> tuple[str, ...]:
+        """Return the command line that runs it with this Python.
+
+        Not by `-m`: that imports runpy (a few milliseconds), and does nothing at all where the
+        module lacks a `__main__` part. `-P` keeps the current folder off sys.path.
+        """
+        top = self.function.partition(".")[0]
+        code = (
+            f"import sys; sys.argv[0] = {self.name!r}; "
+            f"from {self.module} import {top}; sys.exit({self.function}())"
+        )
+        return (sys.executable, "-P", "-c", code)
+
+
+class Packages:
+    """What is installed: in the prefixes of AMENT_PREFIX_PATH and on this Python's path."""
+
+    def __init__(self, environ: Mapping[str, str], python_path: Sequence[str] | None = None) -> None:
+        self._prefixes = ament_prefixes(environ)
+        self._python_path = sys.path if python_path is None else python_path
+
+    def share_folder(self, package: str) -> Path:
+        """Return share/<package> of the first prefix that has the package.
+
+        Raises:
+            NotFoundError: no prefix has it; the message names near ones.
+        """
+        for prefix in self._prefixes:
+            if os.path.isfile(os.path.join(prefix, MARKERS, package)):
+                return Path(prefix, "share", package)
+        raise self._no_package(package, self._indexed_packages())
+
+    def prefix(self, package: str) -> Path:
+        """Return the prefix that holds the package."""
+        return self.share_folder(package).parent.parent
+
+    def launch_file(self, package: str, name: str) -> Path:
+        """Return a launch file of a package, by its file name.
+
+        Raises:
+            NotFoundError: there is no such package or file.
+        """
+        share = self.share_folder(package)
+        direct = share / "launch" / name
+        if direct.is_file():
+            return direct
+        found = sorted(
+            Path(folder, file)
+            for folder, _, files in os.walk(share, followlinks=True)
+            for file in files
+            if file.endswith(("launch.py", ".py")) and (file == name or "launch" in file)
+        )
+        for path in found:
+            if path.name == name:
+                return path
+        known = describe_known(name, {path.name for path in found}, "it has")
+        raise NotFoundError(f"package {package!r} has no launch file {name!r}; {known}")
+
+    def executable(self, package: str, name: str) -> tuple[str, ...]:
+        """Return the command line of a package's executable.
+
+        A script of a Python distribution comes first, then a file in <prefix>/lib/<package>.
+
+        Raises:
+            NotFoundError: there is no such package or executable; the message names near ones.
+        """
+        scripts = list(self._console_scripts())
+        own = [script for script in scripts if script.package == package]
+        for script in own:
+            if script.name == name:
+                return script.command()
+        folders = [os.path.join(prefix, "lib", package) for prefix in self._prefixes]
+        files: set[str] = set()
+        for folder in folders:
+            path = os.path.join(folder, name)
+            if os.path.isfile(path) and os.access(path, os.X_OK):
+                return (path,)
+            if os.path.isdir(folder):
+                files.update(f for f in os.listdir(folder) if os.access(f"{folder}/{f}", os.X_OK))
+        indexed = self._indexed_packages()
+        if not own and not files and package not in indexed:
+            raise self._no_package(package, indexed | {script.package for script in scripts})
+        known = describe_known(name, files | {script.name for script in own}, "it has")
+        raise NotFoundError(f"package {package!r} has no executable {name!r}; {known}")
+
+    def _indexed_packages(self) -> set[str]:
+        names: set[str] = set()
+        for prefix in self._prefixes:
+            folder = os.path.join(prefix, MARKERS)
+            if os.path.isdir(folder):
+                names.update(os.listdir(folder))
+        return names
+
+    def _no_package(self, package: str, known: set[str]) -> NotFoundError:
+        searched = os.pathsep.join(self._prefixes)
+        hint = describe_known(package, known, "there is")
+        return NotFoundError(f"no package {package!r} in {searched}; {hint}")
+
+    def _console_scripts(self) -> Iterator[ConsoleScript]:
+        for folder in self._python_path:
+            try:
+                names = os.listdir(folder or os.curdir)
+            except OSError:
+                continue
+            for name in names:
+                if name.endswith((".dist-info", ".egg-info")):
+                    yield from _read_entry_points(os.path.join(folder, name, "entry_points.txt"))
+
+
+def _read_entry_points(path: str) -> Iterator[ConsoleScript]:
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+    except OSError:
+        return
+    section = ""
+    for line in lines:
+        text = line.strip()
+        if text.startswith("["):
+            section = text
+        elif section == "[console_scripts]" and "=" in text and not text.startswith(("#", ";")):
+            name, _, target = text.partition("=")
+            module, _, function = target.partition("[")[0].strip().partition(":")
+            yield ConsoleScript(name.strip(), module.strip(), function.strip())

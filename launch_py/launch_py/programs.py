@@ -1,0 +1,45 @@
+"""Finds programs as a shell does, and beside this Python."""
+
+import os
+import sys
+
+from launch_py.errors import NotFoundError
+from launch_py.near_names import describe_known
+
+
+def scripts_folder() -> str:
+    """Return the folder of this Python's scripts.
+
+    `arm` also works from a virtual environment that is not activated; the programs that pip put
+    beside it are then not on PATH.
+    """
+    return os.path.dirname(sys.executable)
+
+
+def find_program(name: str, path: str) -> str:
+    """Return the path of a program.
+
+    Args:
+        name: a name, or a path with a slash in it.
+        path: the folders to look in, as in the variable PATH.
+
+    Raises:
+        NotFoundError: there is no such program; the message names near ones.
+    """
+    if os.sep in name:
+        if os.path.isfile(name) and os.access(name, os.X_OK):
+            return name
+        reason = "is not executable" if os.path.exists(name) else "does not exist"
+        raise NotFoundError(f"program {name} {reason}")
+    folders = [*filter(None, path.split(os.pathsep)), scripts_folder()]
+    for folder in folders:
+        candidate = os.path.join(folder, name)
+        if os.path.isfile(candidate) and os.access(candidate, os.X_OK):
+            return candidate
+    names: set[str] = set()
+    for folder in folders:
+        if os.path.isdir(folder):
+            names.update(os.listdir(folder))
+    hint = describe_known(name, names)
+    near = f"; {hint}" if hint.startswith("did you mean") else ""
+    raise NotFoundError(f"no program {name!r} on PATH or in {scripts_folder()}{near}")

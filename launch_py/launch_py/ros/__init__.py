@@ -1,0 +1,15 @@
+"""Nodes and packages, named as in ROS 2's `launch_ros`."""
+
+from launch_py.ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
+from launch_py.ros.parameter_descriptions import ParameterValue
+from launch_py.ros.substitutions import FindPackagePrefix, FindPackageShare
+
+__all__ = [
+    "FindPackagePrefix",
+    "FindPackageShare",
+    "Node",
+    "ParameterValue",
+    "PushRosNamespace",
+    "SetParameter",
+    "SetRemap",
+]

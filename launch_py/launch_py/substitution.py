@@ -1,0 +1,62 @@
+"""Values of a launch file that are known only when it is expanded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from os import PathLike
+from typing import TYPE_CHECKING
+
+from launch_py.errors import LaunchFileError
+
+if TYPE_CHECKING:
+    from launch_py.launch_context import LaunchContext
+
+class Substitution:
+    """A text that depends on the launch context."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text.
+
+        Raises:
+            SubstitutionError: it has no value in this context.
+        """
+        raise NotImplementedError
+
+    def describe(self) -> str:
+        """Return how it is written in a launch file, for messages."""
+        return f"{type(self).__name__}(...)"
+
+
+Text = str | PathLike[str] | Substitution | Iterable["str | PathLike[str] | Substitution"]
+"""What every text of a launch file may be; the parts of an iterable are joined."""
+
+
+def perform_text(context: LaunchContext, value: Text) -> str:
+    """Return the text that `value` stands for in this context.
+
+    Raises:
+        LaunchFileError: something other than text, path or substitution is in it.
+        SubstitutionError: a substitution has no value.
+    """
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Substitution):
+        return value.perform(context)
+    if isinstance(value, PathLike):
+        return str(value.__fspath__())
+    if isinstance(value, Iterable) and not isinstance(value, bytes):
+        return "".join(perform_text(context, part) for part in value)
+    raise LaunchFileError(
+        f"a text or a substitution is needed, not {value!r} of type {type(value).__name__}"
+    )
+
+
+def describe_text(value: Text) -> str:
+    """Return how `value` is written in a launch file, without performing it."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Substitution):
+        return value.describe()
+    if isinstance(value, PathLike):
+        return str(value.__fspath__())
+    return "".join(describe_text(part) for part in value)

@@ -1,0 +1,42 @@
+"""The substitutions, named as in ROS 2's `launch.substitutions`; `Call` is new."""
+
+from launch_py.substitution import Substitution
+from launch_py.substitutions.call import Call
+from launch_py.substitutions.command import Command, FindExecutable
+from launch_py.substitutions.logic import (
+    AndSubstitution,
+    EqualsSubstitution,
+    IfElseSubstitution,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+)
+from launch_py.substitutions.python_expression import PythonExpression
+from launch_py.substitutions.text import (
+    EnvironmentVariable,
+    LaunchConfiguration,
+    PathJoinSubstitution,
+    TextSubstitution,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
+
+__all__ = [
+    "AndSubstitution",
+    "Call",
+    "Command",
+    "EnvironmentVariable",
+    "EqualsSubstitution",
+    "FindExecutable",
+    "IfElseSubstitution",
+    "LaunchConfiguration",
+    "NotEqualsSubstitution",
+    "NotSubstitution",
+    "OrSubstitution",
+    "PathJoinSubstitution",
+    "PythonExpression",
+    "Substitution",
+    "TextSubstitution",
+    "ThisLaunchFile",
+    "ThisLaunchFileDir",
+]

@@ -1,0 +1,100 @@
+"""The substitution for small expressions, evaluated without `eval`."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+from launch_py.errors import SubstitutionError
+from launch_py.substitution import Substitution, Text, describe_text, perform_text
+
+if TYPE_CHECKING:
+    import ast
+
+    from launch_py.launch_context import LaunchContext
+
+NAMES = {"true": True, "false": False}
+"""Values of launch arguments read so; in Python they would be unknown names."""
+
+OPERATORS = {
+    "Eq": operator.eq,
+    "NotEq": operator.ne,
+    "Lt": operator.lt,
+    "LtE": operator.le,
+    "Gt": operator.gt,
+    "GtE": operator.ge,
+    "In": lambda a, b: a in b,
+    "NotIn": lambda a, b: a not in b,
+    "Add": operator.add,
+    "Sub": operator.sub,
+    "Mult": operator.mul,
+    "Div": operator.truediv,
+    "FloorDiv": operator.floordiv,
+    "Mod": operator.mod,
+    "USub": operator.neg,
+    "UAdd": operator.pos,
+    "Not": operator.not_,
+}
+
+
+class PythonExpression(Substitution):
+    """The value of a Python expression over literals: comparisons, logic, sums, if-else.
+
+    Calls, attributes and names other than true and false are refused: what a user types as the
+    value of an argument ends up in this text.
+    """
+
+    def __init__(self, expression: Text) -> None:
+        self.expression = expression
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value as text."""
+        import ast
+
+        text = perform_text(context, self.expression)
+        try:
+            return str(_evaluate(ast.parse(text.strip(), mode="eval").body))
+        except SyntaxError as error:
+            raise SubstitutionError(f"expression {text!r} is not Python: {error.msg}") from error
+        except (TypeError, ValueError, ArithmeticError) as error:
+            raise SubstitutionError(f"expression {text!r} has no value: {error}") from error
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return f"PythonExpression({describe_text(self.expression)!r})"
+
+
+def _evaluate(node: ast.expr) -> Any:
+    import ast
+
+    match node:
+        case ast.Constant(value):
+            return value
+        case ast.Name(name) if name in NAMES:
+            return NAMES[name]
+        case ast.List(items) | ast.Tuple(items):
+            return [_evaluate(item) for item in items]
+        case ast.UnaryOp(op, operand) if type(op).__name__ in OPERATORS:
+            return OPERATORS[type(op).__name__](_evaluate(operand))
+        case ast.BinOp(left, op, right) if type(op).__name__ in OPERATORS:
+            return OPERATORS[type(op).__name__](_evaluate(left), _evaluate(right))
+        case ast.BoolOp(ast.And(), values):
+            return all(_evaluate(value) for value in values)
+        case ast.BoolOp(ast.Or(), values):
+            return any(_evaluate(value) for value in values)
+        case ast.IfExp(test, body, orelse):
+            return _evaluate(body if _evaluate(test) else orelse)
+        case ast.Compare(left, ops, comparators):
+            return _compare(node, [left, *comparators])
+    raise SubstitutionError(
+        f"{ast.unparse(node)!r} is not allowed in a PythonExpression: it takes literals, "
+        "comparisons, and/or/not, arithmetic and if-else; use Call for anything else"
+    )
+
+
+def _compare(node: ast.Compare, operands: list[ast.expr]) -> bool:
+    values = [_evaluate(operand) for operand in operands]
+    return all(
+        OPERATORS.get(type(op).__name__, operator.is_)(values[i], values[i + 1])
+        for i, op in enumerate(node.ops)
+    )

@@ -1,0 +1,106 @@
+"""Substitutions for arguments, environment variables and paths."""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from launch_py.errors import SubstitutionError
+from launch_py.near_names import describe_known
+from launch_py.substitution import Substitution, Text, describe_text, perform_text
+
+if TYPE_CHECKING:
+    from launch_py.launch_context import LaunchContext
+
+
+class TextSubstitution(Substitution):
+    """A text as it stands."""
+
+    def __init__(self, *, text: str) -> None:
+        self.text = text
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text."""
+        return self.text
+
+    def describe(self) -> str:
+        """Return the text."""
+        return self.text
+
+
+class LaunchConfiguration(Substitution):
+    """The value of a launch argument, or of `SetLaunchConfiguration`."""
+
+    def __init__(self, variable_name: Text, *, default: Text | None = None) -> None:
+        self.variable_name = variable_name
+        self.default = default
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value in this scope, else the default."""
+        name = perform_text(context, self.variable_name)
+        if name in context.launch_configurations:
+            return context.launch_configurations[name]
+        if self.default is not None:
+            return perform_text(context, self.default)
+        known = describe_known(name, context.launch_configurations, "declared so far:")
+        raise SubstitutionError(f"no launch argument {name!r} is declared before its use; {known}")
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return f"LaunchConfiguration({describe_text(self.variable_name)!r})"
+
+
+class EnvironmentVariable(Substitution):
+    """The value of an environment variable, with what the launch file has set so far."""
+
+    def __init__(self, name: Text, *, default_value: Text | None = None) -> None:
+        self.name = name
+        self.default_value = default_value
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value, else the default."""
+        name = perform_text(context, self.name)
+        value = context.environment_variable(name)
+        if value is not None:
+            return value
+        if self.default_value is not None:
+            return perform_text(context, self.default_value)
+        raise SubstitutionError(f"environment variable {name} is not set and has no default")
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return f"EnvironmentVariable({describe_text(self.name)!r})"
+
+
+class PathJoinSubstitution(Substitution):
+    """A path joined from its parts."""
+
+    def __init__(self, substitutions: Iterable[Text]) -> None:
+        self.parts = tuple(substitutions)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the joined path."""
+        return os.path.join(*(perform_text(context, part) for part in self.parts))
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return "/".join(describe_text(part) for part in self.parts)
+
+
+class ThisLaunchFile(Substitution):
+    """The path of the launch file that is being expanded."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path."""
+        if context.launch_file is None:
+            raise SubstitutionError("ThisLaunchFile has no value: no launch file is being read")
+        return str(context.launch_file)
+
+
+class ThisLaunchFileDir(Substitution):
+    """The folder of the launch file that is being expanded."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path of the folder."""
+        return os.path.dirname(ThisLaunchFile().perform(context))

@@ -1,0 +1,261 @@
+"""A robot that is no more than its topics, and the executables beside it in processes of their own.
+
+Every wait is on a condition, with a generous time-out.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+WAIT_TIMEOUT_S = 30.0
+JOINTS = ("j0", "j1", "j2", "j3")
+STATE_ORDER = ("j3", "j0", "j2", "j1")
+"""Joint states come in any order; this one is nobody's default."""
+STATE_PERIOD_S = 0.02
+
+LINKS = "".join(
+    f"""
+  <link name="l{index}"/>
+  <joint name="j{index}" type="revolute">
+    <parent link="base"/> <child link="l{index}"/>
+    <limit lower="-2.57" upper="2.57" effort="5" velocity="{{velocity}}"/>
+  </joint>"""
+    for index in range(len(JOINTS))
+)
+URDF = f'<robot name="fake"><link name="base"/>{LINKS}</robot>'
+
+
+def poll(condition: Callable[[], object], what: str, timeout_s: float = WAIT_TIMEOUT_S) -> object:
+    """Return the condition's value as soon as it is true."""
+    deadline = time.monotonic() + timeout_s
+    pause = threading.Event()
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            pytest.fail(f"not within {timeout_s} s: {what}")
+        pause.wait(0.02)
+
+
+class FakeRobot:
+    """Position controller, joint states and description; its joints are where they are sent.
+
+    Each part is made when a test asks for it: what a robot lacks is part of the tests.
+    """
+
+    def __init__(self) -> None:
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.signals import SignalHandlerOptions
+
+        self.positions = dict.fromkeys(JOINTS, 0.0)
+        self.stuck: set[str] = set()
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._nodes: list = []
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._spin)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while not self._stop.is_set():
+            self._executor.spin_once(timeout_sec=0.05)
+
+    def node(self, name: str):
+        """Add a node."""
+        from rclpy.node import Node
+
+        node = Node(name, context=self._context)
+        self._nodes.append(node)
+        self._executor.add_node(node)
+        return node
+
+    def listen(self, name: str = "position_controller") -> list[list[float]]:
+        """Subscribe to the commands as a position controller does; return what will come."""
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+        from std_msgs.msg import Float64MultiArray
+
+        received: list[list[float]] = []
+
+        def take(message: Float64MultiArray) -> None:
+            received.append(list(message.data))
+            moving = {
+                joint: position
+                for joint, position in zip(JOINTS, message.data, strict=True)
+                if joint not in self.stuck
+            }
+            self.positions.update(moving)
+
+        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self.node(name).create_subscription(
+            Float64MultiArray, "/position_controller/commands", take, qos
+        )
+        return received
+
+    def describe(self, velocity: float = 2.0) -> None:
+        """Publish a latched description with limits of 2.57 rad."""
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from std_msgs.msg import String
+
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = self.node("robot_state_publisher").create_publisher(
+            String, "/robot_description", qos
+        )
+        publisher.publish(String(data=URDF.format(velocity=velocity)))
+
+    def broadcast(self) -> None:
+        """Publish joint states, in an order of its own, efforts 10 times the positions."""
+        from sensor_msgs.msg import JointState
+
+        node = self.node("joint_state_broadcaster")
+        publisher = node.create_publisher(JointState, "/joint_states", 10)
+
+        def publish() -> None:
+            positions = [self.positions[name] for name in STATE_ORDER]
+            publisher.publish(
+                JointState(
+                    name=list(STATE_ORDER),
+                    position=positions,
+                    velocity=[0.25] * len(positions),
+                    effort=[10.0 * position for position in positions],
+                )
+            )
+
+        node.create_timer(STATE_PERIOD_S, publish)
+
+    def tick(self) -> None:
+        """Publish /clock, ten times as fast as time passes."""
+        from rosgraph_msgs.msg import Clock
+
+        node = self.node("clock")
+        publisher = node.create_publisher(Clock, "/clock", 1)
+        message = Clock()
+
+        def publish() -> None:
+            now_ns = message.clock.sec * 10**9 + message.clock.nanosec + 200_000_000
+            message.clock.sec, message.clock.nanosec = divmod(now_ns, 10**9)
+            publisher.publish(message)
+
+        node.create_timer(0.02, publish)
+
+    def sees(self, name: str) -> bool:
+        """Whether a node of this name is in the graph."""
+        return any(name in node.get_node_names() for node in self._nodes)
+
+    def close(self) -> None:
+        """End the executor, then the nodes, then the context."""
+        self._stop.set()
+        self._thread.join(10.0)
+        self._executor.shutdown()
+        for node in self._nodes:
+            node.destroy_node()
+        self._context.try_shutdown()
+
+
+class Program:
+    """A running executable, and what it printed."""
+
+    def __init__(self, module: str, arguments: list[str], log_folder: Path) -> None:
+        self._lock = threading.Condition()
+        self._output = ""
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", module, *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env={**os.environ, "ROS_LOG_DIR": str(log_folder)},
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        while chunk := os.read(self.process.stdout.fileno(), 4096):
+            with self._lock:
+                self._output += chunk.decode()
+
+    @property
+    def output(self) -> str:
+        """All that was printed so far."""
+        with self._lock:
+            return self._output
+
+    def wait_for(self, text: str) -> None:
+        """Block until this text was printed."""
+        poll(lambda: text in self.output or self.process.poll() is not None, text)
+        assert text in self.output, f"{text!r} was not printed:\n{self.output}"
+
+    def type(self, text: str) -> None:
+        """Write to the standard input."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(text.encode())
+        self.process.stdin.flush()
+
+    def end_of_input(self) -> None:
+        """Close the standard input."""
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+
+    def interrupt(self) -> int:
+        """Send what Ctrl-C sends; return the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.wait()
+
+    def wait(self) -> int:
+        """Wait for the end; return the exit code."""
+        code = self.process.wait(WAIT_TIMEOUT_S)
+        self._reader.join(WAIT_TIMEOUT_S)
+        return code
+
+    def close(self) -> None:
+        """Leave nothing behind, whatever the test did."""
+        if self.process.poll() is None:
+            self.process.kill()
+        self.wait()
+        for stream in (self.process.stdin, self.process.stdout):
+            if stream is not None and not stream.closed:
+                stream.close()
+
+
+@pytest.fixture
+def robot() -> Iterator[FakeRobot]:
+    """A robot without any part yet."""
+    made = FakeRobot()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Iterator[Callable[..., Program]]:
+    """Start an executable of arm_controller by its module's name, with ROS parameters."""
+    started: list[Program] = []
+
+    def start(module: str, *arguments: str, **parameters: object) -> Program:
+        options = [x for name, value in parameters.items() for x in ("-p", f"{name}:={value}")]
+        program = Program(
+            f"arm_controller.{module}",
+            [*arguments, "--ros-args", *options],
+            tmp_path / "log",
+        )
+        started.append(program)
+        return program
+
+    yield start
+    for program in started:
+        program.close()
+
+
+@pytest.fixture
+def until() -> Callable[..., object]:
+    """Block until a condition is true: see `poll`."""
+    return poll

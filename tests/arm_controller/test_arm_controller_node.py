@@ -1,0 +1,152 @@
+"""arm_controller_node beside a robot of topics."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from ament_index_python.packages import get_package_share_directory
+
+pytestmark = pytest.mark.ros
+
+MODULE = "arm_controller_node"
+CONFIG = Path(get_package_share_directory("arm_controller")) / "config"
+DEFAULT_POSE = [0.4, -0.1, 0.5, 0.4]
+
+
+@pytest.fixture
+def set_pose(robot) -> Callable:
+    """Set desired_param through the node's service, as a command line does."""
+    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+    from rcl_interfaces.srv import SetParameters
+
+    client = robot.node("parameter_client").create_client(
+        SetParameters, "/arm_controller_node/set_parameters"
+    )
+    types = {
+        "double_array_value": ParameterType.PARAMETER_DOUBLE_ARRAY,
+        "integer_array_value": ParameterType.PARAMETER_INTEGER_ARRAY,
+        "string_value": ParameterType.PARAMETER_STRING,
+    }
+
+    def set_to(until: Callable, **value: object):
+        (field,) = value
+        request = SetParameters.Request(
+            parameters=[
+                Parameter(name="desired_param", value=ParameterValue(type=types[field], **value))
+            ]
+        )
+        until(client.service_is_ready, "the parameter service")
+        future = client.call_async(request)
+        until(future.done, "an answer of the parameter service")
+        return future.result().results[0]
+
+    return set_to
+
+
+def test_publishes_the_pose_of_its_file_exactly_once(robot, run, until):
+    commands = robot.listen()
+    robot.describe()
+    robot.broadcast()
+    program = run(MODULE, "--ros-args", "--params-file", str(CONFIG / "params.yaml"))
+    program.wait_for("Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]")
+    # Two prints of the joint states later it would have been published again, if ever.
+    until(lambda: program.output.count("Joint State: 'j3'") >= 3, "three prints")
+    assert commands == [DEFAULT_POSE]
+    assert program.interrupt() == 0
+    assert program.output.count("Publishing") == 1
+
+
+def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
+    commands = robot.listen()
+    robot.positions.update(j0=0.1, j1=-0.2, j2=0.3, j3=1.5)
+    robot.broadcast()
+    program = run(MODULE, print_period=0.2)
+    program.wait_for("Joint State: 'j3'")
+    for name, position in robot.positions.items():
+        assert (
+            f"Joint State: '{name}' Position: {position:.6f} Velocity: 0.250000 "
+            f"Effort: {10 * position:.6f}" in program.output
+        )
+    assert program.interrupt() == 0
+    assert commands == []
+
+
+def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pose):
+    commands = robot.listen()
+    robot.describe()
+    run(MODULE, print_period=0)
+    assert set_pose(until, double_array_value=[0.1, 0.2, 0.3, 0.4]).successful
+    until(lambda: len(commands) == 1, "the first pose")
+    assert set_pose(until, integer_array_value=[1, 0, 0, -1]).successful
+    until(lambda: len(commands) == 2, "a pose of integers")
+    assert set_pose(until, string_value="[1, 0.5, 0, 0]").successful
+    until(lambda: len(commands) == 3, "a pose of integers and doubles")
+    assert commands == [[0.1, 0.2, 0.3, 0.4], [1.0, 0.0, 0.0, -1.0], [1.0, 0.5, 0.0, 0.0]]
+
+
+def test_refuses_poses_with_a_reason_and_keeps_the_old_one(robot, run, until, set_pose):
+    commands = robot.listen()
+    robot.describe()
+    program = run(MODULE, print_period=0, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    # Once this is published, the description is known.
+    until(lambda: len(commands) == 1, "the first pose")
+    refusals = [
+        (set_pose(until, double_array_value=[-5.0, 0.5, -1.2, -1.0]), "limits are -2.57 to 2.57"),
+        (set_pose(until, double_array_value=[1.0, 2.0]), "2 were given"),
+        (set_pose(until, double_array_value=[float("nan"), 0.0, 0.0, 0.0]), "not a finite number"),
+        (set_pose(until, string_value="home"), "must be a list of 4 numbers"),
+    ]
+    for result, reason in refusals:
+        assert not result.successful
+        assert reason in result.reason
+    assert set_pose(until, double_array_value=[0.0] * 4).successful
+    until(lambda: len(commands) == 2, "the next good pose")
+    assert commands == [[0.1, 0.2, 0.3, 0.4], [0.0] * 4]
+    assert program.interrupt() == 0
+
+
+def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
+    commands = robot.listen()
+    robot.describe()
+    program = run(MODULE, print_period=0, desired_param="[-5.0, 0.5, -1.2, -1.0]")
+    program.wait_for(
+        "Not publishing [-5.000000, 0.500000, -1.200000, -1.000000]: joint 'j0' cannot go to "
+        "-5 rad: its limits are -2.57 to 2.57 rad"
+    )
+    assert program.interrupt() == 0
+    assert commands == []
+
+
+def test_warns_while_nobody_listens_and_publishes_when_the_controller_comes(robot, run, until):
+    program = run(MODULE, print_period=0, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program.wait_for("is the position_controller active?")
+    assert "nobody listens on /position_controller/commands" in program.output
+    commands = robot.listen()
+    until(lambda: commands, "the pose")
+    assert commands == [[0.1, 0.2, 0.3, 0.4]]
+
+
+def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):
+    seen = robot.listen("recorder")
+    program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    until(lambda: robot.sees("arm_controller_node"), "the node")
+    commands = robot.listen("position_controller")
+    until(lambda: commands, "the pose")
+    assert commands == seen == [[0.1, 0.2, 0.3, 0.4]]
+    assert program.interrupt() == 0
+
+
+@pytest.mark.parametrize(
+    ("parameters", "sentence"),
+    [
+        ({"desired_param": "[0.1, 0.2]"}, "parameter desired_param: a pose is 4 numbers"),
+        ({"desired_param": "[.nan, 0.0, 0.0, 0.0]"}, "joint 'j0' cannot go to nan"),
+        ({"print_period": "-1"}, "parameter print_period: must be 0 or a number above, not -1"),
+        ({"joints": "[]"}, "parameter joints: must be a list of joint names"),
+    ],
+)
+def test_a_start_with_nonsense_ends_with_a_sentence(run, parameters, sentence):
+    program = run(MODULE, **parameters)
+    assert program.wait() == 1
+    assert sentence in program.output
+    assert "Traceback" not in program.output

@@ -1,0 +1,82 @@
+"""Parameters whose type the user need not get right."""
+
+from array import array
+from pathlib import Path
+
+import pytest
+
+from arm_controller.errors import ParameterValueError, PoseError
+from arm_controller.parameter_values import (
+    read_joint_names,
+    read_number,
+    read_path,
+    read_pose,
+)
+
+JOINTS = ("j0", "j1")
+
+
+@pytest.mark.parametrize("value", [2, 2.0])
+def test_a_number_may_be_an_integer(value):
+    assert read_number(value) == 2.0
+
+
+@pytest.mark.parametrize("value", [0, -1.5, float("nan"), float("inf"), "2", True, None, [2.0]])
+def test_refuses_what_is_no_positive_number(value):
+    with pytest.raises(ParameterValueError, match="must be a number above 0, not"):
+        read_number(value)
+
+
+def test_zero_may_be_allowed():
+    assert read_number(0, positive=False) == 0.0
+    with pytest.raises(ParameterValueError, match="must be 0 or a number above, not -1"):
+        read_number(-1, positive=False)
+
+
+@pytest.mark.parametrize("value", [[1, 0.5], array("d", [1, 0.5]), "[1, 0.5]", " [ 1.0 ,0.5] "])
+def test_a_pose_may_mix_integers_and_doubles_and_be_a_text(value):
+    pose = read_pose(value, JOINTS)
+    assert pose is not None
+    assert pose.positions == (1.0, 0.5)
+
+
+def test_a_pose_that_is_not_set_is_none():
+    assert read_pose(None, JOINTS) is None
+
+
+@pytest.mark.parametrize("value", ["", "home", "[up, down]", "1, 2", 5, 0.5, {"j0": 1}])
+def test_refuses_what_is_no_list(value):
+    with pytest.raises(ParameterValueError, match="must be a list of 2 numbers"):
+        read_pose(value, JOINTS)
+
+
+@pytest.mark.parametrize("value", [[], [1.0], "[1, 2, 3]", "[nan, 0]", ["a", "b"]])
+def test_refuses_a_list_that_is_no_pose(value):
+    with pytest.raises(PoseError):
+        read_pose(value, JOINTS)
+
+
+def test_joint_names_are_a_list_of_texts():
+    assert read_joint_names(["a", "b"]) == ("a", "b")
+
+
+@pytest.mark.parametrize("value", [[], "a", [1, 2], [""], None])
+def test_refuses_what_is_no_list_of_names(value):
+    with pytest.raises(ParameterValueError, match="must be a list of joint names"):
+        read_joint_names(value)
+
+
+def test_refuses_a_name_that_comes_twice():
+    with pytest.raises(ParameterValueError, match="names a joint twice: a, b, a"):
+        read_joint_names(["a", "b", "a"])
+
+
+def test_a_path_may_start_at_home(monkeypatch):
+    monkeypatch.setenv("HOME", "/home/somebody")
+    assert read_path("~/poses.yaml") == Path("/home/somebody/poses.yaml")
+
+
+@pytest.mark.parametrize("value", ["", 3, None])
+def test_refuses_what_is_no_path(value):
+    with pytest.raises(ParameterValueError, match="must be the path of a file"):
+        read_path(value)

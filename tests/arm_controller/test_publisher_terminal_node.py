@@ -1,0 +1,59 @@
+"""publisher_terminal beside a robot of topics."""
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+MODULE = "publisher_terminal_node"
+PROMPT = "Enter the 4 Joint Variables to send (separated by spaces): "
+
+
+def test_sends_every_line_of_a_pipe_and_ends_with_it(robot, run):
+    commands = robot.listen()
+    robot.describe()
+    program = run(MODULE)
+    wanted = [[0.1 * step, 0.0, -0.1 * step, 1.0] for step in range(1, 11)]
+    program.type("".join(" ".join(map(repr, pose)) + "\n" for pose in wanted))
+    program.end_of_input()
+    assert program.wait() == 0
+    assert commands == wanted
+    assert program.output.count("Publishing: [") == len(wanted)
+
+
+def test_answers_each_typed_line(robot, run, until):
+    commands = robot.listen()
+    robot.describe()
+    program = run(MODULE)
+    program.wait_for(PROMPT)
+    program.type("0.4 -0.1 0.5 0.4\n")
+    program.wait_for("Publishing: [0.400000, -0.100000, 0.500000, 0.400000]")
+    until(lambda: commands, "the pose")
+    program.type("1 2 3\n")
+    program.wait_for("Please enter exactly 4 numbers.")
+    program.type("-5 0.5 -1.2 -1\n")
+    program.wait_for("joint 'j0' cannot go to -5 rad: its limits are -2.57 to 2.57 rad")
+    program.end_of_input()
+    assert program.wait() == 0
+    assert commands == [[0.4, -0.1, 0.5, 0.4]]
+
+
+def test_ctrl_c_at_the_prompt_ends_it(run):
+    program = run(MODULE)
+    program.wait_for(PROMPT)
+    assert program.interrupt() == 0
+    assert "Traceback" not in program.output
+
+
+def test_ctrl_c_while_a_line_waits_ends_it(run):
+    program = run(MODULE)
+    program.type("0 0 0 0\n")
+    program.wait_for(PROMPT)
+    assert program.interrupt() == 0
+
+
+def test_a_line_that_nobody_takes_fails_with_a_sentence(run):
+    program = run(MODULE, match_timeout=1)
+    program.type("0 0 0 0\n")
+    program.end_of_input()
+    assert program.wait() == 1
+    assert "Not published: nobody listens on /position_controller/commands." in program.output

@@ -1,0 +1,128 @@
+"""A client that knows nothing of the suite: default QoS, default environment. One job a run.
+
+Prints one JSON line per answer; wall times are CLOCK_MONOTONIC, the same in every process.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+
+import rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64MultiArray
+
+TYPES = {"/joint_states": JointState, "/videocamera": Image, "/clock": Clock}
+
+
+def say(**answer: object) -> None:
+    """Print one answer."""
+    print(json.dumps(answer), flush=True)
+
+
+def spin_until(node: Node, condition: Callable[[], bool], timeout_s: float = 60.0) -> None:
+    """Spin until the condition holds."""
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise SystemExit("time-out")
+        rclpy.spin_once(node, timeout_sec=0.05)
+
+
+def first_message(node: Node, topic: str) -> None:
+    """Say when the node was there, and when the first message came."""
+    arrivals: list[float] = []
+    node.create_subscription(TYPES[topic], topic, lambda _: arrivals.append(time.monotonic()), 10)
+    say(node_made_s=time.monotonic())
+    spin_until(node, lambda: bool(arrivals))
+    say(first_s=arrivals[0])
+
+
+def record(node: Node, topic: str, seconds: float, best_effort: bool) -> None:
+    """Say when each message of some seconds came, and its stamp."""
+    arrivals: list[float] = []
+    stamps: list[float] = []
+
+    def note(message: JointState | Image | Clock) -> None:
+        arrivals.append(time.monotonic())
+        stamp = message.clock if isinstance(message, Clock) else message.header.stamp
+        stamps.append(stamp.sec + stamp.nanosec * 1e-9)
+
+    reliability = ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE
+    node.create_subscription(
+        TYPES[topic], topic, note, QoSProfile(depth=10, reliability=reliability)
+    )
+    spin_until(node, lambda: bool(arrivals))
+    end = arrivals[0] + seconds
+    spin_until(node, lambda: time.monotonic() > end)
+    say(arrivals_s=arrivals, stamps_s=stamps)
+
+
+def command_latency(node: Node, steps: int) -> None:
+    """Say how long after a command the first joint state shows motion, step by step."""
+    latest: list[tuple[float, float]] = []
+    node.create_subscription(
+        JointState,
+        "/joint_states",
+        lambda m: latest.append((time.monotonic(), m.position[m.name.index("j0")])),
+        10,
+    )
+    publisher = node.create_publisher(Float64MultiArray, "/position_controller/commands", 10)
+    spin_until(node, lambda: bool(latest) and publisher.get_subscription_count() > 0)
+    settle(node, latest)
+    latencies = []
+    for k in range(steps):
+        # The step falls anywhere in the control period, as a real client's would.
+        until = time.monotonic() + 0.013 * (k % 7) / 7
+        spin_until(node, lambda until=until: time.monotonic() > until)
+        origin = latest[-1][1]
+        goal = 0.3 if k % 2 == 0 else 0.0
+        latest.clear()
+        sent = time.monotonic()
+        publisher.publish(Float64MultiArray(data=[goal, 0.0, 0.0, 0.0]))
+        spin_until(node, lambda o=origin: bool(latest) and abs(latest[-1][1] - o) > 1e-3)
+        moved = next(t for t, q in latest if abs(q - origin) > 1e-3)
+        latencies.append(moved - sent)
+        settle(node, latest, goal)
+    say(latencies_s=latencies)
+
+
+def settle(node: Node, latest: list[tuple[float, float]], goal: float | None = None) -> None:
+    """Spin until j0 has not moved for 0.3 s."""
+
+    def still() -> bool:
+        now = time.monotonic()
+        recent = [q for t, q in latest if t > now - 0.3]
+        close = goal is None or (bool(recent) and abs(recent[-1] - goal) < 0.01)
+        return close and len(recent) > 5 and max(recent) - min(recent) < 1e-4
+
+    began = time.monotonic()
+    spin_until(node, lambda: time.monotonic() - began > 0.4 and still())
+
+
+def main() -> None:
+    """Do the one job that the arguments name."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("job", choices=["first", "record", "latency"])
+    parser.add_argument("--topic", default="/joint_states", choices=sorted(TYPES))
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--steps", type=int, default=50)
+    parser.add_argument("--best-effort", action="store_true")
+    arguments = parser.parse_args()
+    rclpy.init()
+    node = Node("default_client")
+    if arguments.job == "first":
+        first_message(node, arguments.topic)
+    elif arguments.job == "record":
+        record(node, arguments.topic, arguments.seconds, arguments.best_effort)
+    else:
+        command_latency(node, arguments.steps)
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
