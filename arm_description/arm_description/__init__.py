@@ -5,6 +5,7 @@ Holds no ROS at import; the nodes robot_state_publisher and joint_state_publishe
 
 from arm_description.errors import (
     DescriptionError,
+    JointStateError,
     KinematicsError,
     MimicCycleError,
     ResourceNotFoundError,
@@ -51,6 +52,7 @@ __all__ = [
     "Inertial",
     "Joint",
     "JointLimit",
+    "JointStateError",
     "JointType",
     "KinematicsError",
     "Link",

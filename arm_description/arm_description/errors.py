@@ -7,6 +7,7 @@ DescriptionError
 ├── XacroError               a xacro file that cannot be expanded
 ├── ResourceNotFoundError    a mesh or another file that a URI names and no folder holds
 ├── KinematicsError          joint positions that do not fit the robot
+├── JointStateError          a joint state message that cannot be used
 └── SettingsError            a parameter or an argument of a node that cannot be used
 """
 
@@ -37,6 +38,10 @@ class ResourceNotFoundError(DescriptionError):
 
 class KinematicsError(DescriptionError):
     """Joint positions that do not fit the robot: an unknown joint, a value that is no number."""
+
+
+class JointStateError(DescriptionError):
+    """A joint state that cannot be used; the message says which joint and why."""
 
 
 class SettingsError(DescriptionError):

@@ -4,9 +4,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from arm_node.process import NodeProcess, run_process
-
 from arm_description.errors import DescriptionError
+from arm_node.process import NodeProcess, run_process
 
 
 @contextmanager

@@ -64,7 +64,7 @@ def defined_materials(robot: UrdfElement) -> dict[str, Material]:
     """Return the named materials that a <robot> defines, the global ones before the links'."""
     elements = list(robot.children("material"))
     for link in robot.children("link"):
-        for visual in link.children("visual"):
+        for visual in link.named(link.needed_text("name")).children("visual"):
             elements.extend(visual.children("material"))
     defined: dict[str, Material] = {}
     for element in elements:

@@ -29,7 +29,9 @@ def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -
     file = Path(path)
     try:
         text = file.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise XacroError(f"cannot read {file}: {error.strerror}") from error
+    except ValueError as error:
         raise XacroError(f"cannot read {file}: {_first_line(error)}") from error
     if file.suffix == ".urdf" and _XACRO_NAMESPACE not in text:
         return text

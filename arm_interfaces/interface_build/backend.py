@@ -16,6 +16,8 @@ get_requires_for_build_sdist = build_meta.get_requires_for_build_sdist
 prepare_metadata_for_build_wheel = build_meta.prepare_metadata_for_build_wheel
 
 _PROJECT = Path(__file__).parent.parent / "pyproject.toml"
+# The generators ask for any EmPy; the next major version may not run their templates.
+_BUILD_ONLY = ["empy>=4.2,<5"]
 _NOT_EDITABLE = (
     "arm_interfaces cannot be installed editable, because its modules are compiled and not in the "
     "source tree; install it without -e, and again after a change of a definition"
@@ -32,7 +34,8 @@ def get_requires_for_build_wheel(config_settings: _Settings = None) -> list[str]
     """
     _check_machine()
     project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
-    return [*build_meta.get_requires_for_build_wheel(config_settings), *project["dependencies"]]
+    own = build_meta.get_requires_for_build_wheel(config_settings)
+    return [*own, *_BUILD_ONLY, *project["dependencies"]]
 
 
 def build_wheel(

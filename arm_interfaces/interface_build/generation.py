@@ -21,7 +21,7 @@ from rosidl_adapter.msg import convert_msg_to_idl
 from rosidl_adapter.srv import convert_srv_to_idl
 from rosidl_generator_py.generate_py_impl import generate_py
 
-from interface_build import parse_cache
+from interface_build import parse_cache, template_cache
 from interface_build.interface_package import InterfacePackage
 from interface_build.ros_prefix import RosPrefix
 from interface_build.work_folder import WorkFolder
@@ -38,7 +38,7 @@ _TYPE_SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspec
 
 def describe(package: InterfacePackage, work: WorkFolder, prefix: RosPrefix) -> None:
     """Write the IDL files and the type descriptions, which everything else builds upon."""
-    parse_cache.install()
+    _install_caches()
     work.create()
     with contextlib.redirect_stdout(io.StringIO()):
         for interface in package.interfaces:
@@ -126,10 +126,16 @@ def _generate(
     prefix: RosPrefix,
 ) -> None:
     """Run one generator quietly with the templates of its own name."""
-    parse_cache.install()
+    _install_caches()
     arguments["template_dir"] = str(prefix.template_folder(name))
     with contextlib.redirect_stdout(io.StringIO()):
         generator(_write_arguments(work, name, arguments))
+
+
+def _install_caches() -> None:
+    """Save repeated work of the generators in this worker process."""
+    parse_cache.install()
+    template_cache.install()
 
 
 def _arguments(package: InterfacePackage, work: WorkFolder, output: Path) -> dict[str, object]:

@@ -3,7 +3,8 @@
 The main thread only waits for signals; the executor spins in a thread of its own. rclpy's own
 signal handlers are off: they raise inside whatever callback runs, and an exit in the middle of
 `spin` can abort the interpreter. Order of the end: the application's own teardown (its loop
-thread joined, while services still answer), executor, nodes, context.
+thread joined, while services still answer), executor, nodes, context. A supervisor is told when
+the process is ready (see `arm_node.notify`).
 """
 
 import logging
@@ -19,6 +20,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from arm_node.environment import MissingInterfacesError, prepare_environment
+from arm_node.notify import notify
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -149,7 +151,9 @@ def _run_initialised(application: Application, user_errors: tuple[type[Exception
         try:
             with application(process):
                 process.start_spinning()
+                notify("READY=1")
                 process.wait()
+                notify("STOPPING=1")
         except user_errors as error:
             logging.getLogger("arm_node").critical("%s", error)
             process.stop(EXIT_FAILED)

@@ -1,12 +1,12 @@
 """Errors of launch_py; every message is a sentence for the person who typed the command.
 
-    LaunchError
-    +-- UsageError             the command line: unknown argument, package, file or choice
-    +-- LaunchFileError        a launch file that cannot be read or does not make sense
-    +-- SubstitutionError      a substitution that has no value
-    +-- NotFoundError          a package, executable or program that does not exist
-    +-- ParameterError         a node parameter that cannot be passed on
-    +-- StartError             a process that could not be started
+LaunchError
++-- UsageError             the command line: unknown argument, package, file or choice
++-- LaunchFileError        a launch file that cannot be read or does not make sense
++-- SubstitutionError      a substitution that has no value
++-- NotFoundError          a package, executable or program that does not exist
++-- ParameterError         a node parameter that cannot be passed on
++-- StartError             a process that could not be started
 """
 
 

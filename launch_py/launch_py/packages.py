@@ -49,7 +49,9 @@ class ConsoleScript:
 class Packages:
     """What is installed: in the prefixes of AMENT_PREFIX_PATH and on this Python's path."""
 
-    def __init__(self, environ: Mapping[str, str], python_path: Sequence[str] | None = None) -> None:
+    def __init__(
+        self, environ: Mapping[str, str], python_path: Sequence[str] | None = None
+    ) -> None:
         self._prefixes = ament_prefixes(environ)
         self._python_path = sys.path if python_path is None else python_path
 

@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from launch_py.actions.action import Action
     from launch_py.events import ProcessEvent
 
+SIGTERM_TIMEOUT_S = 5.0
+"""From SIGINT to SIGTERM, as ros2 launch has it."""
+
+SIGKILL_TIMEOUT_S = 5.0
+"""From SIGTERM to SIGKILL."""
+
 
 class TriggerKind(Enum):
     """What another process must have done; the value completes "when it is ..."."""
@@ -42,8 +48,8 @@ class Trigger:
 class StopDelays:
     """How long a process may take after SIGINT, and then after SIGTERM, before the next signal."""
 
-    sigterm_timeout_s: float = 5.0
-    sigkill_timeout_s: float = 5.0
+    sigterm_timeout_s: float = SIGTERM_TIMEOUT_S
+    sigkill_timeout_s: float = SIGKILL_TIMEOUT_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +85,8 @@ class ProcessStep(Step):
     shown: frozenset[str] = frozenset({"stdout", "stderr"})
     emulate_tty: bool = False
     ready: tuple[Readiness, ...] = ()
-    restart: RestartPolicy = RestartPolicy()
-    stop_delays: StopDelays = StopDelays()
+    restart: RestartPolicy = field(default_factory=RestartPolicy)
+    stop_delays: StopDelays = field(default_factory=StopDelays)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -240,7 +246,9 @@ class PlanBuilder:
         if target in self.surveyed_names:
             return []
         known = describe_known(target, self._names, "the processes are")
-        raise LaunchFileError(f"{describe_step(step)} waits for unknown process {target!r}; {known}")
+        raise LaunchFileError(
+            f"{describe_step(step)} waits for unknown process {target!r}; {known}"
+        )
 
     def _without_unreachable(self, steps: list[Step]) -> list[Step]:
         """Leave out what waits for a process that itself was left out."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from launch_py.errors import LaunchFileError
 
 if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
+
 
 class Substitution:
     """A text that depends on the launch context."""
@@ -29,6 +30,9 @@ class Substitution:
 
 Text = str | PathLike[str] | Substitution | Iterable["str | PathLike[str] | Substitution"]
 """What every text of a launch file may be; the parts of an iterable are joined."""
+
+Pairs = Mapping[str, Text] | Iterable[tuple[Text, Text]]
+"""A dict, or what its `items()` gives."""
 
 
 def perform_text(context: LaunchContext, value: Text) -> str:
@@ -60,3 +64,13 @@ def describe_text(value: Text) -> str:
     if isinstance(value, PathLike):
         return str(value.__fspath__())
     return "".join(describe_text(part) for part in value)
+
+
+def perform_pairs(context: LaunchContext, pairs: Pairs) -> tuple[tuple[str, str], ...]:
+    """Return the pairs with both sides performed; see `perform_text`."""
+    items = cast(
+        "Iterable[tuple[Text, Text]]", pairs.items() if isinstance(pairs, Mapping) else pairs
+    )
+    return tuple(
+        (perform_text(context, left), perform_text(context, right)) for left, right in items
+    )

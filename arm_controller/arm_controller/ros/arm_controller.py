@@ -5,15 +5,14 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import qos_profile_sensor_data
 from rclpy.timer import Timer
-from sensor_msgs.msg import JointState
 
 from arm_controller.errors import ArmControllerError, PoseError
 from arm_controller.joint_readings import JointReadings
 from arm_controller.parameter_values import read_joint_names, read_number, read_pose
 from arm_controller.pose import JointPose
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
+from arm_controller.ros.joint_state_input import JointStateInput
 from arm_controller.ros.parameters import DEFAULT_JOINTS, declare
 
 WAIT_WARNING_S = 5.0
@@ -39,10 +38,7 @@ class ArmController(Node):
             POLL_S, self._deliver, clock=self._steady, autostart=False
         )
         self._readings = JointReadings()
-        self._news = False
-        self._subscription = self.create_subscription(
-            JointState, "joint_states", self._take_states, qos_profile_sensor_data
-        )
+        self._states = JointStateInput(self, self._readings)
         self._print_timer: Timer | None = None
         self._declare_changeable()
 
@@ -129,11 +125,6 @@ class ArmController(Node):
                 f"{self._commands.audience}, so {pose} waits: is the position_controller active?"
             )
 
-    def _take_states(self, message: JointState) -> None:
-        self._news |= self._readings.update(
-            list(message.name), message.position, message.velocity, message.effort
-        )
-
     def _print_every(self, period_s: float) -> None:
         if self._print_timer is not None:
             self.destroy_timer(self._print_timer)
@@ -144,9 +135,8 @@ class ArmController(Node):
         )
 
     def _print_states(self) -> None:
-        if not self._news:
+        if not self._states.take():
             return
-        self._news = False
         for name in self._joint_names:
             reading = self._readings.get(name)
             if reading is None:

@@ -7,8 +7,6 @@ from ament_index_python.packages import get_package_share_directory
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
-from sensor_msgs.msg import JointState
 
 from arm_controller.errors import PoseError
 from arm_controller.joint_readings import JointReadings
@@ -22,6 +20,7 @@ from arm_controller.ros.command_publisher import (
     POLL_S,
     CommandPublisher,
 )
+from arm_controller.ros.joint_state_input import JointStateInput
 from arm_controller.ros.parameters import DEFAULT_JOINTS, DEFAULT_MATCH_TIMEOUT_S, declare
 
 
@@ -62,24 +61,17 @@ class PublisherDefined(Node):
             timeout_s=declare(self, "timeout", 30.0, read_number, "How long one pose may take (s)"),
         )
         self._readings = JointReadings()
-        self._subscription = self.create_subscription(
-            JointState, "joint_states", self._take_states, qos_profile_sensor_data
-        )
+        self._states = JointStateInput(self, self._readings)
         self._commands = CommandPublisher(self, joint_names)
         # Of the steady clock: a simulation that stands still is something to notice.
         self._timer = self.create_timer(
             POLL_S, self._go_on, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
 
-    def _take_states(self, message: JointState) -> None:
-        if not self._readings.update(list(message.name), message.position):
-            return
-        said = self._sequence.on_positions(self._readings.positions, self._now_s())
-        if said is not None:
-            self.get_logger().info(said)
-
     def _go_on(self) -> None:
         self._commands.observe()
+        if self._states.take():
+            self._say_if_reached()
         said = self._sequence.on_time(self._readings.positions, self._now_s())
         if said is not None:
             self.get_logger().error(said)
@@ -90,6 +82,11 @@ class PublisherDefined(Node):
             self._give_up(f"{self._commands.audience}: is the position_controller active?")
         elif pose is not None:
             self._publish_if_ready(pose)
+
+    def _say_if_reached(self) -> None:
+        said = self._sequence.on_positions(self._readings.positions, self._now_s())
+        if said is not None:
+            self.get_logger().info(said)
 
     def _publish_if_ready(self, pose: JointPose) -> None:
         label = self._sequence.label

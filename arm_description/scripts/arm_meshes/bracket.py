@@ -17,6 +17,8 @@ TOP = 31.34
 PLATE_LOWER, PLATE_UPPER = 22.0, 25.95
 """The servo's tail stands on the plate's upper side."""
 SERVO_LEFT, SERVO_RIGHT = -21.05, 14.05
+STEP = 0.05
+"""Faces that would lie in one plane are this far apart, so that the union stays closed."""
 
 
 def bracket() -> Part:
@@ -47,12 +49,8 @@ def _ear_outline() -> CrossSection:
 
 
 def _cup() -> Manifold:
-    block = prism(_cup_outline(), "z", -EAR_HALF_WIDTH, EAR_HALF_WIDTH)
+    half = EAR_HALF_WIDTH - STEP
+    block = box((LEFT + STEP, PLATE_LOWER, -half), (RIGHT - STEP, TOP - STEP, half))
     servo = box((SERVO_LEFT, PLATE_UPPER, -20.0), (SERVO_RIGHT, TOP + 1, 20.0))
     cable_hole = cylinder("y", (0.0, -3.4), 6.0, PLATE_LOWER - 1, PLATE_UPPER + 1)
     return block - servo - cable_hole
-
-
-def _cup_outline() -> CrossSection:
-    outer = rectangle((LEFT, PLATE_LOWER), (RIGHT, TOP))
-    return outer

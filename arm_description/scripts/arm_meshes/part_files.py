@@ -14,6 +14,9 @@ MM = 1e-3
 MASS_KG = 0.1
 """Of every link that has a mass, as in the original."""
 
+SLIVER_MM = 1e-3
+"""Triangles thinner than this go: in an STL's 32-bit numbers they would leave gaps."""
+
 HEADER = """\
 <?xml version="1.0"?>
 <!--
@@ -41,7 +44,7 @@ def write_macros(parts: tuple[Part, ...], path: Path) -> None:
 
 def to_trimesh(solid: Manifold) -> trimesh.Trimesh:
     """Return a solid in mm as a mesh in metres."""
-    mesh = solid.to_mesh()
+    mesh = solid.simplify(SLIVER_MM).to_mesh()
     vertices = np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3] * MM
     return trimesh.Trimesh(vertices, np.asarray(mesh.tri_verts), process=False)
 

@@ -18,16 +18,18 @@ PLATE_UNDERSIDE = 5.5
 PLATE_TOP = 9.5
 """The next servo stands here."""
 LUG_TOP = 11.5
+STEP = 0.05
+"""Faces that would lie in one plane are this far apart, so that the union stays closed."""
 SERVO_LOWER = (-12.25, -24.55)
 SERVO_UPPER = (19.85, 25.55)
 
 
 def wrist() -> Part:
     """Return the link wrist."""
-    left, right = _ear(LEFT, LEFT_INNER, hole=5.0), _ear(RIGHT_INNER, RIGHT, hole=4.0)
-    boss = cylinder("x", EAR_AXIS, 8.0, BOSS_INNER, RIGHT) - _axle_hole()
-    plate = _plate()
-    body = union([left, right, boss, plate, *_lugs()])
+    left, right = _ear(LEFT, LEFT_INNER), _ear(RIGHT_INNER, RIGHT)
+    boss = cylinder("x", EAR_AXIS, 8.0, BOSS_INNER, RIGHT - 1.0)
+    axle_hole = cylinder("x", EAR_AXIS, 4.5, LEFT - 1, RIGHT + 1)
+    body = union([left, right, boss, _plate(), *_lugs()]) - axle_hole
     collisions = (
         box_around(left),
         box_around(right),
@@ -36,23 +38,19 @@ def wrist() -> Part:
     return Part("wrist", (Piece("wrist", "red", body),), collisions, body)
 
 
-def _axle_hole() -> Manifold:
-    return cylinder("x", EAR_AXIS, 4.0, BOSS_INNER - 1, RIGHT + 1)
-
-
-def _ear(start: float, end: float, hole: float) -> Manifold:
+def _ear(start: float, end: float) -> Manifold:
     """Return an ear: an outline in (y, z), round below, as wide as the plate above."""
     y, z = EAR_AXIS
     end_circle = circle(EAR_AXIS, EAR_RADIUS, segments=36)
-    shoulder = rectangle((FRONT, PLATE_UNDERSIDE), (10.0, PLATE_TOP))
-    outline = CrossSection.batch_hull([end_circle, shoulder]) - circle(EAR_AXIS, hole)
+    shoulder = rectangle((FRONT + STEP, PLATE_UNDERSIDE), (10.0, PLATE_TOP - STEP))
+    outline = CrossSection.batch_hull([end_circle, shoulder])
     for dy, dz in ((8.0, 0.0), (0.0, 8.0), (-8.0, 0.0), (0.0, -8.0)):
         outline -= circle((y + dy, z + dz), 1.5, segments=12)
     return prism(outline, "x", start, end)
 
 
 def _plate() -> Manifold:
-    outline = rectangle((LEFT, FRONT), (RIGHT, BACK), corner=3.0)
+    outline = rectangle((LEFT + STEP, FRONT), (RIGHT - STEP, BACK), corner=3.0)
     window = rectangle((-7.4, -21.5), (15.0, 1.0), corner=1.5)
     return prism(outline - window, "z", PLATE_UNDERSIDE, PLATE_TOP)
 
@@ -63,8 +61,8 @@ def _lugs() -> list[Manifold]:
     x1, y1 = SERVO_UPPER
     bottom = PLATE_TOP - 1.0
     return [
-        bevelled_box((x0, FRONT, bottom), (x1, y0, LUG_TOP), bevel=0.5),
-        bevelled_box((x0, y1, bottom), (x1, BACK, LUG_TOP), bevel=0.5),
+        bevelled_box((x0, FRONT + STEP, bottom), (x1, y0, LUG_TOP), bevel=0.5),
+        bevelled_box((x0, y1, bottom), (x1, BACK - STEP, LUG_TOP), bevel=0.5),
         bevelled_box((x0 - 4.0, -10.0, bottom), (x0, 10.0, LUG_TOP), bevel=0.5),
         bevelled_box((x1, -10.0, bottom), (x1 + 4.0, 10.0, LUG_TOP), bevel=0.5),
     ]

@@ -11,7 +11,15 @@ from launch_py.actions.action import Action, check_actions
 from launch_py.errors import LaunchError, LaunchFileError
 from launch_py.event_handlers import OnProcessExit, Reaction
 from launch_py.near_names import describe_known
-from launch_py.plan import GeneratedFile, ProcessStep, StopDelays, Trigger, TriggerKind
+from launch_py.plan import (
+    SIGKILL_TIMEOUT_S,
+    SIGTERM_TIMEOUT_S,
+    GeneratedFile,
+    ProcessStep,
+    StopDelays,
+    Trigger,
+    TriggerKind,
+)
 from launch_py.programs import find_program
 from launch_py.readiness import Readiness
 from launch_py.restart_policy import RestartPolicy
@@ -65,7 +73,7 @@ class ExecuteProcess(Action):
         cmd: Iterable[Text],
         name: Text | None = None,
         ready: Readiness | Iterable[Readiness] = (),
-        depends_on: Action | Text | Iterable[Action | str] = (),
+        depends_on: Action | str | Iterable[Action | str] = (),
         restart: RestartPolicy | None = None,
         on_exit: Reaction | None = None,
         shell: bool = False,
@@ -78,8 +86,8 @@ class ExecuteProcess(Action):
         respawn: bool | Text = False,
         respawn_delay: float = 0.0,
         respawn_max_retries: int = -1,
-        sigterm_timeout: float | Text = StopDelays().sigterm_timeout_s,
-        sigkill_timeout: float | Text = StopDelays().sigkill_timeout_s,
+        sigterm_timeout: float | Text = SIGTERM_TIMEOUT_S,
+        sigkill_timeout: float | Text = SIGKILL_TIMEOUT_S,
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)

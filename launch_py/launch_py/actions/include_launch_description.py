@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from launch_py.launch_description_sources import (
     PythonLaunchDescriptionSource,
 )
 from launch_py.near_names import describe_known
-from launch_py.substitution import Text, perform_text
+from launch_py.substitution import Pairs, Text, perform_pairs
 from launch_py.survey import Survey
 
 if TYPE_CHECKING:
@@ -39,15 +39,14 @@ class IncludeLaunchDescription(Action):
         self,
         launch_description_source: Source,
         *,
-        launch_arguments: Mapping[Text, Text] | Iterable[tuple[Text, Text]] | None = None,
+        launch_arguments: Pairs = (),
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         if not isinstance(launch_description_source, LaunchDescriptionSource | LaunchDescription):
             launch_description_source = PythonLaunchDescriptionSource(launch_description_source)
         self.source = launch_description_source
-        pairs = launch_arguments.items() if isinstance(launch_arguments, Mapping) else None
-        self.launch_arguments = tuple(pairs or launch_arguments or ())
+        self.launch_arguments = launch_arguments
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the included actions.
@@ -55,7 +54,7 @@ class IncludeLaunchDescription(Action):
         Raises:
             UsageError: it passes an argument that the file does not declare.
         """
-        arguments = self._perform_arguments(context)
+        arguments = dict(perform_pairs(context, self.launch_arguments))
         path, description = self._load(context)
         inner = context.included(path, arguments)
         if len(inner.included_files) > MAX_DEPTH:
@@ -68,7 +67,7 @@ class IncludeLaunchDescription(Action):
         super().survey(survey, context)
         try:
             path, description = self._load(context)
-            arguments = self._perform_arguments(context)
+            arguments = dict(perform_pairs(context, self.launch_arguments))
         except LaunchError:
             return
         if path is None or path not in context.included_files:
@@ -78,12 +77,6 @@ class IncludeLaunchDescription(Action):
         if isinstance(self.source, LaunchDescription):
             return context.launch_file, self.source
         return self.source.load(context)
-
-    def _perform_arguments(self, context: LaunchContext) -> dict[str, str]:
-        return {
-            perform_text(context, name): perform_text(context, value)
-            for name, value in self.launch_arguments
-        }
 
     def _refuse_unknown(
         self,

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from launch_py.actions.action import Action
 from launch_py.plan import PanelEntry
-from launch_py.substitution import Text, perform_text
+from launch_py.substitution import Pairs, Text, perform_pairs, perform_text
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
     from launch_py.launch_context import LaunchContext
-
-Rows = Mapping[Text, Text] | Iterable[tuple[Text, Text]]
 
 
 class ReadyPanel(Action):
@@ -34,9 +31,9 @@ class ReadyPanel(Action):
         self,
         *,
         title: Text | None = None,
-        topics: Rows = (),
-        commands: Rows = (),
-        notes: Rows = (),
+        topics: Pairs = (),
+        commands: Pairs = (),
+        notes: Pairs = (),
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
@@ -51,13 +48,8 @@ class ReadyPanel(Action):
         context.plan.add_panel(
             PanelEntry(
                 title=title,
-                topics=_perform_rows(context, self.topics),
-                commands=_perform_rows(context, self.commands),
-                notes=_perform_rows(context, self.notes),
+                topics=perform_pairs(context, self.topics),
+                commands=perform_pairs(context, self.commands),
+                notes=perform_pairs(context, self.notes),
             )
         )
-
-
-def _perform_rows(context: LaunchContext, rows: Rows) -> tuple[tuple[str, str], ...]:
-    pairs = rows.items() if isinstance(rows, Mapping) else rows
-    return tuple((perform_text(context, left), perform_text(context, right)) for left, right in pairs)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from os import PathLike
+import os
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from launch_py.actions.action import Action
-from launch_py.actions.execute_process import ExecuteProcess
-from launch_py.errors import LaunchFileError
+from launch_py.actions.execute_process import ExecuteProcess, Variables
+from launch_py.errors import ParameterError
+from launch_py.event_handlers import Reaction
 from launch_py.names import join_names
+from launch_py.near_names import describe_known
 from launch_py.packages import Packages
 from launch_py.parameters import evaluate_parameters, parameter_file_text
-from launch_py.plan import GeneratedFile
-from launch_py.substitution import Substitution, Text, perform_text
+from launch_py.plan import SIGKILL_TIMEOUT_S, SIGTERM_TIMEOUT_S, GeneratedFile
+from launch_py.readiness import Readiness
+from launch_py.restart_policy import RestartPolicy
+from launch_py.substitution import Text, describe_text, perform_text
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
@@ -25,18 +29,173 @@ Parameters = Mapping[Any, Any] | Text
 class Node(ExecuteProcess):
     """A process of a package that holds a node, or several.
 
+    All that is not named here is as in `ExecuteProcess`.
+
     Args:
         package: the package; a Python distribution's script whose module lies in it is taken
             first, else a program in <prefix>/lib/<package>.
         executable: the name of the script or program.
-        name: the node's name. It renames *every* node of the process: leave it out for a process
-            with several nodes and say what to call the process with `process_name_text`.
+        name: the node's name. It renames *every* node of the process, so leave it out for a
+            process with several nodes; `exec_name` says what to call the process.
         namespace: the namespace, inside the one of `PushRosNamespace`.
-        parameters: parameter files and dicts of parameters, later ones win.
+        exec_name: what to call the process; default the node's name, else the executable's.
+        parameters: parameter files and dicts of parameters; later ones win.
         remappings: pairs of a name and what it becomes.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
-        process: what to call the process in output and `depends_on`; default the node's name,
-            else the executable's.
-        options: all others are those of `ExecuteProcess`.
     """
+
+    def __init__(
+        self,
+        *,
+        package: Text,
+        executable: Text,
+        name: Text | None = None,
+        namespace: Text | None = None,
+        exec_name: Text | None = None,
+        parameters: Iterable[Parameters] = (),
+        remappings: Iterable[tuple[Text, Text]] = (),
+        arguments: Iterable[Text] = (),
+        ros_arguments: Iterable[Text] = (),
+        ready: Readiness | Iterable[Readiness] = (),
+        depends_on: Action | str | Iterable[Action | str] = (),
+        restart: RestartPolicy | None = None,
+        on_exit: Reaction | None = None,
+        prefix: Text = "",
+        output: Text = "screen",
+        emulate_tty: bool = False,
+        cwd: Text | None = None,
+        env: Variables | None = None,
+        additional_env: Variables | None = None,
+        respawn: bool | Text = False,
+        respawn_delay: float = 0.0,
+        respawn_max_retries: int = -1,
+        sigterm_timeout: float | Text = SIGTERM_TIMEOUT_S,
+        sigkill_timeout: float | Text = SIGKILL_TIMEOUT_S,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(
+            cmd=(),
+            name=exec_name or name or executable,
+            ready=ready,
+            depends_on=depends_on,
+            restart=restart,
+            on_exit=on_exit,
+            prefix=prefix,
+            output=output,
+            emulate_tty=emulate_tty,
+            cwd=cwd,
+            env=env,
+            additional_env=additional_env,
+            respawn=respawn,
+            respawn_delay=respawn_delay,
+            respawn_max_retries=respawn_max_retries,
+            sigterm_timeout=sigterm_timeout,
+            sigkill_timeout=sigkill_timeout,
+            condition=condition,
+        )
+        self.package = package
+        self.executable = executable
+        self.node_name = name
+        self.namespace = namespace
+        self.parameters = [parameters] if isinstance(parameters, Mapping) else list(parameters)
+        self.remappings = list(remappings)
+        self.arguments = list(arguments)
+        self.ros_arguments = list(ros_arguments)
+
+    def command_words(self, context: LaunchContext) -> tuple[str | GeneratedFile, ...]:
+        """Return the command line.
+
+        Raises:
+            NotFoundError: there is no such package or executable.
+            ParameterError: a parameter cannot be passed on.
+        """
+        program = Packages(context.base_environment).executable(
+            perform_text(context, self.package), perform_text(context, self.executable)
+        )
+        ros: list[str | GeneratedFile] = []
+        name = "" if self.node_name is None else perform_text(context, self.node_name)
+        namespace = self.resolve_namespace(context)
+        if name:
+            ros += ["-r", f"__node:={name}"]
+        if namespace:
+            ros += ["-r", f"__ns:={namespace}"]
+        for parameters in self._parameter_files(context, f"{namespace}/{name}" if name else "/**"):
+            ros += ["--params-file", parameters]
+        for old, new in [*context.remappings, *self.remappings]:
+            ros += ["-r", f"{perform_text(context, old)}:={perform_text(context, new)}"]
+        ros += [perform_text(context, word) for word in self.ros_arguments]
+        words = [perform_text(context, word) for word in self.arguments]
+        return (*program, *words, *(["--ros-args", *ros] if ros else []))
+
+    def resolve_namespace(self, context: LaunchContext) -> str:
+        """Return the node's namespace with a leading slash, "" for the root."""
+        own = "" if self.namespace is None else perform_text(context, self.namespace)
+        return join_names(context.namespace, own)
+
+    def describe(self) -> str:
+        """Return what to call it in a message."""
+        return f"a Node of executable {describe_text(self.executable)!r}"
+
+    def _parameter_files(
+        self, context: LaunchContext, node_name: str
+    ) -> Iterator[str | GeneratedFile]:
+        for parameters in [*context.parameters, *self.parameters]:
+            if isinstance(parameters, Mapping):
+                try:
+                    values = evaluate_parameters(context, parameters)
+                except ParameterError as error:
+                    raise ParameterError(f"{self.process_name(context)}: {error}") from None
+                if values:
+                    yield GeneratedFile(".yaml", parameter_file_text(node_name, values))
+                continue
+            path = perform_text(context, parameters)
+            if not os.path.isfile(path):
+                folder, name = os.path.split(path)
+                known = os.listdir(folder) if os.path.isdir(folder) else []
+                raise ParameterError(
+                    f"{self.process_name(context)}: no parameter file {path}; "
+                    + describe_known(name, known, f"{folder or 'it'} holds")
+                )
+            yield path
+
+
+class PushRosNamespace(Action):
+    """Puts the nodes that follow in this scope into a namespace."""
+
+    def __init__(self, namespace: Text, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.namespace = namespace
+
+    def expand(self, context: LaunchContext) -> None:
+        """Extend the scope's namespace."""
+        context.push_namespace(perform_text(context, self.namespace))
+
+
+class SetParameter(Action):
+    """Gives a parameter to all nodes that follow in this scope; their own values win."""
+
+    def __init__(self, name: Text, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name = name
+        self.value = value
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add the parameter to the scope."""
+        name = perform_text(context, self.name)
+        context.parameters.append(evaluate_parameters(context, {name: self.value}))
+
+
+class SetRemap(Action):
+    """Remaps a name for all nodes that follow in this scope."""
+
+    def __init__(self, src: Text, dst: Text, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.src = src
+        self.dst = dst
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add the remapping to the scope."""
+        context.remappings.append(
+            (perform_text(context, self.src), perform_text(context, self.dst))
+        )

@@ -84,7 +84,7 @@ def _evaluate(node: ast.expr) -> Any:
             return any(_evaluate(value) for value in values)
         case ast.IfExp(test, body, orelse):
             return _evaluate(body if _evaluate(test) else orelse)
-        case ast.Compare(left, ops, comparators):
+        case ast.Compare(left, _, comparators):
             return _compare(node, [left, *comparators])
     raise SubstitutionError(
         f"{ast.unparse(node)!r} is not allowed in a PythonExpression: it takes literals, "

@@ -1,0 +1,31 @@
+"""The ROS half of a controller: its topics, services and actions."""
+
+from abc import ABC, abstractmethod
+from typing import Any, Generic, TypeVar
+
+from rclpy.node import Node
+
+from arm_control.controller import Controller
+
+ControllerT = TypeVar("ControllerT", bound=Controller[Any])
+
+
+class ControllerAdapter(ABC, Generic[ControllerT]):
+    """Connects a controller's core to its node.
+
+    Made when the controller is loaded. The methods run on a control-plane thread, never while the
+    controller is active; what they create hands messages to the core from the executor's thread,
+    and takes results from it on the loop thread.
+    """
+
+    def __init__(self, controller: ControllerT, node: Node) -> None:
+        self.controller = controller
+        self.node = node
+
+    @abstractmethod
+    def on_configure(self, parameters: Any) -> None:
+        """Create the end points; the core has these parameters by now."""
+
+    @abstractmethod
+    def on_cleanup(self) -> None:
+        """Destroy what `on_configure` created."""

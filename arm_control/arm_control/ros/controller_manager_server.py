@@ -1,0 +1,137 @@
+"""The ROS side of a running controller manager: services, topics, nodes of what it manages."""
+
+import logging
+from collections.abc import Sequence
+
+from controller_manager_msgs.msg import ControllerManagerActivity
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
+
+from arm_control.control_loop import ControlLoop
+from arm_control.controller_manager import ControllerManager
+from arm_control.errors import ArmControlError
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.ros.control_plane import ControlPlane
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.convert import activity_message
+from arm_control.ros.executor_thread import ExecutorThread
+from arm_control.ros.manager_services import ManagerServices
+from arm_control.ros.node_arguments import controller_arguments
+
+logger = logging.getLogger(__name__)
+
+LATCHED_QOS = QoSProfile(
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+
+
+class ControllerManagerServer:
+    """Serves a manager on its node, from its making until `shutdown`.
+
+    The services run on a thread of their own, because they wait for the control loop; the nodes
+    of controllers and components run on the executor given. In the end: `shutdown`, join the
+    loop, `destroy_nodes`.
+    """
+
+    def __init__(
+        self,
+        node: ControllerManagerNode,
+        manager: ControllerManager,
+        loop: ControlLoop,
+        executor: Executor,
+        *,
+        robot_description: str = "",
+    ) -> None:
+        """Offer the services.
+
+        Args:
+            node: the manager's node; in no executor yet.
+            manager: the core, which belongs to the loop thread.
+            loop: runs it; started already, paused or not.
+            executor: serves the nodes of controllers and components.
+            robot_description: the URDF that the hardware was made from.
+        """
+        self._node = node
+        self._manager = manager
+        self._executor = executor
+        self._robot_description = robot_description
+        self._plane = ControlPlane(
+            node,
+            manager,
+            loop,
+            executor,
+            robot_description=robot_description,
+        )
+        self._component_nodes = [
+            self._make_component_node(component.name)
+            for component in self._plane.on_loop(manager.list_hardware_components)
+        ]
+        self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED_QOS)
+        self._services = ManagerServices(node, self._plane, manager)
+        self._description_subscription = node.create_subscription(
+            String, "robot_description", self._take_description, LATCHED_QOS
+        )
+        self._plane.on_loop(lambda: manager.add_observer(self))
+        self._plane.on_loop(self.activity_changed)
+        self._thread = ExecutorThread("controller manager services")
+        self._thread.start(node)
+
+    def start_controllers(self, names: Sequence[str]) -> None:
+        """Load, configure and activate controllers as a spawner would, without one.
+
+        Raises:
+            ArmControlError: one of them cannot be started; the message says why.
+        """
+        self._plane.start_controllers(names)
+
+    def shutdown(self) -> None:
+        """Serve no more; deactivate and finalize controllers and components."""
+        self._thread.stop()
+        try:
+            self._plane.shutdown()
+        except ArmControlError as error:
+            logger.warning("controllers were not shut down: %s", error)
+
+    def destroy_nodes(self) -> None:
+        """Destroy the nodes of manager, controllers and components; join the loop first."""
+        self._plane.destroy_nodes()
+        for node in self._component_nodes:
+            self._executor.remove_node(node)
+            node.destroy_node()
+        self._node.destroy_node()
+
+    def controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """Publish a controller's transition; loop thread."""
+        self._plane.publish_transition(name, transition, start, end)
+
+    def activity_changed(self) -> None:
+        """Publish who is in which state; loop thread."""
+        message = activity_message(
+            self._manager.list_controllers(), self._manager.list_hardware_components()
+        )
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._activity.publish(message)
+
+    def _make_component_node(self, component: str) -> Node:
+        node = Node(
+            component.lower(),
+            namespace=self._node.get_namespace(),
+            cli_args=controller_arguments(self._node.arguments),
+            use_global_arguments=False,
+        )
+        self._executor.add_node(node)
+        return node
+
+    def _take_description(self, message: String) -> None:
+        if message.data != self._robot_description:
+            logger.warning(
+                "a robot description other than the one in use was published on %s. "
+                "Ignoring attempt to reload a robot description.",
+                self._description_subscription.topic_name,
+            )

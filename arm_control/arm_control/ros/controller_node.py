@@ -1,0 +1,103 @@
+"""The node of one controller: its parameters, its adapter, its transition events."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lifecycle_msgs.msg import TransitionEvent
+from rclpy.qos import QoSProfile
+
+from arm_control.controller import Controller
+from arm_control.errors import ParameterError
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.parameters import parameter, specs_of
+from arm_control.registry import load_object
+from arm_control.ros.controller_adapter import ControllerAdapter
+from arm_control.ros.convert import transition_events
+from arm_control.ros.parameter_node import ParameterNode
+
+EVENT_DEPTH = 10
+
+
+class ControllerNode(ParameterNode):
+    """A plain node named after its controller, in the manager's namespace.
+
+    It has no life-cycle services, as a real controller has none. Made and destroyed on a
+    control-plane thread; only `publish_transition` is for the loop thread.
+    """
+
+    def __init__(
+        self, controller: Controller[Any], type_name: str, namespace: str, arguments: Sequence[str]
+    ) -> None:
+        """Make the node and declare the parameters.
+
+        Args:
+            controller: the core.
+            type_name: its type string, for messages.
+            namespace: the manager's.
+            arguments: ROS arguments for this node alone.
+
+        Raises:
+            ParameterError: a given parameter has the wrong type.
+            RegistryError: the controller's adapter cannot be imported.
+        """
+        super().__init__(
+            controller.name,
+            namespace=namespace,
+            cli_args=list(arguments),
+            use_global_arguments=False,
+        )
+        self.controller = controller
+        self._general = _general_parameters(controller.context.update_rate_hz)
+        specs = (*specs_of(controller.parameters_type), *specs_of(self._general))
+        self.declare_specs(specs)
+        self.warn_of_unknown([spec.name for spec in specs], type_name)
+        self._adapter = self._make_adapter()
+        self._events = self.create_publisher(
+            TransitionEvent, "~/transition_event", QoSProfile(depth=EVENT_DEPTH)
+        )
+
+    def read_controller_parameters(self) -> tuple[Any, int]:
+        """Return the controller's parameters as they are now, and the update rate asked for.
+
+        Raises:
+            ParameterError: a value does not fit.
+        """
+        parameters = self.read_parameters(self.controller.parameters_type)
+        rate_hz = self.get_parameter("update_rate").value
+        if not isinstance(rate_hz, int) or rate_hz < 0:
+            raise ParameterError(f"parameter 'update_rate' must not be negative, but is {rate_hz}")
+        return parameters, rate_hz
+
+    def on_configure(self, parameters: Any) -> None:
+        """Create the controller's end points."""
+        if self._adapter is not None:
+            self._adapter.on_configure(parameters)
+
+    def on_cleanup(self) -> None:
+        """Destroy the controller's end points."""
+        if self._adapter is not None:
+            self._adapter.on_cleanup()
+
+    def publish_transition(
+        self, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """Publish what a transition did, in two events: on its way, and where it arrived."""
+        for event in transition_events(transition, start, end):
+            self._events.publish(event)
+
+    def _make_adapter(self) -> ControllerAdapter[Any] | None:
+        path = self.controller.adapter
+        return load_object(path)(self.controller, self) if path else None
+
+
+def _general_parameters(update_rate_hz: int) -> type[Any]:
+    """Return the parameters that every controller has; the manager's rate is the default."""
+
+    @dataclass(frozen=True, slots=True)
+    class GeneralParameters:
+        update_rate: int = parameter(update_rate_hz, "Updates per second")
+        is_async: bool = parameter(False, "Known from ros2_control; controllers run in the loop")
+        thread_priority: int = parameter(-100, "Known from ros2_control; without effect")
+
+    return GeneralParameters

@@ -1,0 +1,98 @@
+"""From the core's snapshots to controller_manager_msgs and lifecycle_msgs."""
+
+from collections.abc import Iterable
+
+from builtin_interfaces.msg import Time
+from controller_manager_msgs.msg import (
+    ControllerManagerActivity,
+    ControllerState,
+    HardwareComponentState,
+    HardwareInterface,
+    NamedLifecycleState,
+)
+from lifecycle_msgs.msg import State, TransitionEvent
+from lifecycle_msgs.msg import Transition as TransitionMessage
+
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
+
+
+def time_message(time_s: float) -> Time:
+    """Return a time as a stamp."""
+    seconds, nanoseconds = divmod(round(time_s * 1e9), 1_000_000_000)
+    return Time(sec=seconds, nanosec=nanoseconds)
+
+
+def state_message(state: LifecycleState) -> State:
+    """Return a life-cycle state."""
+    return State(id=int(state), label=state.label)
+
+
+def controller_message(status: ControllerStatus) -> ControllerState:
+    """Return a controller as list_controllers shows it."""
+    return ControllerState(
+        name=status.name,
+        state=status.state.label,
+        type=status.type_name,
+        update_rate=status.update_rate_hz,
+        claimed_interfaces=list(status.claimed_interfaces),
+        required_command_interfaces=list(status.required_command_interfaces),
+        required_state_interfaces=list(status.required_state_interfaces),
+    )
+
+
+def interface_message(status: InterfaceStatus) -> HardwareInterface:
+    """Return an interface as list_hardware_interfaces shows it."""
+    return HardwareInterface(
+        name=status.name,
+        data_type="double",
+        is_available=status.is_available,
+        is_claimed=status.is_claimed,
+    )
+
+
+def component_message(status: HardwareComponentStatus) -> HardwareComponentState:
+    """Return a component as list_hardware_components shows it."""
+    return HardwareComponentState(
+        name=status.name,
+        type=status.type,
+        rw_rate=status.read_write_rate_hz,
+        plugin_name=status.plugin,
+        state=state_message(status.state),
+        command_interfaces=[interface_message(i) for i in status.command_interfaces],
+        state_interfaces=[interface_message(i) for i in status.state_interfaces],
+    )
+
+
+def activity_message(
+    controllers: Iterable[ControllerStatus], components: Iterable[HardwareComponentStatus]
+) -> ControllerManagerActivity:
+    """Return who is in which state; the stamp is the caller's."""
+    return ControllerManagerActivity(
+        controllers=[
+            NamedLifecycleState(name=c.name, state=state_message(c.state)) for c in controllers
+        ],
+        hardware_components=[
+            NamedLifecycleState(name=c.name, state=state_message(c.state)) for c in components
+        ],
+    )
+
+
+def transition_events(
+    transition: Transition, start: LifecycleState, end: LifecycleState
+) -> tuple[TransitionEvent, TransitionEvent]:
+    """Return the two events of a transition: into its own state, and out of it."""
+    label = "transition_success" if end is transition.goal else "transition_failure"
+    under_way = State(id=transition.state_id, label=transition.state_label)
+    return (
+        TransitionEvent(
+            transition=TransitionMessage(id=transition.id, label=transition.label),
+            start_state=state_message(start),
+            goal_state=under_way,
+        ),
+        TransitionEvent(
+            transition=TransitionMessage(label=label),
+            start_state=under_way,
+            goal_state=state_message(end),
+        ),
+    )

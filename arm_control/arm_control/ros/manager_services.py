@@ -1,0 +1,178 @@
+"""The services of the controller manager: messages in, control plane, messages out."""
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from controller_manager_msgs.srv import (
+    CleanupController,
+    ConfigureController,
+    ListControllers,
+    ListControllerTypes,
+    ListHardwareComponents,
+    ListHardwareInterfaces,
+    LoadController,
+    SetHardwareComponentState,
+    SwitchController,
+    UnloadController,
+)
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from arm_control.controller_manager import ControllerManager
+from arm_control.controller_switch import Strictness, SwitchRequest
+from arm_control.errors import ArmControlError
+from arm_control.lifecycle import LifecycleState
+from arm_control.registry import controller_types
+from arm_control.ros.control_plane import ControlPlane
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.convert import (
+    component_message,
+    controller_message,
+    interface_message,
+    state_message,
+)
+
+logger = logging.getLogger(__name__)
+
+SERVICE_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_ALL,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
+CONTROLLER_INTERFACE = "controller_interface::ControllerInterface"
+
+
+class ManagerServices:
+    """Creates the services on a node and answers them; they may block its executor."""
+
+    def __init__(
+        self, node: ControllerManagerNode, plane: ControlPlane, manager: ControllerManager
+    ) -> None:
+        self._node = node
+        self._plane = plane
+        self._manager = manager
+        for type_, name, answer in (
+            (ListControllers, "list_controllers", self._list_controllers),
+            (ListControllerTypes, "list_controller_types", self._list_controller_types),
+            (LoadController, "load_controller", self._by_name(plane.load_controller)),
+            (
+                ConfigureController,
+                "configure_controller",
+                self._by_name(plane.configure_controller),
+            ),
+            (CleanupController, "cleanup_controller", self._by_name(plane.cleanup_controller)),
+            (UnloadController, "unload_controller", self._by_name(plane.unload_controller)),
+            (SwitchController, "switch_controller", self._switch_controller),
+            (ListHardwareInterfaces, "list_hardware_interfaces", self._list_interfaces),
+            (ListHardwareComponents, "list_hardware_components", self._list_components),
+            (SetHardwareComponentState, "set_hardware_component_state", self._set_component_state),
+        ):
+            node.create_service(type_, f"~/{name}", answer, qos_profile=SERVICE_QOS)
+
+    @staticmethod
+    def _by_name(action: Callable[[str], None]) -> Callable[[Any, Any], Any]:
+        """Return the answer of a service that takes a name and says whether it worked."""
+
+        def answer(request: Any, response: Any) -> Any:
+            try:
+                action(request.name)
+                response.ok = True
+            except ArmControlError as error:
+                logger.error("%s", error)
+                response.ok = False
+            return response
+
+        return answer
+
+    def _list_controllers(
+        self, _request: ListControllers.Request, response: ListControllers.Response
+    ) -> ListControllers.Response:
+        statuses = self._plane.on_loop(self._manager.list_controllers)
+        response.controller = [controller_message(status) for status in statuses]
+        return response
+
+    def _list_controller_types(
+        self, _request: ListControllerTypes.Request, response: ListControllerTypes.Response
+    ) -> ListControllerTypes.Response:
+        types = controller_types()
+        response.types = list(types)
+        response.base_classes = [CONTROLLER_INTERFACE] * len(types)
+        return response
+
+    def _switch_controller(
+        self, request: SwitchController.Request, response: SwitchController.Response
+    ) -> SwitchController.Response:
+        try:
+            strictness = self._strictness(request.strictness)
+        except ValueError:
+            response.ok = False
+            response.message = f"unknown strictness {request.strictness}; it is 1, 2, 3 or 4"
+            return response
+        result = self._plane.switch_controller(
+            SwitchRequest(
+                tuple(request.activate_controllers),
+                tuple(request.deactivate_controllers),
+                strictness,
+            ),
+            request.timeout.sec + request.timeout.nanosec * 1e-9,
+        )
+        response.ok, response.message = result.ok, result.message
+        return response
+
+    def _list_interfaces(
+        self, _request: ListHardwareInterfaces.Request, response: ListHardwareInterfaces.Response
+    ) -> ListHardwareInterfaces.Response:
+        commands, states = self._plane.on_loop(self._manager.list_hardware_interfaces)
+        response.command_interfaces = [interface_message(status) for status in commands]
+        response.state_interfaces = [interface_message(status) for status in states]
+        return response
+
+    def _list_components(
+        self, _request: ListHardwareComponents.Request, response: ListHardwareComponents.Response
+    ) -> ListHardwareComponents.Response:
+        statuses = self._plane.on_loop(self._manager.list_hardware_components)
+        response.component = [component_message(status) for status in statuses]
+        return response
+
+    def _set_component_state(
+        self,
+        request: SetHardwareComponentState.Request,
+        response: SetHardwareComponentState.Response,
+    ) -> SetHardwareComponentState.Response:
+        target = request.target_state
+        try:
+            state = _target_state(target.id, target.label)
+            self._plane.on_loop(
+                lambda: self._manager.set_hardware_component_state(request.name, state)
+            )
+            response.ok = True
+        except ArmControlError as error:
+            logger.error("%s", error)
+            response.ok = False
+        for status in self._plane.on_loop(self._manager.list_hardware_components):
+            if status.name == request.name:
+                response.state = state_message(status.state)
+        return response
+
+    def _strictness(self, number: int) -> Strictness:
+        if number == 0:
+            return self._node.default_strictness()
+        strictness = Strictness(number)
+        if strictness in (Strictness.AUTO, Strictness.FORCE_AUTO):
+            logger.warning("strictness %s is treated as BEST_EFFORT", strictness.name)
+        return strictness
+
+
+def _target_state(state_id: int, label: str) -> LifecycleState:
+    """Return the state that an id names, or where it is 0, a label.
+
+    Raises:
+        ArmControlError: there is no such primary state.
+    """
+    for state in LifecycleState:
+        if state_id == state or (state_id == 0 and label == state.label):
+            return state
+    raise ArmControlError(
+        f"no hardware state has id {state_id} and label '{label}'; "
+        f"there is {', '.join(f'{state.label} ({state.value})' for state in LifecycleState)}"
+    )

@@ -1,0 +1,134 @@
+"""The node joint_state_publisher: a robot's joint states for those who have no robot."""
+
+from collections.abc import Callable
+
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from arm_description.errors import (
+    DescriptionError,
+    JointStateError,
+    MimicCycleError,
+    SettingsError,
+)
+from arm_description.joint_publisher_settings import (
+    DEFAULTS,
+    DEPENDENT_JOINTS,
+    ZEROS,
+    JointPublisherSettings,
+)
+from arm_description.joint_state_merge import JointStateMerge
+from arm_description.urdf import parse_urdf
+
+COMPLAINT_INTERVAL_S = 5.0
+CHANGEABLE = ("rate", "delta")
+"""Parameters that take effect at once; the others are read at the start."""
+
+_QUEUE = 10
+_LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class JointStatePublisher(Node):
+    """Publishes joint_states at a rate; every callback runs in the executor's thread.
+
+    Raises:
+        SettingsError: a parameter that cannot be used.
+        XmlError, UrdfError: the description given is not a robot.
+    """
+
+    def __init__(self, description: str | None, fail: Callable[[], None]) -> None:
+        """Make the node.
+
+        Args:
+            description: a URDF to start with; one from the topic robot_description replaces it.
+            fail: ends the process as failed; called where joints depend on each other in a
+                circle, since then no joint state is right.
+        """
+        super().__init__(
+            "joint_state_publisher", automatically_declare_parameters_from_overrides=True
+        )
+        for name, default in DEFAULTS.items():
+            # Dynamic, so that `delta: 1` of a YAML file, an integer, is taken too.
+            descriptor = ParameterDescriptor(dynamic_typing=True)
+            if self.has_parameter(name):
+                self.set_descriptor(name, descriptor)
+            else:
+                self.declare_parameter(name, default, descriptor)
+        self._fail = fail
+        self._settings = self._checked([])
+        self._merge: JointStateMerge | None = None
+        if description is not None:
+            self._merge = JointStateMerge(parse_urdf(description), self._settings)
+        self._publisher = self.create_publisher(JointState, "joint_states", _QUEUE)
+        self.create_subscription(String, "robot_description", self._on_description, _LATCHED_QOS)
+        for topic in self._settings.source_list:
+            self.create_subscription(JointState, topic, self._on_source, _QUEUE)
+        self._timer = self.create_timer(1.0 / self._settings.rate_hz, self._publish)
+        self.add_on_set_parameters_callback(self._refuse_or_accept)
+        self.add_post_set_parameters_callback(self._take_parameters)
+
+    def _checked(self, changes: list[Parameter]) -> JointPublisherSettings:
+        # Every name: those under `zeros` and `dependent_joints` are the robot's joints.
+        names = self.list_parameters([], 0).names
+        values = {name: self.get_parameter(name).value for name in names}
+        values.update((change.name, change.value) for change in changes)
+        return JointPublisherSettings.from_parameters(values)
+
+    def _refuse_or_accept(self, changes: list[Parameter]) -> SetParametersResult:
+        for change in changes:
+            ours = change.name in DEFAULTS or change.name.startswith((ZEROS, DEPENDENT_JOINTS))
+            if ours and change.name not in CHANGEABLE:
+                reason = f"{change.name} is read at the start only; restart the node to change it"
+                return SetParametersResult(successful=False, reason=reason)
+        try:
+            self._checked(changes)
+        except SettingsError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _take_parameters(self, _changes: list[Parameter]) -> None:
+        self._settings = self._checked([])
+        self._timer.timer_period_ns = 1_000_000_000 // self._settings.rate_hz
+        if self._merge is not None:
+            self._merge.set_delta(self._settings.delta)
+
+    def _on_description(self, message: String) -> None:
+        try:
+            self._merge = JointStateMerge(parse_urdf(message.data), self._settings)
+        except (MimicCycleError, SettingsError) as error:
+            self.get_logger().error(str(error))
+            self._merge = None
+            self._fail()
+        except DescriptionError as error:
+            self.get_logger().warning(f"Invalid robot_description given, ignoring: {error}")
+
+    def _on_source(self, message: JointState) -> None:
+        if self._merge is None:
+            return
+        try:
+            self._merge.merge(
+                list(message.name), message.position, message.velocity, message.effort
+            )
+        except JointStateError as error:
+            self.get_logger().error(
+                f"ignored a JointState: {error}", throttle_duration_sec=COMPLAINT_INTERVAL_S
+            )
+
+    def _publish(self) -> None:
+        if self._merge is None:
+            return
+        self._merge.sweep()
+        state = self._merge.state()
+        if not state.names:
+            return
+        message = JointState()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.name = list(state.names)
+        message.position = list(state.positions)
+        message.velocity = list(state.velocities)
+        message.effort = list(state.efforts)
+        self._publisher.publish(message)

@@ -1,0 +1,127 @@
+"""The camera process: renders what the simulation sends it and publishes the pictures.
+
+It is started by the simulation, never by hand, and ends with it.
+"""
+
+import argparse
+import ctypes
+import logging
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
+
+from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
+
+from arm_gazebo.camera_channel import CameraEnd
+from arm_gazebo.camera_settings import CameraSettings
+from arm_gazebo.errors import BackendError, CameraError, GazeboError
+
+if TYPE_CHECKING:
+    from arm_gazebo.camera_pipeline import CameraPipeline
+    from arm_gazebo.rendering.renderer import Renderer
+
+logger = logging.getLogger(__name__)
+
+EXIT_BACKEND = 3
+"""The render backend that was tried last does not work in this process; try another one."""
+PR_SET_PDEATHSIG = 1
+JOIN_TIMEOUT_S = 2.0
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the camera process until the simulation ends; return the exit code."""
+    arguments, ros_arguments = _parser().parse_known_args(argv)
+    try:
+        settings = CameraSettings.from_json(arguments.settings)
+        _end_with_parent(arguments.parent)
+        channel = CameraEnd(arguments.socket)
+    except CameraError as error:
+        sys.stderr.write(f"{error}\n")
+        return EXIT_USAGE
+    application = partial(_application, settings, channel)
+    try:
+        return run_process(application, [sys.argv[0], *ros_arguments], (GazeboError,))
+    finally:
+        channel.close()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
+    parser.add_argument("--socket", type=int, required=True, help="descriptor, inherited")
+    parser.add_argument("--parent", type=int, required=True, help="process id of the simulation")
+    parser.add_argument("--settings", required=True, help="CameraSettings as JSON")
+    return parser
+
+
+def _end_with_parent(parent: int) -> None:
+    """Have the kernel end this process when its parent dies, even while a driver hangs."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        raise CameraError("the simulation that started this camera process has ended")
+
+
+@contextmanager
+def _application(
+    settings: CameraSettings, channel: CameraEnd, process: NodeProcess
+) -> Iterator[None]:
+    from rclpy.node import Node
+
+    from arm_gazebo.camera_pipeline import CameraPipeline
+    from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
+    from arm_gazebo.ros.camera_publisher import CameraPublisher
+
+    node = Node("camera")
+    publishers = [CameraPublisher(node, sensor) for sensor in settings.cameras]
+    pipeline = CameraPipeline(
+        settings.cameras, publishers, partial(_open_renderer, settings, channel), settings.seed
+    )
+    CameraDiagnostics(
+        node, settings.cameras, publishers, pipeline.statistics, lambda: pipeline.backend
+    )
+    process.executor.add_node(node)
+    rendering = threading.Thread(
+        target=_render, args=(pipeline, channel, process), name="rendering", daemon=True
+    )
+    rendering.start()
+    yield
+    rendering.join(JOIN_TIMEOUT_S)
+
+
+def _render(pipeline: "CameraPipeline", channel: CameraEnd, process: NodeProcess) -> None:
+    """Render until the simulation ends or the process is told to; in a thread of its own."""
+    exit_code = 0
+    try:
+        while not process.stopping and (messages := channel.receive()) is not None:
+            pipeline.handle(messages)
+    except BackendError as error:
+        logger.error("%s", error)
+        exit_code = EXIT_BACKEND
+    except GazeboError as error:
+        logger.critical("%s", error)
+        exit_code = EXIT_FAILED
+    except Exception:
+        logger.critical("rendering failed", exc_info=True)
+        exit_code = EXIT_FAILED
+    finally:
+        pipeline.close()
+        process.stop(exit_code)
+
+
+def _open_renderer(settings: CameraSettings, channel: CameraEnd) -> "Renderer":
+    from arm_gazebo.rendering.backend_selection import backend_order, open_renderer
+
+    return open_renderer(
+        backend_order(settings.backend, settings.excluded),
+        max(sensor.width for sensor in settings.cameras),
+        max(sensor.height for sensor in settings.cameras),
+        on_try=channel.tell_backend,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

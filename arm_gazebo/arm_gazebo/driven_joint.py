@@ -1,0 +1,113 @@
+"""One driven joint: its mode, its command and the set-point that comes of them."""
+
+import math
+
+from arm_gazebo.command_stream import CommandStream
+from arm_gazebo.drive_mode import SERVOED, DriveMode
+from arm_gazebo.robot_joint import RobotJoint
+from arm_gazebo.servo_tuning import EFFORT_SHARE
+from arm_gazebo.setpoint import Setpoint
+
+
+class DrivenJoint:
+    """The planning half of a servo; `Servo` owns the physics half. rad or m, N m or N.
+
+    Attributes:
+        joint: what the model says about the joint.
+        mode: set by `Servo.set_mode`.
+        setpoint: where the joint is to be at the end of the current control period.
+        effort: commanded effort, in the mode EFFORT.
+        inertia: that the joint feels, at the pose of the last physics step.
+        gravity: effort against gravity and Coriolis forces, at the same pose.
+    """
+
+    __slots__ = (
+        "_braking",
+        "_jerkless",
+        "_period_s",
+        "_slack",
+        "_stream",
+        "_velocity",
+        "effort",
+        "gravity",
+        "inertia",
+        "joint",
+        "mode",
+        "setpoint",
+    )
+
+    def __init__(
+        self,
+        joint: RobotJoint,
+        braking: float,
+        jerkless: float,
+        stiffness: float,
+        period_s: float,
+    ) -> None:
+        self.joint = joint
+        self.mode = DriveMode.LIMP
+        self.setpoint = Setpoint(joint.initial)
+        self.effort = 0.0
+        self._braking = braking
+        self._jerkless = jerkless
+        self._period_s = period_s
+        # Further from the joint the set-point could not raise the effort any more.
+        self._slack = joint.effort / stiffness
+        self._stream = CommandStream(joint.initial, period_s)
+        self._velocity = 0.0
+        self.inertia = 1.0
+        self.gravity = 0.0
+
+    def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
+        """Change the mode; the state of the joint says where a set-point starts."""
+        if self.mode not in SERVOED:
+            speed = self.joint.velocity
+            self.setpoint = Setpoint(position, min(max(velocity, -speed), speed))
+        self.mode = mode
+        self._velocity = 0.0
+        self.effort = 0.0
+        self._stream = CommandStream(self.stopping_point(), self._period_s)
+
+    def stopping_point(self) -> float:
+        """Return where the joint will stand if nothing new is commanded, within its limits."""
+        point = self.setpoint.stopping_point(self._braking)
+        return min(max(point, self.joint.lower), self.joint.upper)
+
+    def command(self, value: float, tick: int) -> None:
+        """Take a command in the unit of the mode; HOLD and LIMP take none."""
+        if self.mode is DriveMode.POSITION:
+            self._stream.command(value, tick)
+        elif self.mode is DriveMode.VELOCITY:
+            self._velocity = value
+        elif self.mode is DriveMode.EFFORT:
+            self.effort = value
+
+    def advance(self, position: float) -> bool:
+        """Move the set-point on by one control period; return whether it moves or has to.
+
+        Args:
+            position: of the joint, now.
+        """
+        setpoint = self.setpoint
+        before, velocity = setpoint.position, setpoint.velocity
+        lead = before - position
+        if abs(lead) > self._slack:
+            # Something is in the way. A set-point that ran on would fling the joint, once free.
+            before = setpoint.position = position + math.copysign(self._slack, lead)
+            velocity = setpoint.velocity = 0.0
+        joint = self.joint
+        acceleration = EFFORT_SHARE * (joint.effort - abs(self.gravity)) / self.inertia
+        acceleration = max(self._braking, min(acceleration, self._jerkless))
+        if self.mode is DriveMode.POSITION:
+            stream = self._stream
+            stream.advance()
+            target, target_velocity, speed = stream.target, stream.velocity, joint.velocity
+        else:
+            # A velocity is a way to the limit of the joint at that speed.
+            speed = abs(self._velocity)
+            target = joint.upper if self._velocity > 0 else joint.lower
+            target_velocity = 0.0
+        setpoint.approach(
+            target, target_velocity, speed, acceleration, self._braking, self._period_s
+        )
+        return setpoint.velocity != 0.0 or velocity != 0.0 or setpoint.position != before

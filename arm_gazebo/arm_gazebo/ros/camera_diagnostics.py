@@ -1,0 +1,79 @@
+"""Reports on /diagnostics how well each camera keeps up."""
+
+from collections.abc import Callable, Sequence
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.camera_statistics import CameraReport, CameraStatistics
+from arm_gazebo.ros.camera_publisher import CameraPublisher
+
+PERIOD_S = 1.0
+LEAST_SHARE = 0.9
+
+
+class CameraDiagnostics:
+    """Publishes one DiagnosticArray a second, with one status per camera."""
+
+    def __init__(
+        self,
+        node: Node,
+        sensors: Sequence[CameraSensor],
+        publishers: Sequence[CameraPublisher],
+        statistics: Sequence[CameraStatistics],
+        backend: Callable[[], str],
+    ) -> None:
+        """Start reporting.
+
+        Args:
+            node: gets the publisher and a timer.
+            sensors: the cameras.
+            publishers: of each camera.
+            statistics: of each camera.
+            backend: returns the name of what draws.
+        """
+        self._node = node
+        self._cameras = tuple(zip(sensors, publishers, statistics, strict=True))
+        self._backend = backend
+        self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        node.create_timer(PERIOD_S, self._publish)
+
+    def _publish(self) -> None:
+        message = DiagnosticArray()
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.status = [
+            _status(sensor, publisher.subscribers, statistics.report(), self._backend())
+            for sensor, publisher, statistics in self._cameras
+        ]
+        self._publisher.publish(message)
+
+
+def _status(
+    sensor: CameraSensor, subscribers: int, report: CameraReport, backend: str
+) -> DiagnosticStatus:
+    achieved = report.achieved
+    slow = achieved is not None and achieved < LEAST_SHARE
+    if achieved is None:
+        text = "nobody is looking"
+    else:
+        text = f"{achieved * sensor.rate_hz:.1f} of {sensor.rate_hz:g} Hz"
+    values = {
+        "nominal rate (Hz of simulation time)": f"{sensor.rate_hz:g}",
+        "achieved rate (Hz of simulation time)": (
+            "0.0" if achieved is None else f"{achieved * sensor.rate_hz:.1f}"
+        ),
+        "frames rendered": str(report.rendered),
+        "frames dropped": str(report.dropped),
+        "render time (ms)": "-" if report.render_s is None else f"{report.render_s * 1e3:.1f}",
+        "backend": backend,
+        "subscribers": str(subscribers),
+        "size": f"{sensor.width}x{sensor.height}",
+    }
+    return DiagnosticStatus(
+        level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
+        name=f"camera: {sensor.name}",
+        message=text,
+        hardware_id=sensor.name,
+        values=[KeyValue(key=key, value=value) for key, value in values.items()],
+    )

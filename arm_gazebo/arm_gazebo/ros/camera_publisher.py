@@ -1,0 +1,112 @@
+"""One camera's topics: pictures, compressed pictures and intrinsics."""
+
+from array import array
+
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+
+from arm_gazebo.camera_info import DISTORTION_MODEL, Intrinsics
+from arm_gazebo.camera_sensor import CameraSensor
+
+QOS = QoSProfile(depth=2)
+"""Reliable and volatile: default and best-effort subscribers both match."""
+JPEG_QUALITY = 80
+NS_PER_S = 1_000_000_000
+
+
+class CameraPublisher:
+    """Publishes one camera; a `FrameSink`. One thread.
+
+    Messages are made once. Pictures are drawn straight into the bytes of the message: setting
+    `data` to a new array for each would cost a thousand times as much.
+    """
+
+    def __init__(self, node: Node, sensor: CameraSensor) -> None:
+        self._info = _info_message(sensor)
+        self._infos = [node.create_publisher(CameraInfo, t, QOS) for t in sensor.info_topics]
+        self._image = _image_message(sensor)
+        self._images = [node.create_publisher(Image, t, QOS) for t in sensor.image_topics]
+        self._jpeg = CompressedImage(format="rgb8; jpeg compressed bgr8")
+        self._jpeg.header.frame_id = sensor.optical_frame
+        self._jpegs = [
+            node.create_publisher(CompressedImage, f"{t}/compressed", QOS)
+            for t in sensor.image_topics
+        ]
+        self._picture = np.frombuffer(self._image.data, np.uint8).reshape(
+            sensor.height, sensor.width, 3
+        )
+
+    @property
+    def picture(self) -> NDArray[np.uint8]:
+        """The (height, width, 3) bytes of the image message."""
+        return self._picture
+
+    @property
+    def subscribers(self) -> int:
+        """How many subscribers the pictures have, compressed ones included."""
+        return sum(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+
+    def wants_picture(self) -> bool:
+        """Return whether anybody subscribes to the pictures now; about 1 us a topic."""
+        return any(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+
+    def publish_info(self, time_s: float) -> None:
+        """Publish the intrinsics on every info topic."""
+        _stamp(self._info, time_s)
+        for publisher in self._infos:
+            publisher.publish(self._info)
+
+    def publish_picture(self, time_s: float) -> None:
+        """Publish the picture where somebody subscribes to it, compressed or not."""
+        _stamp(self._image, time_s)
+        for publisher in _watched(self._images):
+            publisher.publish(self._image)
+        jpegs = _watched(self._jpegs)
+        if jpegs:
+            _stamp(self._jpeg, time_s)
+            self._jpeg.data = _compress(self._picture)
+            for publisher in jpegs:
+                publisher.publish(self._jpeg)
+
+
+def _watched(publishers: list[Publisher]) -> list[Publisher]:
+    return [p for p in publishers if p.get_subscription_count()]
+
+
+def _stamp(message: Image | CameraInfo | CompressedImage, time_s: float) -> None:
+    seconds, nanoseconds = divmod(round(time_s * NS_PER_S), NS_PER_S)
+    message.header.stamp.sec = seconds
+    message.header.stamp.nanosec = nanoseconds
+
+
+def _image_message(sensor: CameraSensor) -> Image:
+    message = Image(height=sensor.height, width=sensor.width, encoding="rgb8")
+    message.header.frame_id = sensor.optical_frame
+    message.step = sensor.width * 3
+    message.data = array("B", bytes(message.step * sensor.height))
+    return message
+
+
+def _info_message(sensor: CameraSensor) -> CameraInfo:
+    intrinsics = Intrinsics.of(sensor)
+    message = CameraInfo(height=sensor.height, width=sensor.width)
+    message.header.frame_id = sensor.optical_frame
+    message.distortion_model = DISTORTION_MODEL
+    message.d = list(intrinsics.d)
+    message.k = np.array(intrinsics.k)
+    message.r = np.array(intrinsics.r)
+    message.p = np.array(intrinsics.p)
+    return message
+
+
+def _compress(picture: NDArray[np.uint8]) -> array:
+    # Loaded only where somebody asks for it: it costs 0.1 s and 40 MB.
+    import cv2
+
+    swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)
+    _ok, encoded = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return array("B", encoded.tobytes())

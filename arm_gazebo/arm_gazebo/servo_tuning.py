@@ -1,0 +1,166 @@
+"""What the servos of a robot may do, computed from its model: nothing is tuned by hand.
+
+Random poses give, for each driven joint, the largest inertia that it feels and the largest
+torque of gravity. From those follow:
+
+* armature: a tenth of the largest inertia, as the rotor of a geared motor adds. It also keeps
+  the inertia matrix away from singular, M >= diag(armature).
+* damping gain: 2 armature / step. A drive at its effort limit acts explicitly, whatever the
+  integrator, and energy then falls in each step as long as step x diag(damping) <= 2 M. So no
+  saturated drive can chatter, in any pose, however the joints couple.
+* stiffness: damping / 20 ms, a loop that is damped well at every inertia.
+* braking: accelerations that all joints can have at once in the worst pose, with half of the
+  effort that gravity leaves.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.robot_joint import RobotJoint
+
+Array = NDArray[np.float64]
+
+ARMATURE_SHARE = 0.1
+TIME_CONSTANT_S = 0.02
+POSES = 200
+POSE_SEED = 20240
+EFFORT_SHARE = 0.5
+LEAST_EFFORT_SHARE = 0.1
+"""Of the effort limit, for a joint that can hardly hold the arm: it shall move all the same."""
+STEPS_TO_FULL_SPEED = 2
+"""Bound on acceleration where effort is plenty: a jerk in one step shakes the other joints."""
+ENDLESS_RANGE = (-math.pi, math.pi)
+
+
+@dataclass(frozen=True, slots=True)
+class ServoTuning:
+    """Gains and bounds of the driven joints, each of shape (n,), in the joints' order.
+
+    Attributes:
+        stiffness: N m/rad or N/m.
+        damping: N m s/rad or N s/m.
+        braking: acceleration that every joint can have at once anywhere, rad/s2 or m/s2.
+        jerkless: highest acceleration at all, rad/s2 or m/s2.
+        gravity: largest effort that gravity asks for, N m or N.
+        coupling: shape (nv, n): velocities of all degrees of freedom for those of the driven
+            joints; mimicking joints move along.
+    """
+
+    stiffness: Array
+    damping: Array
+    braking: Array
+    jerkless: Array
+    gravity: Array
+    coupling: Array
+
+
+def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> ServoTuning:
+    """Return the tuning of the driven joints, and put their armature into the model.
+
+    Args:
+        model: gets `dof_armature`, and gains that stay 0 until a servo sets them.
+        joints: the driven joints.
+        qpos: a pose for all that is not driven, shape (nq,).
+    """
+    coupling = _coupling(model, joints)
+    inertias, gravities = _sample(model, joints, coupling, qpos)
+    largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0)
+    armature = ARMATURE_SHARE * largest
+    for joint, value in zip(joints, armature, strict=True):
+        model.dof_armature[joint.dof_address] += value
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    gravity = gravities.max(axis=0)
+    damping = 2.0 * armature / model.opt.timestep
+    speeds = np.array([joint.velocity for joint in joints])
+    jerkless = speeds / (STEPS_TO_FULL_SPEED * model.opt.timestep)
+    efforts = np.array([joint.effort for joint in joints])
+    spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
+    worst = np.abs(inertias).max(axis=0) + np.diag(armature)
+    return ServoTuning(
+        stiffness=damping / TIME_CONSTANT_S,
+        damping=damping,
+        braking=_shared_accelerations(worst, spare, jerkless),
+        jerkless=jerkless,
+        gravity=gravity,
+        coupling=coupling,
+    )
+
+
+def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:
+    """Return how fast every degree of freedom moves with each driven joint, shape (nv, n)."""
+    coupling = np.zeros((model.nv, len(joints)))
+    columns = {joint.dof_address: column for column, joint in enumerate(joints)}
+    for dof, column in columns.items():
+        coupling[dof, column] = 1.0
+    for equality in range(model.neq):
+        if model.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT and model.eq_obj2id[equality] >= 0:
+            follower = model.jnt_dofadr[model.eq_obj1id[equality]]
+            leader = model.jnt_dofadr[model.eq_obj2id[equality]]
+            if leader in columns:
+                coupling[follower, columns[leader]] = model.eq_data[equality, 1]
+    return coupling
+
+
+def _sample(
+    model: mujoco.MjModel, joints: Sequence[RobotJoint], coupling: Array, qpos: Array
+) -> tuple[Array, Array]:
+    """Return inertia matrices (poses, n, n) and gravity efforts (poses, n) of the driven joints."""
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(POSE_SEED)
+    full, efforts = np.zeros((model.nv, model.nv)), np.zeros(model.nv)
+    lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
+    addresses = [joint.qpos_address for joint in joints]
+    inertias, gravities = [], []
+    data.qpos[:] = qpos
+    for _ in range(POSES):
+        data.qpos[addresses] = random.uniform(lower, upper)
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_crb(model, data)
+        mujoco.mj_fullM(model, data, full)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_rne(model, data, 0, efforts)
+        inertias.append(coupling.T @ full @ coupling)
+        gravities.append(np.abs(coupling.T @ efforts))
+    return np.array(inertias), np.array(gravities)
+
+
+def _range(joint: RobotJoint) -> tuple[float, float]:
+    bounded = math.isfinite(joint.upper - joint.lower)
+    return (joint.lower, joint.upper) if bounded else ENDLESS_RANGE
+
+
+def _shared_accelerations(inertia: Array, efforts: Array, bounds: Array) -> Array:
+    """Return accelerations (n,) that together overload no joint, whatever their signs.
+
+    Each joint starts with what it could do alone. Where the sum of all is too much for a joint,
+    the largest contributions to its load are cut down to a common level.
+
+    Args:
+        inertia: largest absolute inertia matrix, shape (n, n).
+        efforts: what each joint can spend, shape (n,); may be infinite.
+        bounds: largest accelerations in any case, shape (n,).
+    """
+    accelerations = np.minimum(efforts / inertia.diagonal(), bounds)
+    for row, effort in zip(inertia, efforts, strict=True):
+        loads = row * accelerations
+        if loads.sum() > effort:
+            level = _level(loads, effort)
+            cut = loads > level
+            accelerations[cut] = level / row[cut]
+    return accelerations
+
+
+def _level(loads: Array, effort: float) -> float:
+    """Return the level to which loads must be cut so that their sum is the effort."""
+    ordered = np.sort(loads)[::-1]
+    kept = effort - (ordered.sum() - ordered.cumsum())
+    levels = kept / np.arange(1, len(loads) + 1)
+    # The right number of cut loads is the first whose level lies above the largest kept one.
+    following = np.append(ordered[1:], 0.0)
+    return float(levels[np.argmax(levels >= following)])

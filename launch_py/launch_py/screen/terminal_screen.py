@@ -1,0 +1,120 @@
+"""A terminal: aligned prefixes in colours, a panel when ready, a status line that lives."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import time
+from collections.abc import Callable, Sequence
+from typing import TextIO
+
+from launch_py.screen.plain_screen import OWN_NAME
+from launch_py.screen.screen import ReadySummary
+
+MAX_NAME_WIDTH = 24
+COLOURS = ("36", "32", "33", "35", "34", "96", "92", "93", "95", "94")
+BOLD, DIM, RED, GREEN = "1", "2", "31", "32"
+ERASE_LINE = "\r\x1b[2K"
+
+
+class TerminalScreen:
+    """Writes for a person at a terminal.
+
+    Lines and the status line are written by hand, because rich costs a millisecond a line and
+    100 ms to import; it draws the panel, once everything runs.
+
+    Args:
+        stream: the terminal.
+        started_s: the time of `clock` at which the launch began.
+        colours: false where the user set NO_COLOR.
+        clock: gives the time in seconds.
+    """
+
+    def __init__(
+        self,
+        stream: TextIO,
+        started_s: float,
+        colours: bool,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._stream = stream
+        self._started_s = started_s
+        self._colours = colours
+        self._clock = clock
+        self._status = ""
+        self._width = len(OWN_NAME)
+        self._colour_of: dict[str, str] = {OWN_NAME: BOLD}
+        self._next_colour = itertools.cycle(COLOURS)
+
+    def begin(self, names: Sequence[str]) -> None:
+        """Align the prefixes for these names."""
+        longest = max((len(name) for name in names), default=0)
+        self._width = min(max(longest, len(OWN_NAME)), MAX_NAME_WIDTH)
+
+    def line(self, name: str, text: str) -> None:
+        """Show a line that a process has written."""
+        if name not in self._colour_of:
+            self._colour_of[name] = next(self._next_colour)
+        elapsed = self._paint(DIM, f"{self._clock() - self._started_s:7.2f}")
+        label = self._paint(self._colour_of[name], f"{name[: self._width]:<{self._width}}")
+        reset = "\x1b[0m" if "\x1b" in text else ""
+        self._write(f"{elapsed} {label} │ {text}{reset}\n")
+
+    def note(self, text: str) -> None:
+        """Show something that the supervisor says."""
+        self.line(OWN_NAME, text)
+
+    def problem(self, text: str) -> None:
+        """Show something that went wrong."""
+        self.line(OWN_NAME, self._paint(RED, text))
+
+    def ready(self, elapsed_s: float, summary: ReadySummary) -> None:
+        """Show the panel, and below it, unboxed so that they paste well, the commands."""
+        from rich.console import Console
+        from rich.panel import Panel
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table.grid(padding=(0, 2))
+        for label, text in summary.topics:
+            table.add_row(Text(label, "cyan"), Text(text))
+        for label, text in summary.notes:
+            table.add_row(Text(label, "dim"), Text(text))
+        title = Text(f" {summary.title}: ready in {elapsed_s:.2f} s ", style="bold green")
+        self._write("", keep_status=False)
+        console = Console(
+            file=self._stream, force_terminal=True, no_color=not self._colours, highlight=False
+        )
+        console.print(Panel(table, title=title, title_align="left", border_style="green"))
+        for label, text in summary.commands:
+            self._write(f"  {self._paint(DIM, label)}\n    {self._paint(BOLD, text)}\n")
+        self._write("")
+
+    def status(self, text: str) -> None:
+        """Show how things stand, below everything else."""
+        self._status = text
+        self._write("")
+
+    def end(self, text: str, failed: bool) -> None:
+        """Remove the status line and show the last line."""
+        self._status = ""
+        self.line(OWN_NAME, self._paint(RED if failed else GREEN, text))
+
+    def _write(self, text: str, keep_status: bool = True) -> None:
+        """Write lines above the status line, in one go so that nothing flickers."""
+        status = ""
+        if keep_status and self._status:
+            columns = _columns(self._stream)
+            status = self._paint(DIM, self._status[: columns - 1])
+        self._stream.write(f"{ERASE_LINE}{text}{status}")
+        self._stream.flush()
+
+    def _paint(self, code: str, text: str) -> str:
+        return f"\x1b[{code}m{text}\x1b[0m" if self._colours else text
+
+
+def _columns(stream: TextIO) -> int:
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or 80
+    except (OSError, ValueError):
+        return 80

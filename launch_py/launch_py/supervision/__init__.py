@@ -1,0 +1,1 @@
+"""Carries out a plan: processes, signals, readiness, restarts, the end of everything."""

@@ -1,0 +1,199 @@
+"""One run of one process: started, read, asked to end, waited for, with its whole group."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from launch_py.errors import StartError
+from launch_py.plan import StopDelays
+from launch_py.supervision import linux
+from launch_py.supervision.event_loop import EventLoop, Timer
+from launch_py.supervision.line_splitter import LineSplitter
+
+GROUP_GRACE_S = 1.0
+"""How long what a process left behind may take to end after SIGTERM, before SIGKILL."""
+
+GROUP_POLL_S = 0.02
+"""How often a group without its leader is looked at: its end gives no signal."""
+
+MAX_DRAIN_READS = 256
+READ_BYTES = 65536
+
+
+@dataclass(frozen=True, slots=True)
+class ChildSpec:
+    """What to start."""
+
+    command: Sequence[str]
+    environment: Mapping[str, str]
+    cwd: str | None
+    emulate_tty: bool
+
+
+class ChildProcess:
+    """A started process in a session of its own; belongs to the loop's thread.
+
+    It counts as ended when its leader has exited and nothing is left in its process group: what a
+    crashed process leaves behind is ended before `on_end` is called.
+
+    Args:
+        loop: the event loop.
+        spec: what to start.
+        on_line: called with the stream, "stdout" or "stderr", and each line.
+        on_end: called once with the exit code; a signal counts as 128 + its number.
+        before_kill: called before SIGKILL is sent, the last chance to look at the process.
+    """
+
+    def __init__(
+        self,
+        loop: EventLoop,
+        spec: ChildSpec,
+        on_line: Callable[[str, str], None],
+        on_end: Callable[[int], None],
+        before_kill: Callable[[], None],
+    ) -> None:
+        self.killed = False
+        """Whether it had to be ended by SIGKILL."""
+        self.ended = False
+        self._loop = loop
+        self._on_line = on_line
+        self._on_end = on_end
+        self._before_kill = before_kill
+        self._streams: dict[int, tuple[str, LineSplitter]] = {}
+        self._escalation: Timer | None = None
+        self._exit_code: int | None = None
+        self._process = self._start(spec)
+        self.pid = self._process.pid
+
+    def stop(self, delays: StopDelays) -> None:
+        """Send SIGINT to the group, then SIGTERM, then SIGKILL, while it does not end."""
+        self._signal(signal.SIGINT)
+        self._escalate(delays.sigterm_timeout_s, lambda: self._terminate(delays))
+
+    def kill(self) -> None:
+        """Send SIGKILL to the group now."""
+        if self.ended:
+            return
+        self._before_kill()
+        if self._exit_code is None:
+            self.killed = True
+        else:
+            # What is left may be a zombie that its own parent never reaps: do not wait for it.
+            self._escalate(GROUP_GRACE_S, self._end)
+        self._signal(signal.SIGKILL)
+
+    def reap(self) -> None:
+        """Notice the end of the leader; to be called when SIGCHLD has come."""
+        if self._exit_code is not None or self.ended:
+            return
+        code = self._process.poll()
+        if code is not None:
+            self._exit_code = code if code >= 0 else 128 - code
+            self._finish_group()
+
+    def _start(self, spec: ChildSpec) -> subprocess.Popen[bytes]:
+        if spec.emulate_tty:
+            streams = [("stdout", *os.openpty())]
+        else:
+            streams = [("stdout", *os.pipe()), ("stderr", *os.pipe())]
+        try:
+            process = subprocess.Popen(
+                spec.command,
+                stdin=subprocess.DEVNULL,
+                stdout=streams[0][2],
+                stderr=streams[-1][2],
+                env=spec.environment,
+                cwd=spec.cwd,
+                start_new_session=True,
+                preexec_fn=linux.death_pact(),
+            )
+        except (OSError, subprocess.SubprocessError) as error:
+            for _, readable, _ in streams:
+                os.close(readable)
+            raise StartError(f"cannot run {spec.command[0]}: {_reason(error, spec)}") from error
+        finally:
+            for _, _, writable in streams:
+                os.close(writable)
+        for name, readable, _ in streams:
+            self._read_from(readable, name)
+        return process
+
+    def _read_from(self, fd: int, stream: str) -> None:
+        os.set_blocking(fd, False)
+        self._streams[fd] = (stream, LineSplitter())
+        self._loop.add_reader(fd, lambda: self._read(fd))
+
+    def _read(self, fd: int) -> bool:
+        """Read once; return whether there may be more."""
+        stream, splitter = self._streams[fd]
+        try:
+            data = os.read(fd, READ_BYTES)
+        except BlockingIOError:
+            return False
+        except OSError:
+            data = b""  # The other end of a pseudo terminal is closed.
+        lines = splitter.feed(data) if data else splitter.finish()
+        for line in lines:
+            self._on_line(stream, line)
+        if not data:
+            self._close(fd)
+        return bool(data)
+
+    def _close(self, fd: int) -> None:
+        self._loop.remove_reader(fd)
+        del self._streams[fd]
+        os.close(fd)
+
+    def _signal(self, number: signal.Signals) -> None:
+        if not self.ended:
+            linux.signal_group(self.pid, number)
+
+    def _escalate(self, delay_s: float, action: Callable[[], None]) -> None:
+        if self._escalation is not None:
+            self._escalation.cancel()
+        self._escalation = self._loop.call_later(delay_s, action)
+
+    def _terminate(self, delays: StopDelays) -> None:
+        self._signal(signal.SIGTERM)
+        self._escalate(delays.sigkill_timeout_s, self.kill)
+
+    def _finish_group(self) -> None:
+        if linux.signal_group(self.pid, signal.SIGTERM):
+            self._escalate(GROUP_GRACE_S, self.kill)
+            self._await_group()
+        else:
+            self._end()
+
+    def _await_group(self) -> None:
+        if not self.ended and linux.group_exists(self.pid):
+            self._loop.call_later(GROUP_POLL_S, self._await_group)
+        else:
+            self._end()
+
+    def _end(self) -> None:
+        if self.ended:
+            return
+        if self._escalation is not None:
+            self._escalation.cancel()
+        self.ended = True
+        for fd in list(self._streams):
+            reads = 0
+            while fd in self._streams and reads < MAX_DRAIN_READS and self._read(fd):
+                reads += 1
+            if fd in self._streams:  # A descendant in a session of its own holds it open.
+                stream, splitter = self._streams[fd]
+                for line in splitter.finish():
+                    self._on_line(stream, line)
+                self._close(fd)
+        self._on_end(self._exit_code or 0)
+
+
+def _reason(error: Exception, spec: ChildSpec) -> str:
+    if isinstance(error, OSError):
+        missing = spec.cwd is not None and not os.path.isdir(spec.cwd)
+        return f"there is no folder {spec.cwd}" if missing else str(error.strerror).lower()
+    return str(error)

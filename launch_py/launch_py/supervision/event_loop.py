@@ -1,0 +1,111 @@
+"""The one thread of the supervisor: waits for output, signals and timers.
+
+asyncio would do, but costs 30 ms to import, and the supervisor needs no more than this.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import os
+import selectors
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+Callback = Callable[[], None]
+
+
+class Timer:
+    """A callback that is due at a time, unless cancelled."""
+
+    __slots__ = ("callback", "cancelled", "due_s")
+
+    def __init__(self, due_s: float, callback: Callback) -> None:
+        self.due_s = due_s
+        self.callback = callback
+        self.cancelled = False
+
+    def cancel(self) -> None:
+        """Make sure that the callback is not called any more."""
+        self.cancelled = True
+
+
+class EventLoop:
+    """Calls back when a file is readable, a signal has come or a timer is due.
+
+    Everything happens in the thread that calls `run`, which must be the main thread for signals.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self.clock = clock
+        self._selector = selectors.DefaultSelector()
+        self._timers: list[tuple[float, int, Timer]] = []
+        self._order = itertools.count()
+
+    def add_reader(self, fd: int, callback: Callback) -> None:
+        """Call back whenever `fd` is readable."""
+        self._selector.register(fd, selectors.EVENT_READ, callback)
+
+    def remove_reader(self, fd: int) -> None:
+        """Stop calling back for `fd`."""
+        self._selector.unregister(fd)
+
+    def call_later(self, delay_s: float, callback: Callback) -> Timer:
+        """Call back once after `delay_s`; timers of one time are called in their order."""
+        timer = Timer(self.clock() + delay_s, callback)
+        heapq.heappush(self._timers, (timer.due_s, next(self._order), timer))
+        return timer
+
+    def run(self, until: Callable[[], bool]) -> None:
+        """Call back until `until()` is true; it is asked after each round of callbacks."""
+        while not until():
+            self._wait()
+            self._call_due_timers()
+
+    def close(self) -> None:
+        """Release the selector."""
+        self._selector.close()
+
+    def _wait(self) -> None:
+        while self._timers and self._timers[0][2].cancelled:
+            heapq.heappop(self._timers)
+        timeout_s = max(0.0, self._timers[0][0] - self.clock()) if self._timers else None
+        for key, _ in self._selector.select(timeout_s):
+            # An earlier callback of this round may have removed this one.
+            if key.fd in self._selector.get_map():
+                key.data()
+
+    def _call_due_timers(self) -> None:
+        now_s = self.clock()
+        while self._timers and self._timers[0][0] <= now_s:
+            timer = heapq.heappop(self._timers)[2]
+            if not timer.cancelled:
+                timer.callback()
+
+    @contextmanager
+    def signals(self, callbacks: Mapping[signal.Signals, Callback]) -> Iterator[None]:
+        """Call back from the loop, not from a signal handler, while the context lasts."""
+        readable, writable = os.pipe()
+        os.set_blocking(readable, False)
+        os.set_blocking(writable, False)
+
+        def deliver() -> None:
+            for number in os.read(readable, 4096):
+                callback = callbacks.get(signal.Signals(number))
+                if callback is not None:
+                    callback()
+
+        previous_fd = signal.set_wakeup_fd(writable, warn_on_full_buffer=False)
+        previous = {number: signal.signal(number, lambda *_: None) for number in callbacks}
+        self.add_reader(readable, deliver)
+        try:
+            yield
+        finally:
+            self.remove_reader(readable)
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+            signal.set_wakeup_fd(previous_fd)
+            os.close(readable)
+            os.close(writable)

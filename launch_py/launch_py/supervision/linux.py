@@ -1,0 +1,106 @@
+"""What Linux offers to hold on to processes, and Python does not wrap."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+from collections.abc import Callable
+
+_PR_SET_PDEATHSIG = 1
+_PR_SET_CHILD_SUBREAPER = 36
+
+
+def _prctl(option: int, value: int) -> None:
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.prctl(option, ctypes.c_ulong(value), 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), f"prctl({option}) failed")
+
+
+def become_subreaper() -> None:
+    """Make orphans among the descendants of this process its children, instead of init's."""
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)
+
+
+def die_with_parent(parent_pid: int, number: signal.Signals) -> None:
+    """Ask for a signal when the parent ends; ends at once if it has ended already.
+
+    The parent is the thread that made this process, so only a main thread should.
+    """
+    _prctl(_PR_SET_PDEATHSIG, number)
+    if os.getppid() != parent_pid:
+        os._exit(1)
+
+
+def death_pact() -> Callable[[], None]:
+    """Return what a child calls between fork and exec, so that it never outlives this process.
+
+    Everything that it needs is prepared here: the child only makes two system calls. The launcher
+    forks from its only thread, so no lock can be held by another.
+    """
+    libc = ctypes.CDLL(None, use_errno=True)
+    parent_pid = os.getpid()
+    value = ctypes.c_ulong(signal.SIGKILL)
+
+    def in_child() -> None:
+        libc.prctl(_PR_SET_PDEATHSIG, value, 0, 0, 0)
+        if os.getppid() != parent_pid:
+            os._exit(1)
+
+    return in_child
+
+
+def children() -> list[int]:
+    """Return the process ids of this process's children, adopted orphans included."""
+    pids: list[int] = []
+    for thread in os.listdir("/proc/self/task"):
+        try:
+            with open(f"/proc/self/task/{thread}/children", encoding="ascii") as file:
+                pids.extend(int(word) for word in file.read().split())
+        except OSError:
+            continue  # The thread has ended, or the kernel lacks this file.
+    return pids
+
+
+def reap(pids: list[int]) -> None:
+    """Take the exit status of those of these children that have ended."""
+    for pid in pids:
+        try:
+            os.waitpid(pid, os.WNOHANG)
+        except ChildProcessError:
+            continue
+
+
+def group_exists(group: int) -> bool:
+    """Return whether a process group has members."""
+    return signal_group(group, None)
+
+
+def signal_group(group: int, number: signal.Signals | None) -> bool:
+    """Send a signal to a process group; return whether it has members."""
+    try:
+        os.killpg(group, number or 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True  # Some member runs as another user.
+    return True
+
+
+def session_of(pid: int) -> int | None:
+    """Return the session of a process, None if it is gone."""
+    try:
+        return os.getsid(pid)
+    except OSError:
+        return None
+
+
+def seconds_since_start() -> float:
+    """Return how long ago this process was started, its interpreter's start included."""
+    import time
+
+    with open("/proc/self/stat", encoding="utf-8") as file:
+        # The name in parentheses may hold spaces; the start time is field 22.
+        started_ticks = int(file.read().rpartition(")")[2].split()[19])
+    started_s = started_ticks / os.sysconf("SC_CLK_TCK")
+    return max(0.0, time.clock_gettime(time.CLOCK_BOOTTIME) - started_s)

@@ -1,0 +1,249 @@
+"""One process of the plan over all its runs: readiness, restarts, stop."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from enum import Enum
+from typing import Protocol
+
+from launch_py.errors import StartError
+from launch_py.plan import ProcessStep, StopDelays
+from launch_py.readiness import LogLine, Notified, Probe, ProcessExited, Readiness
+from launch_py.restart_policy import RestartHistory
+from launch_py.supervision.child_process import ChildProcess
+from launch_py.supervision.event_loop import EventLoop, Timer
+from launch_py.supervision.reporter import Reporter
+
+EXIT_CANNOT_START = 127
+"""The exit code of a shell for a command that it cannot run."""
+
+
+class MemberState(Enum):
+    """Where a process is in its life."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    BACKING_OFF = "waiting for its restart"
+    ENDED = "ended"
+
+
+class MemberListener(Protocol):
+    """Who is told what happens to a process."""
+
+    def member_started(self, member: Member) -> None:
+        """The process runs, for the first time or again."""
+        ...
+
+    def member_ready(self, member: Member) -> None:
+        """All its conditions of readiness have been met, for the first time."""
+        ...
+
+    def member_late(self, member: Member, missing: str) -> None:
+        """It is not ready within its time."""
+        ...
+
+    def member_ended(self, member: Member) -> None:
+        """It has ended and will not be restarted."""
+        ...
+
+
+class ProcessRunner(Protocol):
+    """Starts processes and watches conditions from outside them."""
+
+    def start(
+        self,
+        step: ProcessStep,
+        on_line: Callable[[str, str], None],
+        on_end: Callable[[int], None],
+    ) -> ChildProcess:
+        """Start the process of a step; raises StartError."""
+        ...
+
+    def watch(
+        self, step: ProcessStep, condition: Probe, on_met: Callable[[], None]
+    ) -> Callable[[], None]:
+        """Call back once the condition is met; return how to stop watching."""
+        ...
+
+
+class Member:
+    """Supervises one process; belongs to the loop's thread."""
+
+    def __init__(
+        self,
+        step: ProcessStep,
+        loop: EventLoop,
+        runner: ProcessRunner,
+        reporter: Reporter,
+        listener: MemberListener,
+    ) -> None:
+        self.step = step
+        self.state = MemberState.WAITING
+        self.ready = False
+        self.was_started = False
+        self.stopping = False
+        self.exit_code = 0
+        self.ending = ""
+        """How it ended, to be put after its name in a sentence."""
+        self.status = ""
+        """What it last said of itself; see `NotifySocket`."""
+        self.child: ChildProcess | None = None
+        self._loop = loop
+        self._runner = runner
+        self._reporter = reporter
+        self._listener = listener
+        self._history = RestartHistory(step.restart, loop.clock)
+        self._pending: list[Readiness] = []
+        self._patterns: dict[LogLine, re.Pattern[str]] = {}
+        self._cancel: list[Callable[[], None]] = []
+        self._restart_timer: Timer | None = None
+        self._started_s = 0.0
+
+    @property
+    def name(self) -> str:
+        """What the process is called."""
+        return self.step.name
+
+    @property
+    def active(self) -> bool:
+        """Whether it runs, or will run again."""
+        return self.state in (MemberState.RUNNING, MemberState.BACKING_OFF)
+
+    def missing(self) -> str:
+        """Return what is missing for it to be ready."""
+        return " and ".join(condition.missing() for condition in self._pending)
+
+    def start(self) -> None:
+        """Start the process."""
+        self._history.started()
+        self._started_s = self._loop.clock()
+        try:
+            self.child = self._runner.start(self.step, self._on_line, self._on_end)
+        except StartError as error:
+            self.state = MemberState.ENDED
+            self.exit_code = EXIT_CANNOT_START
+            self.ending = f"could not be started: {error}"
+            self._listener.member_ended(self)
+            return
+        self.state = MemberState.RUNNING
+        self.was_started = True
+        self._listener.member_started(self)
+        if not self.ready:
+            self._await_readiness()
+
+    def stop(self, delays: StopDelays | None = None) -> None:
+        """Ask it to end, first politely; a restart that is due does not happen."""
+        self.stopping = True
+        if self.state is MemberState.BACKING_OFF:
+            self._end_for_good("was stopped")
+        elif self.state is MemberState.RUNNING and self.child is not None:
+            self._stop_watching()
+            self.child.stop(delays or self.step.stop_delays)
+
+    def kill(self) -> None:
+        """End it now."""
+        self.stopping = True
+        if self.state is MemberState.BACKING_OFF:
+            self._end_for_good("was stopped")
+        elif self.child is not None:
+            self._stop_watching()
+            self.child.kill()
+
+    def reap(self) -> None:
+        """Notice whether it has ended; to be called when SIGCHLD has come."""
+        if self.child is not None:
+            self.child.reap()
+
+    def notified(self, fields: dict[str, str]) -> None:
+        """Take a notification that the process or a descendant of it has sent."""
+        self.status = fields.get("STATUS", self.status)
+        if fields.get("READY") == "1":
+            for condition in [c for c in self._pending if isinstance(c, Notified)]:
+                self._met(condition)
+
+    def _await_readiness(self) -> None:
+        self._pending = list(self.step.ready)
+        self._patterns = {c: re.compile(c.pattern) for c in self._pending if isinstance(c, LogLine)}
+        if not self._pending:
+            self._become_ready()
+        for condition in self.step.ready:
+            timer = self._loop.call_later(
+                condition.timeout_s, lambda c=condition: self._too_late(c)
+            )
+            self._cancel.append(timer.cancel)
+            if isinstance(condition, Probe):
+                self._cancel.append(
+                    self._runner.watch(self.step, condition, lambda c=condition: self._met(c))
+                )
+
+    def _met(self, condition: Readiness) -> None:
+        if condition in self._pending:
+            self._pending.remove(condition)
+            self._patterns = {c: p for c, p in self._patterns.items() if c in self._pending}
+            if not self._pending:
+                self._become_ready()
+
+    def _become_ready(self) -> None:
+        self._stop_watching()
+        self.ready = True
+        self._listener.member_ready(self)
+
+    def _too_late(self, condition: Readiness) -> None:
+        if condition in self._pending:
+            self._listener.member_late(
+                self, f"is not ready after {condition.timeout_s:g} s: {self.missing()}"
+            )
+
+    def _stop_watching(self) -> None:
+        cancel, self._cancel = self._cancel, []
+        for stop_watching in cancel:
+            stop_watching()
+
+    def _on_line(self, stream: str, text: str) -> None:
+        self._reporter.line(self.name, text, shown=stream in self.step.shown)
+        for condition, pattern in list(self._patterns.items()):
+            if pattern.search(text):
+                self._met(condition)
+
+    def _on_end(self, exit_code: int) -> None:
+        self._stop_watching()
+        self.exit_code = exit_code
+        ran_s = self._loop.clock() - self._started_s
+        ending = describe_exit(exit_code)
+        if self.stopping:
+            killed = self.child is not None and self.child.killed
+            self._end_for_good("did not stop and was killed" if killed else "stopped")
+            return
+        for condition in [c for c in self._pending if isinstance(c, ProcessExited)]:
+            if condition.code == exit_code:
+                self._met(condition)
+        decision = self._history.ended(exit_code)
+        if decision.delay_s is None:
+            why = f"; giving up: {decision.gave_up}" if decision.gave_up else ""
+            self._end_for_good(f"{ending} after {ran_s:.2f} s{why}")
+            return
+        self.state = MemberState.BACKING_OFF
+        self._reporter.problem(
+            f"{self.name} {ending} after {ran_s:.2f} s; restart in {decision.delay_s:g} s"
+        )
+        self._restart_timer = self._loop.call_later(decision.delay_s, self.start)
+
+    def _end_for_good(self, ending: str) -> None:
+        if self._restart_timer is not None:
+            self._restart_timer.cancel()
+        self.state = MemberState.ENDED
+        self.ending = ending
+        self._listener.member_ended(self)
+
+
+def describe_exit(exit_code: int) -> str:
+    """Return how a process ended, to be put after its name in a sentence."""
+    import signal
+
+    if exit_code > 128:
+        try:
+            return f"was killed by {signal.Signals(exit_code - 128).name}"
+        except ValueError:
+            pass
+    return f"ended with exit code {exit_code}"

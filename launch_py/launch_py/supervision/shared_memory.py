@@ -1,0 +1,119 @@
+"""Removes what Fast DDS leaves in /dev/shm when one of our processes is killed.
+
+A participant that ends in order removes its own files; one that is killed leaves up to eight. Each
+segment `fastrtps_X` comes with a lock file `fastrtps_X_el` on which its owner holds a lock, so the
+kernel's list of locks says who owns what. The lock is looked up when the file appears (inotify), and
+after the owner's death the files go, but only if the lock can be taken: then nobody lives in them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+from collections.abc import Callable
+from contextlib import suppress
+
+SHM_FOLDER = "/dev/shm"
+PREFIX = "fastrtps_"
+LOCK_SUFFIXES = ("_el", "_sl")
+_IN_CREATE = 0x100
+
+
+class SharedMemoryLedger:
+    """Knows which segments processes of ours own; belongs to the loop's thread.
+
+    Args:
+        is_ours: tells whether a process id belongs to a supervised process or a descendant.
+        folder: where the segments are.
+    """
+
+    def __init__(self, is_ours: Callable[[int], bool], folder: str = SHM_FOLDER) -> None:
+        self._is_ours = is_ours
+        self._folder = folder
+        self._owned: set[str] = set()
+
+    def observe(self) -> None:
+        """Note the segments that processes of ours own now."""
+        lock_files = self._lock_files()
+        owners = _lock_owners(self._folder) if lock_files else {}
+        for name, inode in lock_files:
+            if any(self._is_ours(pid) for pid in owners.get(inode, ())):
+                self._owned.add(_stem(name))
+
+    def sweep(self) -> list[str]:
+        """Remove the noted segments that have no living owner; return their names."""
+        removed: list[str] = []
+        for stem in sorted(self._owned):
+            if self._is_abandoned(stem):
+                files = (stem, *(stem + suffix for suffix in LOCK_SUFFIXES), f"sem.{stem}_mutex")
+                for name in files:
+                    with suppress(OSError):
+                        os.unlink(os.path.join(self._folder, name))
+                        removed.append(name)
+                self._owned.discard(stem)
+        return removed
+
+    def _lock_files(self) -> list[tuple[str, int]]:
+        try:
+            with os.scandir(self._folder) as entries:
+                return [
+                    (entry.name, entry.inode())
+                    for entry in entries
+                    if entry.name.startswith(PREFIX) and entry.name.endswith(LOCK_SUFFIXES)
+                ]
+        except OSError:
+            return []
+
+    def _is_abandoned(self, stem: str) -> bool:
+        """Return whether no process holds a lock of the segment."""
+        for suffix in LOCK_SUFFIXES:
+            try:
+                fd = os.open(os.path.join(self._folder, stem + suffix), os.O_RDONLY)
+            except OSError:
+                continue
+            try:
+                fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                return False
+            finally:
+                os.close(fd)
+        return True
+
+
+def watch_folder(folder: str = SHM_FOLDER) -> int | None:
+    """Return an inotify file that becomes readable when a file is made in the folder.
+
+    None where the kernel gives none: the ledger then knows less and removes less.
+    """
+    libc = ctypes.CDLL(None, use_errno=True)
+    fd = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
+    if fd < 0:
+        return None
+    if libc.inotify_add_watch(fd, os.fsencode(folder), _IN_CREATE) < 0:
+        os.close(fd)
+        return None
+    return fd
+
+
+def _stem(lock_file: str) -> str:
+    for suffix in LOCK_SUFFIXES:
+        lock_file = lock_file.removesuffix(suffix)
+    return lock_file
+
+
+def _lock_owners(folder: str) -> dict[int, set[int]]:
+    """Return the processes that hold locks on files of the folder's device, by inode.
+
+    See proc_locks(5): the sixth field is major:minor:inode, the first two in hexadecimal.
+    """
+    owners: dict[int, set[int]] = {}
+    with suppress(OSError), open("/proc/locks", encoding="ascii") as file:
+        device = os.stat(folder).st_dev
+        prefix = f"{os.major(device):02x}:{os.minor(device):02x}:"
+        for line in file:
+            fields = line.split()
+            if len(fields) >= 6 and fields[1] == "FLOCK" and fields[5].startswith(prefix):
+                inode = int(fields[5].removeprefix(prefix))
+                owners.setdefault(inode, set()).add(int(fields[4]))
+    return owners

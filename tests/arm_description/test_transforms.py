@@ -1,0 +1,56 @@
+"""Rotations against each other and against their definitions."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from arm_description.transforms import (
+    quaternion_from_rpy,
+    quaternion_product,
+    rotation_about,
+    rotation_from_rpy,
+    transform,
+)
+
+ANGLES = st.floats(-7.0, 7.0)
+RPY = st.tuples(ANGLES, ANGLES, ANGLES)
+X, Y, Z = np.eye(3)
+
+
+def rotation_of(quaternion: np.ndarray) -> np.ndarray:
+    """Return the rotation of a unit quaternion by its sandwich product with the axes."""
+    x, y, z, w = quaternion
+    conjugate = np.array([-x, -y, -z, w])
+    columns = [
+        quaternion_product(quaternion_product(quaternion, np.array([*axis, 0.0])), conjugate)[:3]
+        for axis in np.eye(3)
+    ]
+    return np.column_stack(columns)
+
+
+@given(RPY)
+def test_roll_pitch_yaw_turn_about_fixed_axes_in_this_order(rpy):
+    roll, pitch, yaw = rpy
+    expected = rotation_about(Z, yaw) @ rotation_about(Y, pitch) @ rotation_about(X, roll)
+    assert np.allclose(rotation_from_rpy(rpy), expected, atol=1e-12)
+
+
+@given(RPY)
+def test_the_quaternion_turns_as_the_matrix_does(rpy):
+    assert np.allclose(rotation_of(quaternion_from_rpy(rpy)), rotation_from_rpy(rpy), atol=1e-12)
+
+
+@given(RPY, RPY)
+def test_a_product_turns_by_the_second_then_by_the_first(first, second):
+    product = quaternion_product(quaternion_from_rpy(first), quaternion_from_rpy(second))
+    expected = rotation_from_rpy(first) @ rotation_from_rpy(second)
+    assert np.allclose(rotation_of(product), expected, atol=1e-12)
+
+
+def test_a_quarter_turn_about_z_takes_x_to_y():
+    assert np.allclose(rotation_about((0.0, 0.0, 1.0), np.pi / 2) @ X, Y)
+
+
+def test_a_transform_turns_then_shifts():
+    pose = transform(rotation_about(Z, np.pi / 2), (0.0, 0.0, 5.0))
+    assert np.allclose(pose @ [1, 0, 0, 1], [0, 1, 5, 1])

@@ -1,0 +1,246 @@
+"""URDF as a whole: what is passed over, the tree's errors with their lines, and any input."""
+
+import string
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from arm_description import DescriptionError, UrdfError, XmlError, parse_urdf
+
+TWO_LINKS = "<link name='a'/>\n<link name='b'/>\n"
+
+
+def joint(name: str, parent: str, child: str, inside: str = "") -> str:
+    return (
+        f"<joint name='{name}' type='continuous'><parent link='{parent}'/>"
+        f"<child link='{child}'/>{inside}</joint>\n"
+    )
+
+
+def refusal(text: str) -> str:
+    with pytest.raises(UrdfError) as caught:
+        parse_urdf(text, "arm.urdf")
+    return str(caught.value)
+
+
+def test_names_and_lines_are_kept_in_the_documents_order():
+    robot = parse_urdf(f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b')}</robot>")
+    assert robot.name == "r"
+    assert [(link.name, link.line) for link in robot.links] == [("a", 2), ("b", 3)]
+    assert [(j.name, j.line) for j in robot.joints] == [("j", 4)]
+    assert robot.root == "a"
+
+
+def test_what_belongs_to_others_and_what_is_unknown_is_passed_over():
+    robot = parse_urdf(
+        """<robot name='r' xmlns:x='http://www.ros.org/wiki/xacro' version='1.0'>
+             text
+             <gazebo reference='nowhere'><sensor type='camera'/></gazebo>
+             <ros2_control name='x'><joint name='j9'/></ros2_control>
+             <transmission name='t'/> <x:macro/> <anything><joint/></anything>
+             <link name='a' new='1'><self_collision_checking/> <sensor/></link>
+           </robot>"""
+    )
+    assert [link.name for link in robot.links] == ["a"]
+    assert robot.joints == ()
+
+
+def test_elements_in_a_namespace_are_read():
+    robot = parse_urdf("<robot name='r' xmlns='http://www.ros.org'><link name='a'/></robot>")
+    assert robot.root == "a"
+
+
+def test_text_that_is_no_xml_is_an_xml_error():
+    with pytest.raises(XmlError, match=r"^arm\.urdf, line 1: "):
+        parse_urdf("not a robot", "arm.urdf")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "\n<sdf version='1.6'/>",
+            "arm.urdf, line 2: <sdf> is not a robot; a URDF's outermost element is <robot>",
+        ),
+        ("<robot>\n</robot>", "arm.urdf, line 1: <robot> needs the attribute 'name'"),
+        ("<robot name='r'/>", "arm.urdf, the robot has no links"),
+        (
+            "<robot name='r'>\n<link/></robot>",
+            "arm.urdf, line 2: <link> needs the attribute 'name'",
+        ),
+        (
+            "<robot name='r'>\n<link name=' '/></robot>",
+            "arm.urdf, line 2: <link> needs the attribute 'name'",
+        ),
+        (
+            "<robot name='r'><link name='a'/>\n<link name='a'/></robot>",
+            "arm.urdf, line 2: a second link 'a'; the first is in line 1",
+        ),
+        (
+            f"<robot name='r'>{TWO_LINKS}<link name='c'/>\n"
+            f"{joint('j', 'a', 'b')}{joint('j', 'b', 'c')}</robot>",
+            "arm.urdf, line 5: a second joint 'j'; the first is in line 4",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}</robot>",
+            "arm.urdf, a robot has one root link, but no joint has as its child any of "
+            "'a' (line 2), 'b' (line 3)",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'x', 'b')}</robot>",
+            "arm.urdf, line 4: joint 'j' has the parent link 'x', which does not exist; "
+            "the robot has a, b",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'x')}</robot>",
+            "arm.urdf, line 4: joint 'j' has the child link 'x', which does not exist; "
+            "the robot has a, b",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b')}{joint('k', 'a', 'b')}</robot>",
+            "arm.urdf, line 5: link 'b' is the child of joint 'k' and of joint 'j'; "
+            "a link has one parent",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b')}{joint('k', 'b', 'a')}</robot>",
+            "arm.urdf, line 5: links that are each other's parents in a circle: a -> b -> a",
+        ),
+        (
+            f"<robot name='r'>\n{TWO_LINKS}<link name='c'/>{joint('j', 'b', 'b')}"
+            f"{joint('k', 'a', 'c')}</robot>",
+            "arm.urdf, line 4: links that are each other's parents in a circle: b -> b",
+        ),
+    ],
+)
+def test_an_error_names_source_line_and_what_exists(text, message):
+    assert refusal(text) == message
+
+
+def test_a_mimic_of_an_unknown_joint_is_refused():
+    inside = "<mimic joint='x'/>"
+    assert refusal(f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b', inside)}</robot>") == (
+        "arm.urdf, line 4: joint 'j' mimics joint 'x', which does not exist; the robot has j"
+    )
+
+
+def test_many_names_are_cut_short():
+    links = "".join(f"<link name='l{n}'/>" for n in range(500))
+    message = refusal(f"<robot name='r'>{links}{joint('j', 'x', 'l0')}</robot>")
+    assert message.endswith("l39 and 460 more")
+
+
+def test_a_chain_of_ten_thousand_links_is_read_at_once():
+    count = 10_000
+    links = "".join(f"<link name='l{n}'/>" for n in reversed(range(count)))
+    joints = "".join(joint(f"j{n}", f"l{n - 1}", f"l{n}") for n in range(1, count))
+    robot = parse_urdf(f"<robot name='r'>{links}{joints}</robot>")
+    assert robot.root == "l0"
+    assert robot.joints_in_tree_order[-1].name == f"j{count - 1}"
+
+
+TAGS = [
+    "robot",
+    "link",
+    "joint",
+    "visual",
+    "collision",
+    "inertial",
+    "mass",
+    "inertia",
+    "origin",
+    "geometry",
+    "box",
+    "sphere",
+    "cylinder",
+    "capsule",
+    "mesh",
+    "material",
+    "color",
+    "texture",
+    "parent",
+    "child",
+    "axis",
+    "limit",
+    "mimic",
+    "dynamics",
+    "safety_controller",
+]
+ATTRIBUTES = [
+    "name",
+    "type",
+    "link",
+    "joint",
+    "xyz",
+    "rpy",
+    "size",
+    "radius",
+    "length",
+    "filename",
+    "scale",
+    "rgba",
+    "value",
+    "ixx",
+    "iyy",
+    "izz",
+    "lower",
+    "upper",
+    "effort",
+    "velocity",
+    "multiplier",
+    "offset",
+    "soft_lower_limit",
+]
+VALUES = st.one_of(
+    st.sampled_from(
+        [
+            "a",
+            "b",
+            "c",
+            "revolute",
+            "continuous",
+            "prismatic",
+            "fixed",
+            "floating",
+            "planar",
+            "0",
+            "1",
+            "-1",
+            "1e999",
+            "nan",
+            "inf",
+            "1_0",
+        ]
+    ),
+    st.sampled_from(
+        ["0 0 1", "1 2", "0 0 0", "1 0 0 1", "2 0 0 1", "nan 0 0", "", "1e308 1e308 0"]
+    ),
+    st.text(string.printable, max_size=8),
+)
+
+
+@st.composite
+def elements(draw: st.DrawFn, depth: int = 4) -> str:
+    """Any tree of a URDF's words: most are almost right."""
+    tag = draw(st.sampled_from(TAGS))
+    names = draw(st.lists(st.sampled_from(ATTRIBUTES), max_size=5, unique=True))
+    quoted = {name: draw(VALUES).translate(str.maketrans("<&\"'", "____")) for name in names}
+    inside = draw(st.lists(elements(depth - 1), max_size=4)) if depth else []
+    attributes = "".join(f' {name}="{value}"' for name, value in quoted.items())
+    return f"<{tag}{attributes}>{''.join(inside)}</{tag}>"
+
+
+@given(st.lists(elements(), max_size=6).map("".join))
+def test_any_urdf_is_a_robot_or_a_description_error(inside):
+    try:
+        robot = parse_urdf(f"<robot name='r'>{inside}</robot>")
+    except DescriptionError as error:
+        assert str(error).startswith("robot_description")
+    else:
+        assert {j.child for j in robot.joints} | {robot.root} == {x.name for x in robot.links}
+
+
+@given(st.one_of(st.text(), st.text("<>/='\" robtlink&;!-[]?\n")))
+def test_any_text_is_a_description_error(text):
+    with pytest.raises(DescriptionError):
+        parse_urdf(text)

@@ -1,0 +1,35 @@
+"""What `prepare_environment` does to the environment of a process."""
+
+import importlib.util
+import sys
+
+import pytest
+
+from arm_node.environment import MissingInterfacesError, prepare_environment
+
+
+def test_this_pythons_prefix_is_searched_for_packages():
+    environment = {"HOME": "/home/me"}
+    prepare_environment(environment)
+    assert environment["AMENT_PREFIX_PATH"] == sys.prefix
+
+
+def test_what_the_user_sourced_is_kept_and_comes_first():
+    environment = {"HOME": "/home/me", "AMENT_PREFIX_PATH": "/opt/ros/jazzy"}
+    prepare_environment(environment)
+    assert environment["AMENT_PREFIX_PATH"] == f"/opt/ros/jazzy:{sys.prefix}"
+
+
+def test_a_process_without_home_gets_a_log_folder():
+    environment: dict[str, str] = {}
+    prepare_environment(environment)
+    assert environment["ROS_LOG_DIR"]
+
+
+def test_a_missing_interface_package_is_named_with_the_fix(monkeypatch):
+    found = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name == "tf2_msgs" else found(name)
+    )
+    with pytest.raises(MissingInterfacesError, match=r"tf2_msgs is not.*pip install"):
+        prepare_environment({"HOME": "/home/me"})

@@ -1,0 +1,221 @@
+"""Installations of the suite, each made from a copy of the sources: the repository stays clean."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tomllib
+import venv
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DESCRIBE = Path(__file__).with_name("describe_installation.py")
+TIMEOUT_S = 150.0
+
+
+@dataclass(frozen=True)
+class Project:
+    """The root pyproject.toml of a source tree."""
+
+    root: Path
+
+    @cached_property
+    def table(self) -> dict:
+        """The whole file."""
+        return tomllib.loads((self.root / "pyproject.toml").read_text())
+
+    @property
+    def packages(self) -> list[str]:
+        """The packages of the wheel."""
+        return self.table["tool"]["hatch"]["build"]["targets"]["wheel"]["dev-mode-dirs"]
+
+    @property
+    def shared_data(self) -> dict[str, str]:
+        """Where the wheel puts files that are no modules: source to target."""
+        return self.table["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-data"]
+
+    @property
+    def scripts(self) -> dict[str, str]:
+        """The console scripts: name to `module:function`."""
+        return self.table["project"]["scripts"]
+
+    def data_files(self) -> list[str]:
+        """Every file that belongs below share/, relative to it."""
+        found: list[str] = []
+        for source, target in self.shared_data.items():
+            path, place = self.root / source, Path(target).relative_to("share")
+            files = [path] if path.is_file() else [p for p in path.rglob("*") if p.is_file()]
+            found += [str(place / file.relative_to(path)) for file in files]
+        return sorted(found)
+
+
+@dataclass(frozen=True)
+class Installation:
+    """A place where the suite is installed, and how a process is started there."""
+
+    project: Project
+    python: Path
+    modules: Path
+    shares: Callable[[str], Path]
+    executable: Callable[[str], Path]
+    environment: Mapping[str, str]
+
+    def run(self, *command: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
+        """Run a command in a folder that has nothing to do with the sources."""
+        return run(command, folder, self.environment)
+
+    @cached_property
+    def description(self) -> dict:
+        """What a process of this installation says of itself: see describe_installation.py."""
+        command = [self.python, DESCRIBE, *self.project.packages]
+        return json.loads(run(command, Path("/"), self.environment).stdout)
+
+
+def run(
+    command: tuple | list, folder: Path, environment: Mapping[str, str] = os.environ
+) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end; one that fails fails the test with all that it said."""
+    done = subprocess.run(
+        [str(word) for word in command],
+        cwd=folder,
+        env=dict(environment),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    if done.returncode:
+        pytest.fail(f"{command} ended with {done.returncode}:\n{done.stdout}\n{done.stderr}")
+    return done
+
+
+def pip(*arguments: str | Path, into: Path, folder: Path) -> None:
+    """Run this environment's pip for another Python; no constraint of a CI run concerns it."""
+    environment = {name: value for name, value in os.environ.items() if name != "PIP_CONSTRAINT"}
+    run([sys.executable, "-m", "pip", "-q", "--python", into, *arguments], folder, environment)
+
+
+def make_environment(folder: Path) -> Path:
+    """Make a virtual environment that finds this one's dependencies; return its Python.
+
+    A line of a .pth file adds a folder without the .pth files in it, so an editable installation
+    of the suite in this environment does not leak into the new one.
+    """
+    venv.create(folder, symlinks=True)
+    paths = sysconfig.get_paths(vars={"base": str(folder), "platbase": str(folder)})
+    (Path(paths["purelib"]) / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    return folder / "bin" / "python"
+
+
+def environment_of(prefixes: str, **variables: str) -> dict[str, str]:
+    """Return the environment of a process: these prefixes, then the ROS packages of this one."""
+    inherited = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    return {**inherited, "AMENT_PREFIX_PATH": f"{prefixes}{os.pathsep}{sys.prefix}", **variables}
+
+
+def copy_sources(folder: Path) -> Project:
+    """Copy what the root wheel is made of."""
+    ignored = [line.rstrip("/") for line in (ROOT / ".gitignore").read_text().split()]
+    for package in Project(ROOT).packages:
+        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns(*ignored))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, folder / name)
+    return Project(folder)
+
+
+def in_environment(project: Project, prefix: Path, python: Path, modules: Path) -> Installation:
+    """Return an installation by pip into an environment."""
+    return Installation(
+        project,
+        python,
+        modules,
+        shares=lambda _package: prefix / "share",
+        executable=lambda name: prefix / "bin" / name,
+        environment=environment_of(str(prefix)),
+    )
+
+
+@pytest.fixture(scope="session")
+def project() -> Project:
+    """The project as it stands in the repository; only to be read."""
+    return Project(ROOT)
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, built in isolation as pip does."""
+    folder = tmp_path_factory.mktemp("wheel")
+    sources = copy_sources(folder / "sources")
+    run(
+        [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", folder, sources.root],
+        folder,
+    )
+    (built,) = folder.glob("*.whl")
+    # What is installed from it must not need them.
+    shutil.rmtree(sources.root)
+    return built
+
+
+def install_wheel(folder: Path, wheel: Path) -> Installation:
+    """Install the built wheel into an environment of its own."""
+    python = make_environment(folder / "venv")
+    pip("install", "--no-deps", wheel, into=python, folder=folder)
+    return in_environment(Project(ROOT), folder / "venv", python, folder / "venv")
+
+
+def install_editable(folder: Path, _wheel: Path) -> Installation:
+    """Do `pip install -e .` in an environment of its own."""
+    sources = copy_sources(folder / "sources")
+    python = make_environment(folder / "venv")
+    pip("install", "--no-deps", "-e", sources.root, into=python, folder=folder)
+    return in_environment(sources, folder / "venv", python, sources.root)
+
+
+def install_by_colcon(folder: Path, _wheel: Path) -> Installation:
+    """Do `colcon build` and take the environment that its set-up script makes."""
+    sources = copy_sources(folder / "sources")
+    python = make_environment(folder / "venv")
+    pip("install", "colcon-common-extensions", into=python, folder=folder)
+    run(
+        [folder / "venv/bin/colcon", "build", "--base-paths", *sources.packages],
+        sources.root,
+        environment_of(""),
+    )
+    install = sources.root / "install"
+    sourced = run(
+        ["bash", "-c", f". {install}/local_setup.bash && env -0"],
+        folder,
+        {k: v for k, v in os.environ.items() if k not in ("AMENT_PREFIX_PATH", "PYTHONPATH")},
+    )
+    variables = dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)
+    owners = {name: target.split(".")[0] for name, target in sources.scripts.items()}
+    return Installation(
+        sources,
+        python,
+        install,
+        shares=lambda package: install / package / "share",
+        executable=lambda name: install / owners[name] / "lib" / owners[name] / name,
+        environment=environment_of(
+            variables["AMENT_PREFIX_PATH"], PYTHONPATH=variables["PYTHONPATH"]
+        ),
+    )
+
+
+@pytest.fixture(
+    scope="session",
+    params=[install_wheel, install_editable, install_by_colcon],
+    ids=["wheel", "editable", "colcon"],
+)
+def installation(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, wheel: Path
+) -> Installation:
+    """The suite, installed in one of the three ways."""
+    return request.param(tmp_path_factory.mktemp(request.param.__name__), wheel)

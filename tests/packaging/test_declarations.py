@@ -1,0 +1,167 @@
+"""package.xml and setup.py, which colcon reads, agree with the root pyproject.toml."""
+
+import ast
+import configparser
+import re
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = sorted(path.parent.name for path in ROOT.glob("*/package.xml"))
+DATA_FOLDERS = ("config", "launch", "meshes", "urdf", "worlds")
+
+
+class SetupFile(ast.NodeVisitor):
+    """The literals of a setup.py, read without running it."""
+
+    def __init__(self, path: Path) -> None:
+        self.constants: dict[str, object] = {}
+        self.arguments: dict[str, object] = {}
+        self.visit(ast.parse(path.read_text()))
+
+    def visit_Assign(self, node: ast.Assign) -> None:
+        if isinstance(node.targets[0], ast.Name):
+            self.constants[node.targets[0].id] = self._literal(node.value)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        if isinstance(node.func, ast.Name) and node.func.id == "setup":
+            for keyword in node.keywords:
+                self.arguments[keyword.arg or ""] = self._literal(keyword.value)
+        self.generic_visit(node)
+
+    def _literal(self, node: ast.expr) -> object:
+        if isinstance(node, ast.Name):
+            return self.constants.get(node.id)
+        try:
+            return ast.literal_eval(node)
+        except ValueError:
+            return None
+
+    def entry_points(self, group: str) -> dict[str, str]:
+        """One group of entry points: name to `module:object`."""
+        groups = self.arguments["entry_points"]
+        assert isinstance(groups, dict)
+        return dict(re.split(r"\s*=\s*", line) for line in groups.get(group, []))
+
+
+def setup_file(package: str) -> SetupFile:
+    return SetupFile(ROOT / package / "setup.py")
+
+
+def manifest(package: str) -> etree._Element:
+    return etree.parse(ROOT / package / "package.xml").getroot()
+
+
+def entry_points(table: dict) -> dict[str, dict[str, str]]:
+    project = table["project"]
+    return {"console_scripts": project["scripts"], **project.get("entry-points", {})}
+
+
+def defined_names(module: str) -> set[str]:
+    """The classes and functions of a module, found without importing it."""
+    package, _, rest = module.partition(".")
+    path = ROOT / package / package / (rest.replace(".", "/") + ".py")
+    tree = ast.parse(path.read_text())
+    return {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+
+
+def test_every_package_is_in_the_wheel(project):
+    wheel = project.table["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert sorted(wheel["packages"]) == [f"{package}/{package}" for package in PACKAGES]
+    assert sorted(wheel["dev-mode-dirs"]) == PACKAGES
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_versions_agree(project, package):
+    version = project.table["project"]["version"]
+    assert manifest(package).findtext("version") == version
+    assert setup_file(package).arguments["version"] == version
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_licences_agree(project, package):
+    licence = project.table["project"]["license"]
+    assert manifest(package).findtext("license") == licence
+    assert setup_file(package).arguments["license"] == licence
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_descriptions_agree(package):
+    assert setup_file(package).arguments["description"] == manifest(package).findtext("description")
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_names_are_the_folders(package):
+    config = configparser.ConfigParser()
+    config.read(ROOT / package / "setup.cfg")
+    assert manifest(package).findtext("name") == package
+    assert setup_file(package).arguments["name"] == package
+    # Where `ros2 run` looks for executables.
+    assert config["install"]["install_scripts"] == f"$base/lib/{package}"
+    assert config["develop"]["script_dir"] == f"$base/lib/{package}"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_colcon_builds_it_as_a_python_package(package):
+    assert manifest(package).findtext("export/build_type") == "ament_python"
+
+
+def test_no_setup_file_has_a_group_of_entry_points_that_the_root_lacks(project):
+    groups = {
+        group
+        for package in PACKAGES
+        for group in setup_file(package).arguments["entry_points"]  # type: ignore[union-attr]
+    }
+    assert groups <= set(entry_points(project.table))
+
+
+def test_the_entry_points_agree(project):
+    for group, wanted in entry_points(project.table).items():
+        declared = {package: setup_file(package).entry_points(group) for package in PACKAGES}
+        owned = {
+            package: {
+                name: target for name, target in wanted.items() if target.split(".")[0] == package
+            }
+            for package in PACKAGES
+        }
+        assert declared == owned, group
+
+
+def test_every_entry_point_leads_to_something(project):
+    for group, targets in entry_points(project.table).items():
+        for name, target in targets.items():
+            module, _, attribute = target.partition(":")
+            assert attribute in defined_names(module), f"{group}: {name}"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_data_folders_agree(project, package):
+    present = [name for name in DATA_FOLDERS if (ROOT / package / name).is_dir()]
+    assert sorted(setup_file(package).constants["DATA_FOLDERS"]) == present  # type: ignore[call-overload]
+    wanted = {
+        f"{package}/resource/{package}": f"share/ament_index/resource_index/packages/{package}",
+        f"{package}/package.xml": f"share/{package}/package.xml",
+        **{f"{package}/{name}": f"share/{package}/{name}" for name in present},
+    }
+    declared = {
+        source: target
+        for source, target in project.shared_data.items()
+        if source.split("/")[0] == package
+    }
+    assert declared == wanted
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_other_packages_that_are_imported_are_declared(package):
+    imported: set[str] = set()
+    for path in (ROOT / package / package).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+                imported.add(node.module.split(".")[0])
+            elif isinstance(node, ast.Import):
+                imported.update(alias.name.split(".")[0] for alias in node.names)
+    depends = {element.text for element in manifest(package).iter("depend", "exec_depend")}
+    missing = (imported & set(PACKAGES)) - {package} - depends
+    assert missing == set()
