@@ -6,23 +6,16 @@ from typing import Any, Protocol
 
 from arm_control.controller import Controller
 from arm_control.controller_lifecycle import ControllerLifecycle
-from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
+from arm_control.controller_switch import SwitchRequest, SwitchResult
+from arm_control.controller_switcher import ControllerSwitcher
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
 from arm_control.resource_manager import ResourceManager, Trouble
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
-from arm_control.switch_planner import SwitchPlan, SwitchPlanner, SwitchRefusedError
 
 logger = logging.getLogger(__name__)
-
-NOTHING_TO_SWITCH = (
-    "After checking the controllers, no controllers need to be activated or deactivated."
-)
-PREPARE_REJECTED = "Could not switch controllers since prepare command mode switch was rejected."
-SWITCHED = "Successfully switched controllers!"
-SWITCH_FAILED = "Failed switching controllers.... "
 
 
 class ManagerObserver(Protocol):
@@ -67,6 +60,7 @@ class ControllerManager:
         self._commanding: tuple[ManagedController, ...] = ()
         self._broadcasting: tuple[ManagedController, ...] = ()
         self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
+        self._switcher = ControllerSwitcher(self._controllers, self.resources, self._lifecycle)
         self._observers: list[ManagerObserver] = []
 
     def add_observer(self, observer: ManagerObserver) -> None:
@@ -79,7 +73,7 @@ class ControllerManager:
         """Run the controllers that command something."""
         failed = [c for c in self._commanding if not c.run(time_s, period_s)]
         if failed:
-            self._stop_failed(failed)
+            self._replace_failed(failed)
 
     def write(self, time_s: float, period_s: float) -> None:
         """Hand the commands to the hardware."""
@@ -97,7 +91,7 @@ class ControllerManager:
         """Run the controllers that only look at states, such as broadcasters."""
         failed = [c for c in self._broadcasting if not c.run(time_s, period_s)]
         if failed:
-            self._stop_failed(failed)
+            self._replace_failed(failed)
 
     # Hardware
 
@@ -141,7 +135,7 @@ class ControllerManager:
 
     def list_controllers(self) -> tuple[ControllerStatus, ...]:
         """Return every loaded controller, the newest first."""
-        return tuple(c.status() for c in self._controllers.values())
+        return tuple(c.status() for c in reversed(self._controllers.values()))
 
     def load_controller(
         self, controller: Controller[Any], type_name: str, fallback_names: Sequence[str] = ()
@@ -157,7 +151,7 @@ class ControllerManager:
         managed = ManagedController(
             controller, type_name, tuple(fallback_names), self.update_rate_hz
         )
-        self._controllers = {name: managed, **self._controllers}
+        self._controllers[name] = managed
         self._activity_changed()
 
     def configure_controller(
@@ -179,6 +173,7 @@ class ControllerManager:
             )
         controller.set_update_rate(requested_rate_hz)
         reason = self._lifecycle.configure(controller, parameters)
+        self._activity_changed()
         if reason:
             raise ControllerManagerError(f"controller '{name}' was not configured: {reason}")
 
@@ -191,6 +186,7 @@ class ControllerManager:
             )
         if controller.state is LifecycleState.INACTIVE:
             self._lifecycle.clean_up(controller)
+            self._activity_changed()
 
     def unload_controller(self, name: str) -> None:
         """Clean a controller up, shut it down and forget it."""
@@ -202,23 +198,14 @@ class ControllerManager:
         if controller.state is LifecycleState.INACTIVE:
             self._lifecycle.clean_up(controller)
         self._lifecycle.shut_down(controller)
-        self._controllers = {n: c for n, c in self._controllers.items() if n != name}
+        del self._controllers[name]
         self._activity_changed()
 
     def switch_controller(self, request: SwitchRequest) -> SwitchResult:
         """Deactivate and activate controllers in one go; never raises, the result says it all."""
-        try:
-            plan = SwitchPlanner(self._controllers, self.resources, request).plan()
-        except SwitchRefusedError as error:
-            logger.error("no controller is switched: %s", str(error).rstrip())
-            return SwitchResult(False, str(error))
-        if not plan.activate and not plan.deactivate:
-            return SwitchResult(True, NOTHING_TO_SWITCH)
-        reason = self.resources.prepare_mode_switch(plan.start_interfaces, plan.stop_interfaces)
-        if reason:
-            logger.error("%s (%s)", PREPARE_REJECTED, reason)
-            return SwitchResult(False, PREPARE_REJECTED)
-        return self._switch(plan, request)
+        result = self._switcher.switch(request)
+        self._select_active()
+        return result
 
     def shutdown(self) -> None:
         """Deactivate and finalize every controller, then every component."""
@@ -244,59 +231,13 @@ class ControllerManager:
             )
         return controller
 
-    def _switch(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
-        reason = self.resources.perform_mode_switch(plan.start_interfaces, plan.stop_interfaces)
-        if reason:
-            logger.error("Error while performing mode switch: %s", reason)
-            return _failed(plan.activate, plan.deactivate)
-        stuck = [c for c in plan.deactivate if self._lifecycle.deactivate(c)]
-        refused = [c for c in plan.activate if self._lifecycle.activate(c)]
-        if refused:
-            self._leave_modes(refused)
-            if request.is_strict:
-                self._deactivate([c for c in plan.activate if c.is_active])
-        self._select_active()
-        if stuck or refused:
-            return _failed(refused, stuck)
-        return _succeeded(plan, request)
-
     def _deactivate(self, controllers: Sequence[ManagedController]) -> None:
-        """Deactivate without asking anybody: after errors, and at the end."""
-        if not controllers:
-            return
-        self._leave_modes(controllers)
-        for controller in controllers:
-            self._lifecycle.deactivate(controller)
+        self._switcher.deactivate(controllers)
         self._select_active()
 
-    def _leave_modes(self, controllers: Iterable[ManagedController]) -> None:
-        stop = [name for controller in controllers for name in controller.commands]
-        reason = self.resources.perform_mode_switch((), stop)
-        if reason:
-            logger.error("Error while performing mode switch: %s", reason)
-
-    def _stop_failed(self, failed: Sequence[ManagedController]) -> None:
-        """Deactivate controllers whose update failed, and let their fallbacks take over."""
-        names = " ".join(c.name for c in failed)
-        logger.error(
-            "Deactivating controllers : [ %s ] as their update resulted in an error!", names
-        )
-        self._deactivate(failed)
-        fallbacks = tuple(dict.fromkeys(name for c in failed for name in c.fallback_names))
-        if not fallbacks:
-            logger.error(
-                "Once the cause is gone: ros2 control switch_controllers --activate %s", names
-            )
-            return
-        logger.error("Activating fallback controllers : [ %s ]", " ".join(fallbacks))
-        inactive = tuple(n for n in fallbacks if not self._controllers[n].is_active)
-        holders = {
-            holder: None
-            for name in inactive
-            for command in self._controllers[name].commands
-            if (holder := self.resources.claimant(command))
-        }
-        self.switch_controller(SwitchRequest(inactive, tuple(holders), Strictness.STRICT))
+    def _replace_failed(self, failed: Sequence[ManagedController]) -> None:
+        self._switcher.replace_failed(failed)
+        self._select_active()
 
     def _stop_troubled(self, trouble: Sequence[Trouble], exchange: str) -> None:
         """Take components down that failed, or deactivate those that asked for it."""
@@ -335,40 +276,17 @@ class ControllerManager:
         self._activity_changed()
 
     def _select_active(self) -> None:
-        active = [c for c in self._controllers.values() if c.is_active]
+        active = [c for c in reversed(self._controllers.values()) if c.is_active]
         self._commanding = tuple(c for c in active if c.commands)
         self._broadcasting = tuple(c for c in active if not c.commands)
+        self._activity_changed()
 
     def _controller_transitioned(
         self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
     ) -> None:
         for observer in self._observers:
             observer.controller_transitioned(name, transition, start, end)
-        if start is not end:
-            self._activity_changed()
 
     def _activity_changed(self) -> None:
         for observer in self._observers:
             observer.activity_changed()
-
-
-def _succeeded(plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
-    message = SWITCHED
-    if not request.is_strict:
-        message += _listed("\nDeactivated controllers", plan.deactivate)
-        message += _listed("\nActivated controllers", plan.activate)
-    logger.info("%s", message.replace("\n", " "))
-    return SwitchResult(True, message)
-
-
-def _failed(
-    refused: Sequence[ManagedController], stuck: Sequence[ManagedController]
-) -> SwitchResult:
-    message = SWITCH_FAILED
-    message += _listed("\nUnable to activate controllers", refused)
-    message += _listed("\nUnable to deactivate controllers", stuck)
-    return SwitchResult(False, message)
-
-
-def _listed(title: str, controllers: Sequence[ManagedController]) -> str:
-    return f"{title}: [ {' '.join(c.name for c in controllers)} ]" if controllers else ""

@@ -9,7 +9,7 @@ from arm_control.errors import HardwareInfoError
 from arm_description.xml_document import parse_xml
 
 if TYPE_CHECKING:
-    from lxml import etree
+    import lxml.etree as etree
 
 COMPONENT_TYPES = ("system", "actuator", "sensor")
 

@@ -32,7 +32,15 @@ class SwitchPlan:
 
 
 class SwitchRefusedError(ControllerManagerError):
-    """A switch that will not be done; the message is the service's answer."""
+    """A switch that will not be done.
+
+    The message is the service's answer, which clients know word for word; the hint, for the log,
+    says what there is.
+    """
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.hint = hint
 
 
 class SwitchPlanner:
@@ -75,10 +83,11 @@ class SwitchPlanner:
                 f"Could not {action} controller with name '{name}' "
                 "because no controller with this name exists"
             )
-            self._complain(complaint)
+            self._complain(complaint, self._loaded())
             complaints.append(complaint)
         if complaints and not known:
-            raise SwitchRefusedError("".join(f"{complaint}\n" for complaint in complaints))
+            message = "".join(f"{complaint}\n" for complaint in complaints)
+            raise SwitchRefusedError(message, self._loaded())
         return known
 
     def _accepted(
@@ -96,11 +105,14 @@ class SwitchPlanner:
                 accepted.append(candidate)
         return accepted
 
-    def _complain(self, reason: str) -> None:
+    def _complain(self, reason: str, hint: str = "") -> None:
         """End a strict switch; say what a best-effort one leaves out."""
         if self._request.is_strict:
-            raise SwitchRefusedError(reason)
+            raise SwitchRefusedError(reason, hint)
         logger.warning("%s", reason)
+
+    def _loaded(self) -> str:
+        return f"(loaded: {', '.join(self._controllers) or 'none'})"
 
     def _why_not_activate(self, controller: ManagedController) -> str:
         if controller.state is LifecycleState.ACTIVE:
@@ -153,28 +165,30 @@ class SwitchPlanner:
     def _check_interfaces(self, plan: SwitchPlan) -> None:
         """Refuse the whole plan, strict or not, where an interface is missing or taken."""
         released = {controller.name for controller in plan.deactivate}
-        taken: set[str] = set()
+        taken: dict[str, str] = {}
         for controller in plan.activate:
             for name in controller.commands:
                 claimant = self._resources.claimant(name)
                 if not self._resources.is_command_available(name):
                     trouble = "is not available."
+                    hint = f"(available: {', '.join(self._resources.available_commands())})"
                 elif claimant is not None and claimant not in released:
                     trouble = "is currently claimed by another controller."
+                    hint = f"(by '{claimant}')"
                 elif name in taken:
                     trouble = "will be used by another controller that is being activated."
+                    hint = f"('{taken[name]}')"
                 else:
-                    taken.add(name)
+                    taken[name] = controller.name
                     continue
-                self._refuse_interface(controller, f"command interface '{name}' {trouble}")
+                raise _unusable(controller, f"command interface '{name}' {trouble}", hint)
             for name in controller.states:
                 if not self._resources.is_state_available(name):
-                    self._refuse_interface(
-                        controller, f"state interface '{name}' is not available."
-                    )
+                    hint = f"(available: {', '.join(self._resources.available_states())})"
+                    raise _unusable(controller, f"state interface '{name}' is not available.", hint)
 
-    @staticmethod
-    def _refuse_interface(controller: ManagedController, trouble: str) -> None:
-        raise SwitchRefusedError(
-            f"Unable to activate controller '{controller.name}' since the {trouble}"
-        )
+
+def _unusable(controller: ManagedController, trouble: str, hint: str) -> SwitchRefusedError:
+    return SwitchRefusedError(
+        f"Unable to activate controller '{controller.name}' since the {trouble}", hint
+    )

@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import mujoco
+
 from arm_control.hardware_info import HardwareInfo, JointInfo
 from arm_description.robot import Joint, Robot
-
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mimic_joints import SCALAR_TYPES, Following

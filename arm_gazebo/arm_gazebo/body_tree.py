@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from arm_description.robot import Inertial, Joint, Link, Pose, Robot
 from numpy.typing import NDArray
 
+from arm_description.robot import Inertial, Joint, Link, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.inertia_repair import (
     LARGEST_GYRATION_M2,

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Literal
 
 from arm_description.robot import Pose
-
 from arm_gazebo.physics_timing import LARGEST_STEP_S
 
 Base = Literal["fixed", "free"]

@@ -87,10 +87,13 @@ class FeedEnd:
         messages, _ended = _receive_all(self._socket)
         return [data[1:].decode() for data, _files in messages if data[:1] == BACKEND]
 
-    def close(self) -> None:
-        """Close both ends: a camera process reads the end of the stream; idempotent."""
+    def shut_down(self) -> None:
+        """Send nothing more: a camera process reads the end of the stream."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """Close both ends; idempotent."""
         self._socket.close()
         self._remote.close()
 

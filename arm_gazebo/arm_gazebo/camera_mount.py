@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-from arm_description.transforms import rotation_from_rpy
 
+from arm_description.transforms import rotation_from_rpy
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import ModelError
 

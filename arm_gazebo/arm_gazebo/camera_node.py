@@ -15,11 +15,10 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING
 
-from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
-
 from arm_gazebo.camera_channel import CameraEnd
-from arm_gazebo.camera_settings import CameraSettings
+from arm_gazebo.camera_settings import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, CameraError, GazeboError
+from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
 
 if TYPE_CHECKING:
     from arm_gazebo.camera_pipeline import CameraPipeline
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-EXIT_BACKEND = 3
-"""The render backend that was tried last does not work in this process; try another one."""
 PR_SET_PDEATHSIG = 1
 JOIN_TIMEOUT_S = 2.0
 
@@ -80,9 +77,7 @@ def _application(
     pipeline = CameraPipeline(
         settings.cameras, publishers, partial(_open_renderer, settings, channel), settings.seed
     )
-    CameraDiagnostics(
-        node, settings.cameras, publishers, pipeline.statistics, lambda: pipeline.backend
-    )
+    CameraDiagnostics(node, settings.cameras, publishers, pipeline)
     process.executor.add_node(node)
     rendering = threading.Thread(
         target=_render, args=(pipeline, channel, process), name="rendering", daemon=True

@@ -49,6 +49,7 @@ class CameraPipeline:
 
     Attributes:
         statistics: one per camera, in the cameras' order; readable from any thread.
+        time_s: simulation time of the newest state.
     """
 
     def __init__(
@@ -66,6 +67,7 @@ class CameraPipeline:
             open_renderer: called once, when the first picture is wanted.
             seed: of the noise.
         """
+        self.time_s = 0.0
         self.statistics = tuple(CameraStatistics() for _ in sensors)
         self._sensors = tuple(sensors)
         self._sinks = tuple(sinks)
@@ -111,6 +113,7 @@ class CameraPipeline:
         self._posed = None
 
     def _take_frame(self, snapshot: CameraSnapshot, frame: FrameDue) -> None:
+        self.time_s = snapshot.time_s
         sink = self._sinks[frame.camera]
         wanted = sink.wants_picture()
         self.statistics[frame.camera].count_due(frame, wanted)

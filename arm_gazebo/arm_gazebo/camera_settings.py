@@ -8,6 +8,9 @@ from typing import Any
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import CameraError
 
+EXIT_BACKEND = 3
+"""Exit code of a camera process whose render backend does not work: try another one."""
+
 
 @dataclass(frozen=True, slots=True)
 class CameraSettings:
@@ -46,5 +49,7 @@ class CameraSettings:
 
 def _sensor(values: Mapping[str, Any]) -> CameraSensor:
     """Return the sensor; JSON has no tuples."""
-    fixed = {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()}
+    fixed: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in values.items()
+    }
     return CameraSensor(**fixed)

@@ -14,11 +14,11 @@ class DrivenJoint:
 
     Attributes:
         joint: what the model says about the joint.
-        mode: set by `Servo.set_mode`.
-        setpoint: where the joint is to be at the end of the current control period.
+        mode: how it is driven.
         effort: commanded effort, in the mode EFFORT.
-        inertia: that the joint feels, at the pose of the last physics step.
-        gravity: effort against gravity and Coriolis forces, at the same pose.
+        setpoint: where the joint is to be at the end of the current control period.
+        start_position: where the set-point was at its start.
+        start_velocity: its velocity then.
     """
 
     __slots__ = (
@@ -29,11 +29,11 @@ class DrivenJoint:
         "_stream",
         "_velocity",
         "effort",
-        "gravity",
-        "inertia",
         "joint",
         "mode",
         "setpoint",
+        "start_position",
+        "start_velocity",
     )
 
     def __init__(
@@ -46,26 +46,26 @@ class DrivenJoint:
     ) -> None:
         self.joint = joint
         self.mode = DriveMode.LIMP
-        self.setpoint = Setpoint(joint.initial)
         self.effort = 0.0
+        self.setpoint = Setpoint(joint.initial)
+        self.start_position = joint.initial
+        self.start_velocity = 0.0
         self._braking = braking
         self._jerkless = jerkless
         self._period_s = period_s
-        # Further from the joint the set-point could not raise the effort any more.
+        # Further from the joint than this, the set-point could not raise the effort any more.
         self._slack = joint.effort / stiffness
         self._stream = CommandStream(joint.initial, period_s)
         self._velocity = 0.0
-        self.inertia = 1.0
-        self.gravity = 0.0
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
-        """Change the mode; the state of the joint says where a set-point starts."""
+        """Change the mode; a set-point starts from the state of the joint if it had none."""
         if self.mode not in SERVOED:
             speed = self.joint.velocity
             self.setpoint = Setpoint(position, min(max(velocity, -speed), speed))
         self.mode = mode
-        self._velocity = 0.0
         self.effort = 0.0
+        self._velocity = 0.0
         self._stream = CommandStream(self.stopping_point(), self._period_s)
 
     def stopping_point(self) -> float:
@@ -82,32 +82,42 @@ class DrivenJoint:
         elif self.mode is DriveMode.EFFORT:
             self.effort = value
 
-    def advance(self, position: float) -> bool:
-        """Move the set-point on by one control period; return whether it moves or has to.
+    def plan(self, position: float, velocity: float, inertia: float, gravity: float) -> bool:
+        """Move the set-point on by one control period; return whether it moves.
 
         Args:
             position: of the joint, now.
+            velocity: of the joint, now.
+            inertia: that it feels in this pose.
+            gravity: effort that it needs in this pose to stay as it moves.
         """
-        setpoint = self.setpoint
-        before, velocity = setpoint.position, setpoint.velocity
-        lead = before - position
+        setpoint, joint = self.setpoint, self.joint
+        lead = setpoint.position - position
         if abs(lead) > self._slack:
             # Something is in the way. A set-point that ran on would fling the joint, once free.
-            before = setpoint.position = position + math.copysign(self._slack, lead)
-            velocity = setpoint.velocity = 0.0
-        joint = self.joint
-        acceleration = EFFORT_SHARE * (joint.effort - abs(self.gravity)) / self.inertia
-        acceleration = max(self._braking, min(acceleration, self._jerkless))
+            setpoint.position = position + math.copysign(self._slack, lead)
+            setpoint.velocity = max(velocity, 0.0) if lead > 0 else min(velocity, 0.0)
+        self.start_position, self.start_velocity = setpoint.position, setpoint.velocity
+        able = EFFORT_SHARE * (joint.effort - abs(gravity)) / inertia
+        acceleration = max(self._braking, min(able, self._jerkless))
         if self.mode is DriveMode.POSITION:
             stream = self._stream
             stream.advance()
             target, target_velocity, speed = stream.target, stream.velocity, joint.velocity
         else:
-            # A velocity is a way to the limit of the joint at that speed.
+            # A velocity is a way to the limit of the joint at that speed; holding, at none.
             speed = abs(self._velocity)
             target = joint.upper if self._velocity > 0 else joint.lower
             target_velocity = 0.0
         setpoint.approach(
             target, target_velocity, speed, acceleration, self._braking, self._period_s
         )
-        return setpoint.velocity != 0.0 or velocity != 0.0 or setpoint.position != before
+        return setpoint.velocity != 0.0 or setpoint.position != self.start_position
+
+    def gain_less(self, share: float) -> None:
+        """Let the set-point gain only this share of the speed it was to gain in this period."""
+        gain = self.setpoint.velocity - self.start_velocity
+        if gain * self.setpoint.velocity > 0:
+            self.setpoint.velocity = self.start_velocity + share * gain
+            mean = 0.5 * (self.start_velocity + self.setpoint.velocity)
+            self.setpoint.position = self.start_position + mean * self._period_s

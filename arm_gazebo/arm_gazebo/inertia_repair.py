@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
+
 from arm_description.robot import Inertial
 from arm_description.transforms import rotation_from_rpy
-from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 

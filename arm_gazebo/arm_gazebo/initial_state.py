@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from arm_control.hardware_info import HardwareInfo
 from arm_description.robot import Joint, Robot
-
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mimic_joints import SCALAR_TYPES, Following
 

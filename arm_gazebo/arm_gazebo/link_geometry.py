@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
-from arm_description.transforms import quaternion_from_rpy
 from numpy.typing import NDArray
 
+from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
+from arm_description.transforms import quaternion_from_rpy
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.collision_policy import CollisionMasks
 from arm_gazebo.errors import MeshError

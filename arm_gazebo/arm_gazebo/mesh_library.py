@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
+
 from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri
 from arm_description.robot import Mesh
-
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh_data import Color, MeshData
 from arm_gazebo.scene_file import read_scene

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 import mujoco
-from arm_description.robot import Joint, JointLimit, Robot
 
+from arm_description.robot import Joint, JointLimit, Robot
 from arm_gazebo.build_report import BuildReport
 
 SCALAR_TYPES = ("revolute", "continuous", "prismatic")

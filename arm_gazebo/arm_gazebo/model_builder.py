@@ -10,10 +10,10 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from arm_control.hardware_info import HardwareInfo
-from arm_description.robot import Pose, Robot
 from numpy.typing import NDArray
 
+from arm_control.hardware_info import HardwareInfo
+from arm_description.robot import Pose, Robot
 from arm_gazebo.actuation import Drive, add_actuators, drives
 from arm_gazebo.body_tree import WORLD_LINK, BodyTree, TreeOptions
 from arm_gazebo.build_options import BuildOptions
@@ -174,5 +174,6 @@ def _joints(
             velocity=drive.velocity if drive else math.inf,
             effort=drive.effort if drive else math.inf,
             initial=initial,
+            linear=joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE,
         )
     return joints

@@ -18,6 +18,7 @@ class RobotJoint:
         velocity: highest speed of a set-point, above 0.
         effort: highest force or torque, inf if it has no bound.
         initial: position at the start.
+        linear: whether it slides; otherwise it turns.
     """
 
     name: str
@@ -29,3 +30,4 @@ class RobotJoint:
     velocity: float = math.inf
     effort: float = math.inf
     initial: float = 0.0
+    linear: bool = False

@@ -47,6 +47,7 @@ class ServoTuning:
         braking: acceleration that every joint can have at once anywhere, rad/s2 or m/s2.
         jerkless: highest acceleration at all, rad/s2 or m/s2.
         gravity: largest effort that gravity asks for, N m or N.
+        followers: inertia that mimicking joints add to that of their leader, kg m2 or kg.
         coupling: shape (nv, n): velocities of all degrees of freedom for those of the driven
             joints; mimicking joints move along.
     """
@@ -56,6 +57,7 @@ class ServoTuning:
     braking: Array
     jerkless: Array
     gravity: Array
+    followers: Array
     coupling: Array
 
 
@@ -68,7 +70,7 @@ def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> Se
         qpos: a pose for all that is not driven, shape (nq,).
     """
     coupling = _coupling(model, joints)
-    inertias, gravities = _sample(model, joints, coupling, qpos)
+    inertias, own, gravities = _sample(model, joints, coupling, qpos)
     largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0)
     armature = ARMATURE_SHARE * largest
     for joint, value in zip(joints, armature, strict=True):
@@ -87,6 +89,7 @@ def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> Se
         braking=_shared_accelerations(worst, spare, jerkless),
         jerkless=jerkless,
         gravity=gravity,
+        followers=largest - own.max(axis=0),
         coupling=coupling,
     )
 
@@ -108,14 +111,20 @@ def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:
 
 def _sample(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], coupling: Array, qpos: Array
-) -> tuple[Array, Array]:
-    """Return inertia matrices (poses, n, n) and gravity efforts (poses, n) of the driven joints."""
+) -> tuple[Array, Array, Array]:
+    """Return what the driven joints feel in random poses.
+
+    Returns:
+        Inertia matrices with whatever moves along, shape (poses, n, n); inertias of the joints
+        alone, shape (poses, n); absolute efforts against gravity, shape (poses, n).
+    """
     data = mujoco.MjData(model)
     random = np.random.default_rng(POSE_SEED)
     full, efforts = np.zeros((model.nv, model.nv)), np.zeros(model.nv)
     lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
     addresses = [joint.qpos_address for joint in joints]
-    inertias, gravities = [], []
+    dofs = [joint.dof_address for joint in joints]
+    inertias, own, gravities = [], [], []
     data.qpos[:] = qpos
     for _ in range(POSES):
         data.qpos[addresses] = random.uniform(lower, upper)
@@ -126,8 +135,9 @@ def _sample(
         mujoco.mj_comVel(model, data)
         mujoco.mj_rne(model, data, 0, efforts)
         inertias.append(coupling.T @ full @ coupling)
+        own.append(full[dofs, dofs])
         gravities.append(np.abs(coupling.T @ efforts))
-    return np.array(inertias), np.array(gravities)
+    return np.array(inertias), np.array(own), np.array(gravities)
 
 
 def _range(joint: RobotJoint) -> tuple[float, float]:

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import mujoco
+
 from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri
-
 from arm_gazebo.errors import WorldError
 
 SHIPPED_WORLDS_URI = "package://arm_gazebo/worlds"

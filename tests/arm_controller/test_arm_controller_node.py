@@ -29,11 +29,9 @@ def set_pose(robot) -> Callable:
     }
 
     def set_to(until: Callable, **value: object):
-        (field,) = value
+        kind = types[next(iter(value))] if value else ParameterType.PARAMETER_NOT_SET
         request = SetParameters.Request(
-            parameters=[
-                Parameter(name="desired_param", value=ParameterValue(type=types[field], **value))
-            ]
+            parameters=[Parameter(name="desired_param", value=ParameterValue(type=kind, **value))]
         )
         until(client.service_is_ready, "the parameter service")
         future = client.call_async(request)
@@ -118,12 +116,23 @@ def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
 
 
 def test_warns_while_nobody_listens_and_publishes_when_the_controller_comes(robot, run, until):
-    program = run(MODULE, print_period=0, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(MODULE, desired_param="[0.1, 0.2, 0.3, 0.4]")
     program.wait_for("is the position_controller active?")
     assert "nobody listens on /position_controller/commands" in program.output
+    program.wait_for("/joint_states has been silent for 5 s")
     commands = robot.listen()
     until(lambda: commands, "the pose")
     assert commands == [[0.1, 0.2, 0.3, 0.4]]
+
+
+def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
+    program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    assert set_pose(until).successful
+    robot.broadcast()
+    commands = robot.listen()
+    until(lambda: program.output.count("Joint State: 'j3'") >= 10, "a second of prints")
+    assert commands == []
+    assert program.interrupt() == 0
 
 
 def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):

@@ -1,7 +1,7 @@
 """Rotations against each other and against their definitions."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arm_description.transforms import (
@@ -28,6 +28,7 @@ def rotation_of(quaternion: np.ndarray) -> np.ndarray:
     return np.column_stack(columns)
 
 
+@settings(deadline=None)
 @given(RPY)
 def test_roll_pitch_yaw_turn_about_fixed_axes_in_this_order(rpy):
     roll, pitch, yaw = rpy
@@ -35,11 +36,13 @@ def test_roll_pitch_yaw_turn_about_fixed_axes_in_this_order(rpy):
     assert np.allclose(rotation_from_rpy(rpy), expected, atol=1e-12)
 
 
+@settings(deadline=None)
 @given(RPY)
 def test_the_quaternion_turns_as_the_matrix_does(rpy):
     assert np.allclose(rotation_of(quaternion_from_rpy(rpy)), rotation_from_rpy(rpy), atol=1e-12)
 
 
+@settings(deadline=None)
 @given(RPY, RPY)
 def test_a_product_turns_by_the_second_then_by_the_first(first, second):
     product = quaternion_product(quaternion_from_rpy(first), quaternion_from_rpy(second))

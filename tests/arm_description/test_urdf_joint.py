@@ -163,10 +163,12 @@ def test_an_error_names_line_and_joint(urdf, message):
 
 
 def test_joints_that_mimic_in_a_circle_are_refused():
-    urdf = """<robot name='r'><link name='a'/><link name='b'/><link name='c'/>
-      <joint name='j' type='continuous'><parent link='a'/><child link='b'/><mimic joint='k'/></joint>
-      <joint name='k' type='continuous'><parent link='b'/><child link='c'/><mimic joint='j'/></joint>
-    </robot>"""
+    joints = "".join(
+        f"\n<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/>"
+        f"<mimic joint='{leader}'/></joint>"
+        for name, parent, child, leader in (("j", "a", "b", "k"), ("k", "b", "c", "j"))
+    )
+    urdf = f"<robot name='r'><link name='a'/><link name='b'/><link name='c'/>{joints}</robot>"
     with pytest.raises(MimicCycleError, match=r"line 3: .*in a circle: j -> k -> j$"):
         parse_urdf(urdf)
 

@@ -8,7 +8,7 @@ import sys
 import sysconfig
 import tomllib
 import venv
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -79,7 +79,7 @@ class Installation:
 
 
 def run(
-    command: tuple | list, folder: Path, environment: Mapping[str, str] = os.environ
+    command: Sequence[str | Path], folder: Path, environment: Mapping[str, str]
 ) -> subprocess.CompletedProcess[str]:
     """Run a command to its end; one that fails fails the test with all that it said."""
     done = subprocess.run(
@@ -99,8 +99,7 @@ def run(
 
 def pip(*arguments: str | Path, into: Path, folder: Path) -> None:
     """Run this environment's pip for another Python; no constraint of a CI run concerns it."""
-    environment = {name: value for name, value in os.environ.items() if name != "PIP_CONSTRAINT"}
-    run([sys.executable, "-m", "pip", "-q", "--python", into, *arguments], folder, environment)
+    run([sys.executable, "-m", "pip", "-q", "--python", into, *arguments], folder, bare())
 
 
 def make_environment(folder: Path) -> Path:
@@ -110,15 +109,23 @@ def make_environment(folder: Path) -> Path:
     of the suite in this environment does not leak into the new one.
     """
     venv.create(folder, symlinks=True)
-    paths = sysconfig.get_paths(vars={"base": str(folder), "platbase": str(folder)})
-    (Path(paths["purelib"]) / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    packages = Path(sysconfig.get_path("purelib", "venv", {"base": str(folder)}))
+    (packages / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
     return folder / "bin" / "python"
+
+
+def bare() -> dict[str, str]:
+    """Return this process's environment without what leads to packages or constrains pip.
+
+    What the ROS wheels' bootstrap has set stays: they need it in every process.
+    """
+    left_out = ("AMENT_PREFIX_PATH", "PYTHONPATH", "PIP_CONSTRAINT")
+    return {name: value for name, value in os.environ.items() if name not in left_out}
 
 
 def environment_of(prefixes: str, **variables: str) -> dict[str, str]:
     """Return the environment of a process: these prefixes, then the ROS packages of this one."""
-    inherited = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
-    return {**inherited, "AMENT_PREFIX_PATH": f"{prefixes}{os.pathsep}{sys.prefix}", **variables}
+    return {**bare(), "AMENT_PREFIX_PATH": f"{prefixes}{os.pathsep}{sys.prefix}", **variables}
 
 
 def copy_sources(folder: Path) -> Project:
@@ -157,6 +164,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run(
         [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", folder, sources.root],
         folder,
+        bare(),
     )
     (built,) = folder.glob("*.whl")
     # What is installed from it must not need them.
@@ -184,17 +192,10 @@ def install_by_colcon(folder: Path, _wheel: Path) -> Installation:
     sources = copy_sources(folder / "sources")
     python = make_environment(folder / "venv")
     pip("install", "colcon-common-extensions", into=python, folder=folder)
-    run(
-        [folder / "venv/bin/colcon", "build", "--base-paths", *sources.packages],
-        sources.root,
-        environment_of(""),
-    )
+    colcon = folder / "venv/bin/colcon"
+    run([colcon, "build", "--base-paths", *sources.packages], sources.root, bare())
     install = sources.root / "install"
-    sourced = run(
-        ["bash", "-c", f". {install}/local_setup.bash && env -0"],
-        folder,
-        {k: v for k, v in os.environ.items() if k not in ("AMENT_PREFIX_PATH", "PYTHONPATH")},
-    )
+    sourced = run(["bash", "-c", f". {install}/local_setup.bash && env -0"], folder, bare())
     variables = dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)
     owners = {name: target.split(".")[0] for name, target in sources.scripts.items()}
     return Installation(

@@ -110,9 +110,7 @@ def test_colcon_builds_it_as_a_python_package(package):
 
 def test_no_setup_file_has_a_group_of_entry_points_that_the_root_lacks(project):
     groups = {
-        group
-        for package in PACKAGES
-        for group in setup_file(package).arguments["entry_points"]  # type: ignore[union-attr]
+        group for package in PACKAGES for group in setup_file(package).arguments["entry_points"]
     }
     assert groups <= set(entry_points(project.table))
 
@@ -139,7 +137,7 @@ def test_every_entry_point_leads_to_something(project):
 @pytest.mark.parametrize("package", PACKAGES)
 def test_the_data_folders_agree(project, package):
     present = [name for name in DATA_FOLDERS if (ROOT / package / name).is_dir()]
-    assert sorted(setup_file(package).constants["DATA_FOLDERS"]) == present  # type: ignore[call-overload]
+    assert sorted(setup_file(package).constants["DATA_FOLDERS"]) == present
     wanted = {
         f"{package}/resource/{package}": f"share/ament_index/resource_index/packages/{package}",
         f"{package}/package.xml": f"share/{package}/package.xml",

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -37,8 +38,6 @@ ARGUMENTS = {
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    import tomllib
-
     scripts = tomllib.loads(PROJECT.read_text())["project"]["scripts"]
     metafunc.parametrize("script", list(scripts.items()), ids=list(scripts))
 

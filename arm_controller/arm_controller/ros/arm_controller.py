@@ -1,19 +1,18 @@
 """The node arm_controller_node: a pose as a parameter, the joints' states as text."""
 
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.timer import Timer
 
 from arm_controller.errors import ArmControllerError, PoseError
 from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_joint_names, read_number, read_pose
+from arm_controller.parameter_values import read_number, read_pose
 from arm_controller.pose import JointPose
+from arm_controller.ros.clock_time import steady_clock
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
 from arm_controller.ros.joint_state_input import JointStateInput
-from arm_controller.ros.parameters import DEFAULT_JOINTS, declare
+from arm_controller.ros.parameters import declare, declare_joints
 
 WAIT_WARNING_S = 5.0
 
@@ -27,10 +26,8 @@ class ArmController(Node):
 
     def __init__(self) -> None:
         super().__init__("arm_controller_node")
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._joint_names = declare(
-            self, "joints", DEFAULT_JOINTS, read_joint_names, "Joints, in the controller's order"
-        )
+        self._steady = steady_clock()
+        self._joint_names = declare_joints(self)
         self._commands = CommandPublisher(self, self._joint_names)
         self._pending: JointPose | None = None
         self._warned = False

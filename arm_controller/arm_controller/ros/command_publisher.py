@@ -2,14 +2,13 @@
 
 from collections.abc import Sequence
 
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
 
 from arm_controller.joint_limits import JointLimits
 from arm_controller.listener_watch import Audience, ListenerWatch
 from arm_controller.pose import JointPose
+from arm_controller.ros.clock_time import seconds, steady_clock
 from arm_controller.ros.robot_limits import RobotLimits
 
 COMMAND_TOPIC = "position_controller/commands"
@@ -20,8 +19,6 @@ POLL_S = 0.05
 
 GRACE_S = 2.0
 """So long after the match what is latched or periodic has arrived, or does not exist."""
-
-NANOSECOND_S = 1e-9
 
 
 class CommandPublisher:
@@ -36,8 +33,7 @@ class CommandPublisher:
 
     def __init__(self, node: Node, joint_names: Sequence[str]) -> None:
         self._node = node
-        # Neither a paused nor a fast simulation changes what the middleware needs.
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._steady = steady_clock()
         self._publisher = node.create_publisher(Float64MultiArray, COMMAND_TOPIC, DEPTH)
         # A controller subscribes to ~/commands, so its node is called as the topic's parent.
         self._watch = ListenerWatch(self.topic.rpartition("/")[0], self._now_s())
@@ -96,4 +92,4 @@ class CommandPublisher:
         self._publisher.publish(Float64MultiArray(data=list(pose.positions)))
 
     def _now_s(self) -> float:
-        return self._steady.now().nanoseconds * NANOSECOND_S
+        return seconds(self._steady)

@@ -8,9 +8,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 
 from arm_controller.errors import ArmControllerError, ParameterValueError
-
-DEFAULT_JOINTS = ["j0", "j1", "j2", "j3"]
-DEFAULT_MATCH_TIMEOUT_S = 10.0
+from arm_controller.parameter_values import read_joint_names, read_number
 
 Value = TypeVar("Value")
 
@@ -38,3 +36,25 @@ def declare(
         return read(node.declare_parameter(name, default, descriptor).value)
     except (ArmControllerError, ParameterException) as error:
         raise ParameterValueError(f"parameter {name}: {error}") from error
+
+
+def declare_joints(node: Node) -> tuple[str, ...]:
+    """Declare the parameter `joints` and return it: the joints of a pose, in its order."""
+    return declare(
+        node,
+        "joints",
+        ["j0", "j1", "j2", "j3"],
+        read_joint_names,
+        "Joints of a pose, in the position controller's order",
+    )
+
+
+def declare_match_timeout_s(node: Node) -> float:
+    """Declare the parameter `match_timeout` and return it (s)."""
+    return declare(
+        node,
+        "match_timeout",
+        10.0,
+        read_number,
+        "How long to wait for somebody who listens to the commands (s)",
+    )

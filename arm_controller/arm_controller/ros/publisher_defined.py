@@ -4,24 +4,22 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ament_index_python.packages import get_package_share_directory
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_controller.errors import PoseError
 from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_joint_names, read_number, read_path
+from arm_controller.parameter_values import read_number, read_path
 from arm_controller.pose import JointPose
 from arm_controller.pose_file import read_pose_file
 from arm_controller.pose_sequence import PoseSequence
+from arm_controller.ros.clock_time import seconds, steady_clock
 from arm_controller.ros.command_publisher import (
     GRACE_S,
-    NANOSECOND_S,
     POLL_S,
     CommandPublisher,
 )
 from arm_controller.ros.joint_state_input import JointStateInput
-from arm_controller.ros.parameters import DEFAULT_JOINTS, DEFAULT_MATCH_TIMEOUT_S, declare
+from arm_controller.ros.parameters import declare, declare_joints, declare_match_timeout_s
 
 
 class PublisherDefined(Node):
@@ -39,20 +37,12 @@ class PublisherDefined(Node):
     def __init__(self, on_end: Callable[[int], None]) -> None:
         super().__init__("publisher_defined")
         self._on_end = on_end
-        joint_names = declare(
-            self, "joints", DEFAULT_JOINTS, read_joint_names, "Joints, in the controller's order"
-        )
+        joint_names = declare_joints(self)
         default_file = Path(get_package_share_directory("arm_controller")) / "config/poses.yaml"
         poses_file = declare(
             self, "poses_file", str(default_file), read_path, "YAML file with the poses"
         )
-        self._match_timeout_s = declare(
-            self,
-            "match_timeout",
-            DEFAULT_MATCH_TIMEOUT_S,
-            read_number,
-            "How long to wait for somebody who listens to the commands (s)",
-        )
+        self._match_timeout_s = declare_match_timeout_s(self)
         self._sequence = PoseSequence(
             read_pose_file(poses_file, joint_names),
             tolerance=declare(
@@ -63,10 +53,8 @@ class PublisherDefined(Node):
         self._readings = JointReadings()
         self._states = JointStateInput(self, self._readings)
         self._commands = CommandPublisher(self, joint_names)
-        # Of the steady clock: a simulation that stands still is something to notice.
-        self._timer = self.create_timer(
-            POLL_S, self._go_on, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
+        # A simulation that stands still must be noticed, so its clock does not drive the timer.
+        self._timer = self.create_timer(POLL_S, self._go_on, clock=steady_clock())
 
     def _go_on(self) -> None:
         self._commands.observe()
@@ -129,4 +117,4 @@ class PublisherDefined(Node):
         self._on_end(missed)
 
     def _now_s(self) -> float:
-        return self.get_clock().now().nanoseconds * NANOSECOND_S
+        return seconds(self.get_clock())

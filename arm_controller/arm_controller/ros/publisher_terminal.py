@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 from rclpy.node import Node
 
 from arm_controller.errors import DeliveryError
-from arm_controller.parameter_values import read_joint_names, read_number
 from arm_controller.pose import JointPose
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
-from arm_controller.ros.parameters import DEFAULT_JOINTS, DEFAULT_MATCH_TIMEOUT_S, declare
+from arm_controller.ros.parameters import declare_joints, declare_match_timeout_s
 
 if TYPE_CHECKING:
     from arm_node.process import NodeProcess
@@ -31,16 +30,8 @@ class PublisherTerminal(Node):
     def __init__(self, process: "NodeProcess") -> None:
         super().__init__("publisher_terminal")
         self._process = process
-        self.joint_names = declare(
-            self, "joints", DEFAULT_JOINTS, read_joint_names, "Joints, in the controller's order"
-        )
-        self._match_timeout_s = declare(
-            self,
-            "match_timeout",
-            DEFAULT_MATCH_TIMEOUT_S,
-            read_number,
-            "How long to wait for somebody who listens to the commands (s)",
-        )
+        self.joint_names = declare_joints(self)
+        self._match_timeout_s = declare_match_timeout_s(self)
         self._commands = CommandPublisher(self, self.joint_names)
 
     def deliver(self, pose: JointPose, announce: Callable[[], None]) -> None:

@@ -38,9 +38,7 @@ def fill_picture(picture: Picture, step: int, sample: Sample) -> None:
     np.copyto(picture, level[:height, :width])
 
 
-def _sample_lattice(
-    rows: NDArray[np.intp], columns: NDArray[np.intp], sample: Sample
-) -> Picture:
+def _sample_lattice(rows: NDArray[np.intp], columns: NDArray[np.intp], sample: Sample) -> Picture:
     colours = sample(np.repeat(rows, len(columns)), np.tile(columns, len(rows)))
     return colours.reshape(len(rows), len(columns), 3)
 
@@ -69,6 +67,6 @@ def _insert_rows(level: Picture, step: int, sample: Sample) -> Picture:
 
 def _compare(a: Picture, b: Picture) -> tuple[Picture, NDArray[np.bool_]]:
     """Return the means of two arrays of colours, and where they do not look alike."""
-    means = (a >> 1) + (b >> 1) + (a & b & 1)
+    means: Picture = (a >> np.uint8(1)) + (b >> np.uint8(1)) + (a & b & np.uint8(1))
     gap = np.maximum(a, b) - np.minimum(a, b)
     return means, ((gap[..., 0] | gap[..., 1] | gap[..., 2]) & ALIKE_MASK).astype(np.bool_)

@@ -47,9 +47,7 @@ def backend_order(preference: str, excluded: Iterable[str] = ()) -> tuple[str, .
         CameraError: an unknown preference; the message names the known ones.
     """
     if preference not in PREFERENCES:
-        raise CameraError(
-            f"no render backend {preference!r}; there are {', '.join(PREFERENCES)}"
-        )
+        raise CameraError(f"no render backend {preference!r}; there are {', '.join(PREFERENCES)}")
     wanted = CONTEXTS if preference == "auto" else [preference]
     shut_out = {*excluded, RAYCAST}
     return (*(name for name in wanted if name not in shut_out), RAYCAST)

@@ -23,7 +23,7 @@ class Lighting:
         self._model = model
         self._data = data
         self._forward = forward
-        self._active = np.flatnonzero(model.light_active)
+        self._active = [int(index) for index in np.flatnonzero(model.light_active)]
 
     def brightness(
         self, points: NDArray[np.float64], normals: NDArray[np.float64]
@@ -41,8 +41,9 @@ class Lighting:
             light += np.asarray(head.ambient) + facing * np.asarray(head.diffuse)
         for index in self._active:
             light += self._model.light_ambient[index]
-            light += self._diffuse(index, points, normals)[:, np.newaxis] * (
-                self._model.light_diffuse[index]
+            light += (
+                self._diffuse(index, points, normals)[:, np.newaxis]
+                * (self._model.light_diffuse[index])
             )
         return light
 

@@ -32,9 +32,7 @@ class RaycastRenderer:
         self._model = model
         self._colours = SurfaceColours(model)
 
-    def render(
-        self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]
-    ) -> None:
+    def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]) -> None:
         """Draw one camera's view; see `Renderer.render`."""
         assert self._model is not None
         step = first_step(sensor)

@@ -1,7 +1,5 @@
 """A compiled model in the renderer's process, put into the states that the simulation sends."""
 
-import os
-
 import mujoco
 
 from arm_gazebo.camera_snapshot import CameraSnapshot
@@ -21,7 +19,7 @@ class Scene:
             CameraError: the file holds no model that this MuJoCo can read.
         """
         # MuJoCo opens files by name only; this is the name of an open one.
-        path = f"/proc/{os.getpid()}/fd/{file}"
+        path = f"/proc/self/fd/{file}"
         try:
             self.model = mujoco.MjModel.from_binary_path(path)
         except ValueError as error:

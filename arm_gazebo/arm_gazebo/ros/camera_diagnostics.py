@@ -1,13 +1,14 @@
 """Reports on /diagnostics how well each camera keeps up."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
+from arm_gazebo.camera_pipeline import CameraPipeline
 from arm_gazebo.camera_sensor import CameraSensor
-from arm_gazebo.camera_statistics import CameraReport, CameraStatistics
-from arm_gazebo.ros.camera_publisher import CameraPublisher
+from arm_gazebo.camera_statistics import CameraReport
+from arm_gazebo.ros.camera_publisher import CameraPublisher, set_stamp
 
 PERIOD_S = 1.0
 LEAST_SHARE = 0.9
@@ -21,8 +22,7 @@ class CameraDiagnostics:
         node: Node,
         sensors: Sequence[CameraSensor],
         publishers: Sequence[CameraPublisher],
-        statistics: Sequence[CameraStatistics],
-        backend: Callable[[], str],
+        pipeline: CameraPipeline,
     ) -> None:
         """Start reporting.
 
@@ -30,20 +30,18 @@ class CameraDiagnostics:
             node: gets the publisher and a timer.
             sensors: the cameras.
             publishers: of each camera.
-            statistics: of each camera.
-            backend: returns the name of what draws.
+            pipeline: what draws them.
         """
-        self._node = node
-        self._cameras = tuple(zip(sensors, publishers, statistics, strict=True))
-        self._backend = backend
+        self._pipeline = pipeline
+        self._cameras = tuple(zip(sensors, publishers, pipeline.statistics, strict=True))
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         node.create_timer(PERIOD_S, self._publish)
 
     def _publish(self) -> None:
         message = DiagnosticArray()
-        message.header.stamp = self._node.get_clock().now().to_msg()
+        set_stamp(message.header, self._pipeline.time_s)
         message.status = [
-            _status(sensor, publisher.subscribers, statistics.report(), self._backend())
+            _status(sensor, publisher.subscribers, statistics.report(), self._pipeline.backend)
             for sensor, publisher, statistics in self._cameras
         ]
         self._publisher.publish(message)

@@ -8,6 +8,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from std_msgs.msg import Header
 
 from arm_gazebo.camera_info import DISTORTION_MODEL, Intrinsics
 from arm_gazebo.camera_sensor import CameraSensor
@@ -56,18 +57,18 @@ class CameraPublisher:
 
     def publish_info(self, time_s: float) -> None:
         """Publish the intrinsics on every info topic."""
-        _stamp(self._info, time_s)
+        set_stamp(self._info.header, time_s)
         for publisher in self._infos:
             publisher.publish(self._info)
 
     def publish_picture(self, time_s: float) -> None:
         """Publish the picture where somebody subscribes to it, compressed or not."""
-        _stamp(self._image, time_s)
+        set_stamp(self._image.header, time_s)
         for publisher in _watched(self._images):
             publisher.publish(self._image)
         jpegs = _watched(self._jpegs)
         if jpegs:
-            _stamp(self._jpeg, time_s)
+            set_stamp(self._jpeg.header, time_s)
             self._jpeg.data = _compress(self._picture)
             for publisher in jpegs:
                 publisher.publish(self._jpeg)
@@ -77,10 +78,9 @@ def _watched(publishers: list[Publisher]) -> list[Publisher]:
     return [p for p in publishers if p.get_subscription_count()]
 
 
-def _stamp(message: Image | CameraInfo | CompressedImage, time_s: float) -> None:
-    seconds, nanoseconds = divmod(round(time_s * NS_PER_S), NS_PER_S)
-    message.header.stamp.sec = seconds
-    message.header.stamp.nanosec = nanoseconds
+def set_stamp(header: Header, time_s: float) -> None:
+    """Stamp a header with a simulation time."""
+    header.stamp.sec, header.stamp.nanosec = divmod(round(time_s * NS_PER_S), NS_PER_S)
 
 
 def _image_message(sensor: CameraSensor) -> Image:

@@ -14,7 +14,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
-Callback = Callable[[], None]
+Callback = Callable[[], object]
+"""What it returns is ignored."""
 
 
 class Timer:
@@ -100,6 +101,8 @@ class EventLoop:
         previous_fd = signal.set_wakeup_fd(writable, warn_on_full_buffer=False)
         previous = {number: signal.signal(number, lambda *_: None) for number in callbacks}
         self.add_reader(readable, deliver)
+        # Whoever started us may have held them back until now.
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, callbacks)
         try:
             yield
         finally:

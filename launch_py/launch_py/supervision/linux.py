@@ -6,6 +6,7 @@ import ctypes
 import os
 import signal
 from collections.abc import Callable
+from contextlib import suppress
 
 _PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36
@@ -65,10 +66,8 @@ def children() -> list[int]:
 def reap(pids: list[int]) -> None:
     """Take the exit status of those of these children that have ended."""
     for pid in pids:
-        try:
+        with suppress(ChildProcessError):
             os.waitpid(pid, os.WNOHANG)
-        except ChildProcessError:
-            continue
 
 
 def group_exists(group: int) -> bool:
@@ -85,6 +84,12 @@ def signal_group(group: int, number: signal.Signals | None) -> bool:
     except PermissionError:
         return True  # Some member runs as another user.
     return True
+
+
+def signal_process(pid: int, number: signal.Signals) -> None:
+    """Send a signal to a process that may be gone already."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)
 
 
 def session_of(pid: int) -> int | None:

@@ -66,6 +66,10 @@ class ProcessRunner(Protocol):
         """Call back once the condition is met; return how to stop watching."""
         ...
 
+    def settled(self) -> None:
+        """Release what only the start-up needs: everything is ready."""
+        ...
+
 
 class Member:
     """Supervises one process; belongs to the loop's thread."""

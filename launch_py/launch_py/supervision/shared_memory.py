@@ -1,9 +1,10 @@
 """Removes what Fast DDS leaves in /dev/shm when one of our processes is killed.
 
-A participant that ends in order removes its own files; one that is killed leaves up to eight. Each
-segment `fastrtps_X` comes with a lock file `fastrtps_X_el` on which its owner holds a lock, so the
-kernel's list of locks says who owns what. The lock is looked up when the file appears (inotify), and
-after the owner's death the files go, but only if the lock can be taken: then nobody lives in them.
+A participant that ends in order removes its own files; one that is killed leaves up to eight.
+Each segment `fastrtps_X` comes with a lock file `fastrtps_X_el` on which its owner holds a lock, so
+the kernel's list of locks says who owns what. The lock is looked up when the file appears
+(inotify); after the owner's death the files go, but only if the lock can be taken, because then
+nobody lives in them.
 """
 
 from __future__ import annotations

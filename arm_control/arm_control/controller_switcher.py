@@ -1,0 +1,148 @@
+"""Activates and deactivates controllers together, and the modes of the hardware with them."""
+
+import logging
+from collections.abc import Iterable, Mapping, Sequence
+
+from arm_control.controller_lifecycle import ControllerLifecycle
+from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
+from arm_control.managed_controller import ManagedController
+from arm_control.resource_manager import ResourceManager
+from arm_control.switch_planner import SwitchPlan, SwitchPlanner, SwitchRefusedError
+
+logger = logging.getLogger(__name__)
+
+NOTHING_TO_SWITCH = (
+    "After checking the controllers, no controllers need to be activated or deactivated."
+)
+PREPARE_REJECTED = "Could not switch controllers since prepare command mode switch was rejected."
+SWITCHED = "Successfully switched controllers!"
+SWITCH_FAILED = "Failed switching controllers.... "
+
+
+class ControllerSwitcher:
+    """Carries out switches: those asked for, and those that a failure makes necessary.
+
+    Loop thread only. Hardware modes change first, then controllers are deactivated, then others
+    activated.
+    """
+
+    def __init__(
+        self,
+        controllers: Mapping[str, ManagedController],
+        resources: ResourceManager,
+        lifecycle: ControllerLifecycle,
+    ) -> None:
+        """Watch over the manager's controllers.
+
+        Args:
+            controllers: by name; the manager goes on adding and removing.
+            resources: the hardware.
+            lifecycle: takes a single controller from state to state.
+        """
+        self._controllers = controllers
+        self._resources = resources
+        self._lifecycle = lifecycle
+
+    def switch(self, request: SwitchRequest) -> SwitchResult:
+        """Do what was asked, as far as its strictness and the state of things allow."""
+        try:
+            plan = SwitchPlanner(self._controllers, self._resources, request).plan()
+        except SwitchRefusedError as error:
+            logger.error("no controller is switched: %s %s", str(error).rstrip(), error.hint)
+            return SwitchResult(False, str(error))
+        if not plan.activate and not plan.deactivate:
+            return SwitchResult(True, NOTHING_TO_SWITCH)
+        reason = self._resources.prepare_mode_switch(plan.start_interfaces, plan.stop_interfaces)
+        if reason:
+            logger.error("%s (%s)", PREPARE_REJECTED, reason)
+            return SwitchResult(False, PREPARE_REJECTED)
+        reason = self._resources.perform_mode_switch(plan.start_interfaces, plan.stop_interfaces)
+        if reason:
+            logger.error("Error while performing mode switch: %s", reason)
+            return _failed(plan.activate, plan.deactivate)
+        return self._carry_out(plan, request)
+
+    def deactivate(self, controllers: Sequence[ManagedController]) -> None:
+        """Deactivate these without asking anybody: after errors, and at the end."""
+        if not controllers:
+            return
+        self._leave_modes(controllers)
+        for controller in controllers:
+            self._lifecycle.deactivate(controller)
+
+    def replace_failed(self, failed: Sequence[ManagedController]) -> None:
+        """Deactivate controllers whose update failed, and let their fallbacks take over."""
+        names = " ".join(controller.name for controller in failed)
+        logger.error(
+            "Deactivating controllers : [ %s ] as their update resulted in an error!", names
+        )
+        self.deactivate(failed)
+        fallbacks = dict.fromkeys(name for c in failed for name in c.fallback_names)
+        if not fallbacks:
+            logger.error(
+                "Once the cause is gone, activate again with: spawner %s "
+                "(or: ros2 control switch_controllers --activate %s)",
+                names,
+                names,
+            )
+            return
+        logger.error("Activating fallback controllers : [ %s ]", " ".join(fallbacks))
+        self.switch(
+            SwitchRequest(
+                tuple(name for name in fallbacks if not self._is_active(name)),
+                tuple(dict.fromkeys(self._holders_of_interfaces(fallbacks))),
+                Strictness.STRICT,
+            )
+        )
+
+    def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
+        stuck = [c for c in plan.deactivate if self._lifecycle.deactivate(c)]
+        refused = [c for c in plan.activate if self._lifecycle.activate(c)]
+        if refused:
+            self._leave_modes(refused)
+            if request.is_strict:
+                self.deactivate([c for c in plan.activate if c.is_active])
+        if stuck or refused:
+            return _failed(refused, stuck)
+        return _succeeded(plan, request)
+
+    def _leave_modes(self, controllers: Iterable[ManagedController]) -> None:
+        stop = [name for controller in controllers for name in controller.commands]
+        reason = self._resources.perform_mode_switch((), stop)
+        if reason:
+            logger.error("Error while performing mode switch: %s", reason)
+
+    def _is_active(self, name: str) -> bool:
+        controller = self._controllers.get(name)
+        return controller is not None and controller.is_active
+
+    def _holders_of_interfaces(self, names: Iterable[str]) -> Iterable[str]:
+        """Yield the controllers that hold what inactive controllers of these names need."""
+        for name in names:
+            controller = self._controllers.get(name)
+            if controller is None or controller.is_active:
+                continue
+            for command in controller.commands:
+                holder = self._resources.claimant(command)
+                if holder is not None:
+                    yield holder
+
+
+def _succeeded(plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
+    lists = _listed("\nDeactivated controllers", plan.deactivate)
+    lists += _listed("\nActivated controllers", plan.activate)
+    logger.info("%s%s", SWITCHED, lists.replace("\n", " "))
+    return SwitchResult(True, SWITCHED if request.is_strict else SWITCHED + lists)
+
+
+def _failed(
+    refused: Sequence[ManagedController], stuck: Sequence[ManagedController]
+) -> SwitchResult:
+    message = SWITCH_FAILED
+    message += _listed("\nUnable to activate controllers", refused)
+    message += _listed("\nUnable to deactivate controllers", stuck)
+    return SwitchResult(False, message)
+
+
+def _listed(title: str, controllers: Sequence[ManagedController]) -> str:
+    return f"{title}: [ {' '.join(c.name for c in controllers)} ]" if controllers else ""

@@ -1,0 +1,150 @@
+"""Puts the simulation together: model, hardware, controller manager, loop, clock, cameras.
+
+Start: everything is made while time stands still, then the loop goes. End: the services stop,
+the controllers are shut down on the loop, the loop is joined, and only then are nodes destroyed.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from arm_gazebo.simulated_hardware import SimulatedHardware
+from arm_gazebo.simulation import Simulation
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+
+from arm_control.control_loop import ControlLoop
+from arm_control.controller_manager import ControllerManager
+from arm_control.hardware_info import HardwareInfo, parse_hardware_info
+from arm_control.pacer import Pacer
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.controller_manager_server import ControllerManagerServer
+from arm_description.urdf import parse_urdf
+from arm_gazebo.build_options import BuildOptions
+from arm_gazebo.built_model import BuiltModel
+from arm_gazebo.camera_feed import CameraFeed
+from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.model_builder import build_model
+from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
+from arm_gazebo.ros.clock_publisher import RosClockPublisher
+from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
+from arm_gazebo.simulation_tick import SimulationTick
+from arm_node.notify import notify
+from arm_node.process import EXIT_FAILED, NodeProcess
+
+NODE_NAME = "arm_gazebo"
+SUPERVISION_PERIOD_S = 1.0
+LOOP_JOIN_TIMEOUT_S = 5.0
+
+logger = logging.getLogger(NODE_NAME)
+
+
+@contextmanager
+def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[None]:
+    """Build the simulation from the process's parameters, run it, and take it down.
+
+    Raises:
+        GazeboError, ArmControlError, DescriptionError: it cannot be built as asked for.
+    """
+    node = Node(NODE_NAME)
+    process.executor.add_node(node)
+    settings = read_settings(node)
+    manager_node = ControllerManagerNode(arguments)
+    timing = physics_timing(manager_node.settings.update_rate, settings.physics_step_s)
+    hardware_info = _hardware_info(settings)
+    sensors = parse_cameras(settings.robot_description)
+    built = _build(settings, hardware_info, sensors, timing)
+    simulation = Simulation(built, timing)
+    hardware = [
+        SimulatedHardware(simulation, info, hold_joints=settings.hold_joints)
+        for info in hardware_info
+    ]
+    manager = ControllerManager(hardware, manager_node.settings.update_rate)
+    manager.bring_up(
+        manager_node.settings.hardware_components_initial_state.unconfigured,
+        manager_node.settings.hardware_components_initial_state.inactive,
+    )
+    cameras = _camera_feed(sensors, settings)
+    tick = SimulationTick(manager, simulation, RosClockPublisher(node), cameras, timing.period_s)
+    pacer = Pacer(
+        timing.period_s,
+        real_time_factor=settings.real_time_factor,
+        print_warnings=manager_node.settings.overruns.print_warnings,
+    )
+    loop = ControlLoop(tick, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
+    loop.start(paused=True)
+    server = ControllerManagerServer(
+        manager_node,
+        manager,
+        loop,
+        process.executor,
+        robot_description=settings.robot_description,
+    )
+    try:
+        server.start_controllers(settings.spawn)
+        loop.resume()
+        if cameras is not None:
+            cameras.start(built.model)
+        _supervise(node, pacer, cameras)
+        yield
+    finally:
+        if cameras is not None:
+            cameras.close()
+        server.shutdown()
+        loop.stop()
+        loop.join(LOOP_JOIN_TIMEOUT_S)
+        server.destroy_nodes()
+
+
+def _hardware_info(settings: SimulationSettings) -> tuple[HardwareInfo, ...]:
+    hardware_info = parse_hardware_info(settings.robot_description)
+    if not hardware_info:
+        raise SettingsError(
+            "the robot description has no <ros2_control> block, so nothing says which joints are "
+            "commanded; add one with a <joint> and its interfaces for each"
+        )
+    return hardware_info
+
+
+def _build(
+    settings: SimulationSettings,
+    hardware_info: tuple[HardwareInfo, ...],
+    sensors: tuple[CameraSensor, ...],
+    timing: PhysicsTiming,
+) -> BuiltModel:
+    built = build_model(
+        parse_urdf(settings.robot_description),
+        hardware_info,
+        sensors,
+        settings.world,
+        BuildOptions(
+            step_s=timing.step_s,
+            base="free" if settings.base == "free" else "fixed",
+            spawn=settings.pose,
+            self_collide=settings.self_collide,
+            strict=settings.strict,
+            package_path=settings.package_path,
+        ),
+    )
+    built.report.log(logger)
+    return built
+
+
+def _camera_feed(
+    sensors: tuple[CameraSensor, ...], settings: SimulationSettings
+) -> CameraFeed | None:
+    if not sensors:
+        return None
+    return CameraFeed(sensors, render_backend=settings.render_backend, seed=settings.seed)
+
+
+def _supervise(node: Node, pacer: Pacer, cameras: CameraFeed | None) -> None:
+    """Once a wall second: revive the camera process, tell the supervisor how fast time goes."""
+
+    def look() -> None:
+        if cameras is not None:
+            cameras.supervise()
+        notify(f"STATUS=real-time factor {pacer.statistics.achieved_factor:.2f}")
+
+    node.create_timer(SUPERVISION_PERIOD_S, look, clock=Clock(clock_type=ClockType.STEADY_TIME))

@@ -1,0 +1,259 @@
+"""The drives of a robot's joints: commands in, efforts out, no gain set by hand.
+
+Each drive is a MuJoCo actuator whose force is
+
+    stiffness (act - q - T q') with T = damping / stiffness, within the effort limit,
+
+where the activation `act` = r + T r' + f / stiffness carries the set-point r, its velocity and
+the effort f that the model says the motion needs: inertia times acceleration, gravity, Coriolis
+forces and friction. The control of the actuator is the rate of `act`, so that MuJoCo moves the
+set-point on between two control ticks by itself.
+"""
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.drive_mode import SERVOED, DriveMode
+from arm_gazebo.driven_joint import DrivenJoint
+from arm_gazebo.physics_timing import PhysicsTiming
+from arm_gazebo.robot_joint import RobotJoint
+from arm_gazebo.servo_tuning import TIME_CONSTANT_S, ServoTuning
+
+Array = NDArray[np.float64]
+
+USABLE_EFFORT = 0.9
+"""Share of the effort limit that planned motion may use; the rest is for what is not planned."""
+SETTLE_S = 0.1
+LOOK_EVERY_S = 0.01
+STIRRED = 5e-4
+"""A resting joint that moved by this much, in rad or m, is looked after again."""
+
+
+class Servo:
+    """Drives joints; used by one thread, the one that steps the simulation.
+
+    A robot at rest costs nothing: the drives sleep until a command, or a joint that is moved.
+
+    Args:
+        model: its gains are set; tuned by `servo_tuning.tune` before.
+        data: state; its positions are valid.
+        joints: the driven joints; their actuators and activations are contiguous.
+        tuning: gains and bounds.
+        timing: control period and physics step.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        joints: Sequence[RobotJoint],
+        tuning: ServoTuning,
+        timing: PhysicsTiming,
+    ) -> None:
+        self._model = model
+        self._data = data
+        self._tuning = tuning
+        self._period_s = timing.period_s
+        # A set-point's position is exact at the end of a period, the integrator's half a step
+        # behind its velocity.
+        self._lead_s = TIME_CONSTANT_S + timing.step_s / 2
+        self._joints = tuple(
+            DrivenJoint(joint, *bounds, timing.period_s)
+            for joint, *bounds in zip(
+                joints,
+                tuning.braking.tolist(),
+                tuning.jerkless.tolist(),
+                tuning.stiffness.tolist(),
+                strict=True,
+            )
+        )
+        self._servoed: tuple[tuple[int, DrivenJoint], ...] = ()
+        self._bind(model, data, joints)
+        self._spread = tuning.coupling
+        self._coupling = np.ascontiguousarray(tuning.coupling.T)
+        self._stiffness: list[float] = tuning.stiffness.tolist()
+        self._followers: list[float] = tuning.followers.tolist()
+        self._friction = _felt(model.dof_frictionloss, tuning.coupling)
+        self._drag = _felt(model.dof_damping, tuning.coupling)
+        self._accelerations = np.zeros(len(joints))
+        self._motion = np.zeros(model.nv)
+        self._load = np.zeros(model.nv)
+        self._still: list[float] = []
+        self._settle_ticks = math.ceil(SETTLE_S / timing.period_s)
+        self._look_ticks = max(1, round(LOOK_EVERY_S / timing.period_s))
+        self._tick = 0
+        self._awake_ticks = self._settle_ticks
+
+    def _bind(
+        self, model: mujoco.MjModel, data: mujoco.MjData, joints: Sequence[RobotJoint]
+    ) -> None:
+        """Take hold of MuJoCo's arrays; each look-up of an attribute costs as much as a sum."""
+        count = len(joints)
+        first = next((j.actuator for j in joints if j.actuator is not None), 0)
+        activation = int(model.actuator_actadr[first]) if count else 0
+        self._actuators = range(first, first + count)
+        self._act = data.act[activation : activation + count]
+        self._ctrl = data.ctrl[first : first + count]
+        dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
+        addresses = np.array([joint.qpos_address for joint in joints], dtype=np.intp)
+        self._dofs, self._addresses = as_slice(dofs), as_slice(addresses)
+        self._diagonal = as_slice(model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1)
+        self._qpos, self._qvel = data.qpos, data.qvel
+        self._inertia, self._bias = data.M, data.qfrc_bias
+    @property
+    def joints(self) -> tuple[RobotJoint, ...]:
+        """The driven joints; their order is that of the indices below."""
+        return tuple(driven.joint for driven in self._joints)
+
+    def mode(self, index: int) -> DriveMode:
+        """Return how a joint is driven."""
+        return self._joints[index].mode
+
+    def set_mode(self, index: int, mode: DriveMode) -> None:
+        """Change how a joint is driven, without a jump."""
+        driven = self._joints[index]
+        position = float(self._qpos[driven.joint.qpos_address])
+        driven.enter(mode, position, float(self._qvel[driven.joint.dof_address]))
+        self._set_gains(index, mode)
+        self._servoed = tuple(
+            (each, joint) for each, joint in enumerate(self._joints) if joint.mode in SERVOED
+        )
+        self._awake_ticks = self._settle_ticks
+
+    def command(self, index: int, value: float) -> None:
+        """Take a finite command, within the joint's limits, in the unit of the joint's mode."""
+        self._joints[index].command(value, self._tick)
+        self._awake_ticks = self._settle_ticks
+
+    def stopping_point(self, index: int) -> float:
+        """Return where a joint will stand if nothing new is commanded, in rad or m."""
+        return self._joints[index].stopping_point()
+
+    def reset(self) -> None:
+        """Start anew from the joints' state, which was changed from outside; modes stay."""
+        for index, driven in enumerate(self._joints):
+            mode = driven.mode
+            driven.mode = DriveMode.LIMP
+            self.set_mode(index, mode)
+
+    def update(self) -> None:
+        """Drive the joints for one control period; called before each, commands or not."""
+        self._tick += 1
+        if not self._awake_ticks:
+            if self._tick % self._look_ticks or not self._is_stirred():
+                return
+            self._awake_ticks = self._settle_ticks
+        gravity = self._coupling.dot(self._bias).tolist()
+        if self._plan(gravity) or len(self._servoed) < len(self._joints):
+            self._awake_ticks = self._settle_ticks
+        else:
+            self._awake_ticks -= 1
+        self._write(self._planned_efforts(gravity))
+        if not self._awake_ticks:
+            self._still = self._qpos[self._addresses].tolist()
+
+    def _is_stirred(self) -> bool:
+        positions = self._qpos[self._addresses].tolist()
+        return any(
+            abs(now - then) > STIRRED for now, then in zip(positions, self._still, strict=True)
+        )
+
+    def _plan(self, gravity: list[float]) -> bool:
+        """Move every set-point on; return whether one of them moves."""
+        positions = self._qpos[self._addresses].tolist()
+        velocities = self._qvel[self._dofs].tolist()
+        inertias = self._inertia[self._diagonal].tolist()
+        moving = False
+        for index, driven in self._servoed:
+            inertia = inertias[index] + self._followers[index]
+            if driven.plan(positions[index], velocities[index], inertia, gravity[index]):
+                moving = True
+        return moving
+
+    def _planned_efforts(self, gravity: list[float]) -> list[float]:
+        """Return the efforts that the planned motion needs, having slowed one that is too fast."""
+        efforts = self._efforts()
+        for index, driven in self._servoed:
+            if abs(efforts[index]) > USABLE_EFFORT * driven.joint.effort:
+                self._slow_down(efforts, gravity)
+                return self._efforts()
+        return efforts
+
+    def _efforts(self) -> list[float]:
+        """Return inertia x acceleration + gravity and Coriolis effort of the driven joints."""
+        for index, driven in self._servoed:
+            gain = driven.setpoint.velocity - driven.start_velocity
+            self._accelerations[index] = gain / self._period_s
+        self._spread.dot(self._accelerations, self._motion)
+        mujoco.mj_mulM(self._model, self._data, self._load, self._motion)
+        np.add(self._load, self._bias, self._load)
+        return self._coupling.dot(self._load).tolist()
+
+    def _slow_down(self, efforts: list[float], gravity: list[float]) -> None:
+        """Let all joints that gain speed gain less, by one share, until the efforts suffice."""
+        share = 1.0
+        for index, driven in self._servoed:
+            limit = USABLE_EFFORT * driven.joint.effort
+            moving = efforts[index] - gravity[index]
+            room = limit - math.copysign(gravity[index], gravity[index] * moving)
+            if abs(efforts[index]) > limit and 0.0 < room < abs(moving):
+                share = min(share, room / abs(moving))
+        for _, driven in self._servoed:
+            driven.gain_less(share)
+
+    def _write(self, efforts: list[float]) -> None:
+        """Hand over to MuJoCo: where the activations start and how fast they move."""
+        lead_s, period_s = self._lead_s, self._period_s
+        activations, rates = [0.0] * len(efforts), [0.0] * len(efforts)
+        for index, driven in enumerate(self._joints):
+            activations[index] = driven.effort
+        for index, driven in self._servoed:
+            setpoint = driven.setpoint
+            speed, limit = setpoint.velocity, driven.joint.effort
+            effort = efforts[index] + self._drag[index] * speed
+            if speed:
+                effort += math.copysign(self._friction[index], speed)
+            effort = min(max(effort, -limit), limit)
+            activations[index] = (
+                driven.start_position
+                + lead_s * driven.start_velocity
+                + effort / self._stiffness[index]
+            )
+            rates[index] = (
+                setpoint.position
+                - driven.start_position
+                + lead_s * (speed - driven.start_velocity)
+            ) / period_s
+        self._act[:] = activations
+        self._ctrl[:] = rates
+
+    def _set_gains(self, index: int, mode: DriveMode) -> None:
+        actuator = self._actuators[index]
+        stiffness, damping, gain = 0.0, 0.0, 0.0
+        if mode in SERVOED:
+            stiffness, damping = self._stiffness[index], float(self._tuning.damping[index])
+            gain = stiffness
+        elif mode is DriveMode.EFFORT:
+            gain = 1.0
+        self._model.actuator_gainprm[actuator, 0] = gain
+        self._model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
+
+
+def as_slice(indices: NDArray[np.intp]) -> slice | NDArray[np.intp]:
+    """Return evenly spaced, rising indices as a slice: a view instead of a copy."""
+    if len(indices) == 0:
+        return slice(0, 0)
+    steps = np.unique(np.diff(indices))
+    if len(steps) > 1 or (len(steps) == 1 and steps[0] < 1):
+        return indices
+    step = int(steps[0]) if len(steps) else 1
+    return slice(int(indices[0]), int(indices[-1]) + 1, step)
+
+
+def _felt(resistance: Array, coupling: Array) -> list[float]:
+    """Return what each driven joint feels of the resistance of all that moves with it."""
+    return (coupling**2).T.dot(resistance).tolist()

@@ -1,0 +1,109 @@
+"""The running physics: one model, its state, and the drives of the robot's joints."""
+
+import logging
+
+import mujoco
+import numpy as np
+
+from arm_gazebo.built_model import BuiltModel
+from arm_gazebo.drive_mode import DriveMode
+from arm_gazebo.errors import TimingError
+from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
+from arm_gazebo.servo import Servo
+from arm_gazebo.servo_tuning import tune
+
+logger = logging.getLogger(__name__)
+
+SAVE_EVERY_S = 0.1
+"""How often the state is kept, to go back to if the physics fails."""
+
+
+class Simulation:
+    """Advances a model by control periods; used by one thread.
+
+    Args:
+        built: the robot in its world. Its model is tuned here and belongs to the simulation.
+        timing: control period and physics step; the model was built with the latter.
+        hold_joints: whether a driven joint that no one commands stands still or falls.
+
+    Raises:
+        TimingError: the model was built for another physics step.
+    """
+
+    def __init__(self, built: BuiltModel, timing: PhysicsTiming, hold_joints: bool = True) -> None:
+        step_s = built.model.opt.timestep
+        if abs(step_s - timing.step_s) > DIVIDES_WITHIN * step_s:
+            raise TimingError(
+                f"the model was built with a physics step of {step_s:g} s, "
+                f"and the simulation asks for {timing.step_s:g} s"
+            )
+        self.built = built
+        self.timing = timing
+        self.model = built.model
+        self.data = mujoco.MjData(built.model)
+        self.idle_mode = DriveMode.HOLD if hold_joints else DriveMode.LIMP
+        driven = [joint for joint in built.joints.values() if joint.actuator is not None]
+        driven.sort(key=lambda joint: joint.actuator or 0)
+        tuning = tune(self.model, driven, built.qpos)
+        self.servo = Servo(self.model, self.data, driven, tuning, timing)
+        self._failures: list[str] = []
+        self._ticks_to_save = 0
+        self._save_ticks = max(1, round(SAVE_EVERY_S / timing.period_s))
+        self._saved_qpos = self.data.qpos.copy()
+        # Without a handler MuJoCo writes a log file into whatever folder this process runs in.
+        mujoco.set_mju_user_warning(_log_warning)
+        self._restart(built.qpos, 0.0)
+        for index in range(len(driven)):
+            self.servo.set_mode(index, self.idle_mode)
+
+    @property
+    def time_s(self) -> float:
+        """Simulation time."""
+        return self.data.time
+
+    def advance(self) -> None:
+        """Advance by one control period."""
+        data = self.data
+        before_s = data.time
+        self.servo.update()
+        mujoco.mj_step(self.model, data, self.timing.steps)
+        if data.time <= before_s:
+            # MuJoCo starts over by itself where a number is no longer finite.
+            self._recover(before_s)
+        self._ticks_to_save -= 1
+        if self._ticks_to_save < 0:
+            self._ticks_to_save = self._save_ticks
+            self._saved_qpos[:] = data.qpos
+
+    def reset(self, time_s: float = 0.0) -> None:
+        """Put everything back to where it started, at rest; the clock goes on from `time_s`.
+
+        Joints stay as they are claimed, and stand until a new command comes.
+        """
+        self._restart(self.built.qpos, time_s)
+        self.servo.reset()
+
+    def take_failures(self) -> list[str]:
+        """Return what went wrong in the physics since the last call, one sentence each."""
+        failures, self._failures = self._failures, []
+        return failures
+
+    def _restart(self, qpos: np.ndarray, time_s: float) -> None:
+        mujoco.mj_resetData(self.model, self.data)
+        self.data.time = time_s
+        self.data.qpos[:] = qpos
+        self._saved_qpos[:] = qpos
+        # The drives read inertia and gravity of the last step.
+        mujoco.mj_forward(self.model, self.data)
+
+    def _recover(self, before_s: float) -> None:
+        self._restart(self._saved_qpos.copy(), before_s + self.timing.period_s)
+        self.servo.reset()
+        self._failures.append(
+            f"the physics became unstable at {before_s:.3f} s; it goes on at rest from the pose "
+            f"of up to {SAVE_EVERY_S:g} s before"
+        )
+
+
+def _log_warning(message: str) -> None:
+    logger.warning("MuJoCo: %s", message)

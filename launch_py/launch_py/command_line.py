@@ -1,0 +1,213 @@
+"""The command line of `arm launch` and `python -m launch_py`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from launch_py.child_environment import ament_prefixes
+from launch_py.errors import LaunchError, UsageError
+from launch_py.expansion import expand_description, survey_description
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.near_names import describe_known
+from launch_py.packages import Packages
+
+EXIT_USAGE = 2
+EXIT_INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchRequest:
+    """What was asked for: a launch file, values of its arguments, what to do with it."""
+
+    launch_file: Path
+    arguments: dict[str, str]
+    show_args: bool = False
+    print_plan: bool = False
+    show_all: bool = False
+
+
+def run(
+    argv: Sequence[str],
+    program: str,
+    default_file: tuple[str, str] | None = None,
+    before_start: Callable[[], None] = lambda: None,
+) -> int:
+    """Carry out the command line; return the exit code.
+
+    Args:
+        argv: the words after the program's name.
+        program: what to call it in its help.
+        default_file: package and launch file to take where none is given.
+        before_start: called when everything is checked and nothing is started yet; whatever
+            speaks against starting it raises as a LaunchError.
+
+    What is wrong with the words or the launch file is one sentence on stderr and exit code 2.
+    """
+    started_s = time.monotonic()
+    parser = _parser(program, default_file)
+    options, unknown = parser.parse_known_intermixed_args(argv)
+    try:
+        _refuse_unknown_options(unknown, parser)
+        request = parse_request(options, default_file)
+        return _carry_out(request, started_s, before_start)
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
+    except LaunchError as error:
+        if options.debug:
+            traceback.print_exc()
+        sys.stderr.write(f"{program}: {error}\n")
+        return EXIT_USAGE
+
+
+def parse_request(
+    options: argparse.Namespace, default_file: tuple[str, str] | None
+) -> LaunchRequest:
+    """Return what the parsed words ask for.
+
+    Raises:
+        UsageError: too many or too few words, or a malformed argument.
+        NotFoundError: there is no such package or launch file.
+    """
+    arguments: dict[str, str] = {}
+    words: list[str] = []
+    for word in options.words:
+        name, separator, value = word.partition(":=")
+        if not separator:
+            words.append(word)
+        elif not name:
+            raise UsageError(f"{word!r} has no name before ':='")
+        else:
+            arguments[name] = value
+    return LaunchRequest(
+        launch_file=find_launch_file(words, default_file),
+        arguments=arguments,
+        show_args=options.show_args,
+        print_plan=options.print_plan,
+        show_all=options.show_all or options.debug,
+    )
+
+
+def find_launch_file(words: Sequence[str], default_file: tuple[str, str] | None) -> Path:
+    """Return the launch file that one path, or a package and a file name, stand for.
+
+    Raises:
+        UsageError: the words are neither.
+        NotFoundError: there is no such package or launch file.
+    """
+    packages = Packages(os.environ)
+    match words:
+        case []:
+            if default_file is None:
+                raise UsageError("which launch file? Give PACKAGE FILE, or the path of a file")
+            return packages.launch_file(*default_file)
+        case [word] if os.path.isfile(word):
+            return Path(word)
+        case [word] if word.endswith(".py") or os.sep in word:
+            path = Path(word)
+            names = [p.name for p in path.parent.glob("*.py")]
+            hint = describe_known(path.name, names, f"{path.parent.resolve()} holds")
+            raise UsageError(f"no launch file {word}; {hint}")
+        case [word]:
+            share = packages.share_folder(word)
+            names = [p.name for p in sorted(share.glob("launch/*.py"))]
+            raise UsageError(
+                f"which launch file of package {word!r}? It has {', '.join(names) or 'none'}"
+            )
+        case [package, name]:
+            return packages.launch_file(package, name)
+    raise UsageError(
+        f"too many words: {' '.join(words)}; launch arguments are written name:=value, "
+        "without spaces around ':='"
+    )
+
+
+def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[[], None]) -> int:
+    # Launch files look packages up, too, before any process of theirs exists.
+    os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(ament_prefixes(os.environ))
+    environ = dict(os.environ)
+    description = read_launch_file(request.launch_file)
+    if request.show_args:
+        from launch_py.argument_listing import list_arguments
+
+        survey = survey_description(description, environ, request.launch_file)
+        sys.stdout.write(list_arguments(survey, request.launch_file))
+        return 0
+    plan = expand_description(description, request.arguments, environ, request.launch_file)
+    if request.print_plan:
+        from launch_py.plan_listing import list_plan
+
+        sys.stdout.write(list_plan(plan, environ))
+        return 0
+    before_start()
+    from launch_py.supervision.linux import seconds_since_start
+    from launch_py.supervision.session import SessionOptions, run_plan
+
+    age_s = seconds_since_start()
+    sys.stdout.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
+    options = SessionOptions(
+        title=request.launch_file.name.removesuffix(".launch.py"),
+        started_s=min(started_s, time.monotonic() - age_s),
+        show_all=request.show_all,
+    )
+    return run_plan(plan, environ, options)
+
+
+def _parser(program: str, default_file: tuple[str, str] | None) -> argparse.ArgumentParser:
+    epilog = None
+    if default_file is not None:
+        epilog = f"Without PACKAGE and FILE: {' '.join(default_file)}."
+    parser = argparse.ArgumentParser(
+        prog=program,
+        description="Start the processes of a launch file and supervise them.",
+        epilog=epilog,
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "words",
+        nargs="*",
+        metavar="PACKAGE FILE | PATH | name:=value",
+        help="a launch file, by package and file name or by path, and values of its arguments",
+    )
+    parser.add_argument(
+        "-s",
+        "--show-args",
+        "--show-arguments",
+        dest="show_args",
+        action="store_true",
+        help="list the arguments of the launch file and exit",
+    )
+    parser.add_argument(
+        "-p",
+        "--print",
+        "--print-description",
+        dest="print_plan",
+        action="store_true",
+        help="show what would be started, and exit",
+    )
+    parser.add_argument(
+        "-a",
+        "--show-all-subprocesses-output",
+        dest="show_all",
+        action="store_true",
+        help="also show output that is meant for the log files only",
+    )
+    parser.add_argument(
+        "-d",
+        "--debug",
+        action="store_true",
+        help="like -a, with what the supervisor does and tracebacks of errors",
+    )
+    return parser
+
+
+def _refuse_unknown_options(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
+    if unknown:
+        known = parser._option_string_actions
+        raise UsageError(f"no option {unknown[0]}; {describe_known(unknown[0], known)}")

@@ -1,0 +1,301 @@
+"""Takes the steps of a plan when their time has come, and ends everything in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from launch_py.errors import LaunchError
+from launch_py.events import ProcessEvent, ProcessExited, ProcessStarted
+from launch_py.plan import (
+    DeferredStep,
+    MessageStep,
+    Plan,
+    ProcessStep,
+    ShutdownStep,
+    Step,
+    StopDelays,
+    Trigger,
+    TriggerKind,
+)
+from launch_py.screen.screen import ReadySummary
+from launch_py.supervision.event_loop import EventLoop
+from launch_py.supervision.member import Member, MemberState, ProcessRunner
+from launch_py.supervision.reporter import Reporter
+
+EXIT_NOT_READY = 1
+EXIT_KILLED = 137
+EXIT_FORCED = 130
+
+HASTY_DELAYS = StopDelays(sigterm_timeout_s=1.0, sigkill_timeout_s=1.0)
+"""For an end that nobody watches any more: the launcher itself was killed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The first thing that went wrong, and the exit code that tells of it."""
+
+    text: str
+    exit_code: int
+
+
+class Supervisor:
+    """Carries out one plan; belongs to the loop's thread.
+
+    Args:
+        plan: what to do.
+        loop: the event loop.
+        runner: starts processes and probes conditions.
+        reporter: says what happens.
+        summary: what to say when everything is ready.
+        started_s: the loop's time at which the launch began.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        loop: EventLoop,
+        runner: ProcessRunner,
+        reporter: Reporter,
+        summary: ReadySummary,
+        started_s: float,
+    ) -> None:
+        self.members: dict[str, Member] = {}
+        self.stopping = False
+        self.failure: Failure | None = None
+        self._plan = plan
+        self._loop = loop
+        self._runner = runner
+        self._reporter = reporter
+        self._summary = summary
+        self._started_s = started_s
+        self._start_up = plan.start_up()
+        self._announced = not self._start_up
+        self._pending: list[Step] = []
+        self._delayed = 0
+        self._add(plan.steps)
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing runs and nothing more can happen."""
+        if any(member.active for member in self.members.values()):
+            return False
+        return self.stopping or not (self._delayed or any(map(self._is_due, self._pending)))
+
+    def begin(self) -> None:
+        """Take the first steps."""
+        self._reporter.begin(list(self.members))
+        for warning in self._plan.warnings:
+            self._reporter.problem(warning)
+        self._advance()
+
+    def stop(self, reason: str) -> None:
+        """End everything, whatever depends on another process before that process."""
+        if not self.stopping:
+            self.stopping = True
+            self._pending.clear()
+            self._reporter.note(f"stopping: {reason}")
+            self._stop_next()
+
+    def stop_hastily(self, reason: str) -> None:
+        """End everything at once, with short delays before SIGKILL."""
+        if not self.stopping:
+            self.stopping = True
+            self._pending.clear()
+            self._reporter.note(f"stopping: {reason}")
+        for member in self._active():
+            member.stop(HASTY_DELAYS)
+
+    def kill(self, reason: str) -> None:
+        """End everything now, by SIGKILL."""
+        self.stopping = True
+        self._pending.clear()
+        self._fail(Failure(reason, EXIT_FORCED))
+        for member in self._active():
+            member.kill()
+
+    def reap(self) -> None:
+        """Notice ended processes; to be called when SIGCHLD has come."""
+        for member in list(self.members.values()):
+            member.reap()
+
+    def status(self) -> str:
+        """Return how things stand, in one line."""
+        running = [m for m in self.members.values() if m.state is MemberState.RUNNING]
+        up_s = int(self._loop.clock() - self._started_s)
+        facts = [f"up {up_s // 60}:{up_s % 60:02d}"]
+        facts.append(f"{len(running)} process{'' if len(running) == 1 else 'es'}")
+        if self.stopping:
+            facts.append("stopping " + ", ".join(m.name for m in running))
+        elif not self._announced:
+            late = sorted(name for name in self._start_up if not self.members[name].ready)
+            facts.append("waiting for " + ", ".join(late))
+        facts += [member.status for member in running if member.status]
+        return " · ".join(facts)
+
+    def member_started(self, member: Member) -> None:
+        """Take the steps that wait for the start."""
+        pid = member.child.pid if member.child is not None else 0
+        self._reporter.detail(f"{member.name} started, process {pid}")
+        self._advance()
+
+    def member_ready(self, member: Member) -> None:
+        """Take the steps that wait for the readiness; say so when it was the last one."""
+        if self.stopping:
+            return
+        if member.step.ready:
+            elapsed_s = self._loop.clock() - self._started_s
+            self._reporter.note(f"{member.name} is ready after {elapsed_s:.2f} s")
+        self._advance()
+        if not self._announced and all(self.members[name].ready for name in self._start_up):
+            self._announced = True
+            self._reporter.ready(self._loop.clock() - self._started_s, self._summary)
+            self._runner.settled()
+
+    def member_late(self, member: Member, missing: str) -> None:
+        """Give up: what depends on the process could never start."""
+        self._fail(Failure(f"{member.name} {missing}", EXIT_NOT_READY))
+        self.stop(f"{member.name} is not ready in time")
+
+    def member_ended(self, member: Member) -> None:
+        """Take the steps that wait for the end, or go on stopping."""
+        text = f"{member.name} {member.ending}"
+        if member.stopping:
+            killed = member.child is not None and member.child.killed
+            (self._reporter.problem if killed else self._reporter.note)(text)
+            if killed:
+                self._fail(Failure(text, EXIT_KILLED))
+        else:
+            (self._reporter.problem if member.exit_code else self._reporter.note)(text)
+            self._check_ended(member, text)
+        if self.stopping:
+            self._stop_next()
+        else:
+            self._advance()
+
+    def finish(self) -> int:
+        """Return the exit code, after everything has ended; the last line names what failed."""
+        if not self.stopping and self.failure is None:
+            failed = [m for m in self.members.values() if m.exit_code]
+            if failed:
+                self._fail(Failure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code))
+        elapsed_s = self._loop.clock() - self._started_s
+        if self.failure is None:
+            self._reporter.end(f"stopped after {elapsed_s:.2f} s", failed=False)
+            return 0
+        code = self.failure.exit_code
+        self._reporter.end(f"failed with exit code {code}: {self.failure.text}", failed=True)
+        return code
+
+    def _add(self, steps: Iterable[Step]) -> None:
+        for step in steps:
+            if isinstance(step, ProcessStep):
+                self.members[step.name] = Member(
+                    step, self._loop, self._runner, self._reporter, self
+                )
+            self._pending.append(step)
+
+    def _active(self) -> list[Member]:
+        return [member for member in self.members.values() if member.active]
+
+    def _advance(self) -> None:
+        """Take every step whose time has come.
+
+        Taking one may call back into this method, so the list is looked at anew each time.
+        """
+        while not self.stopping:
+            step = next((step for step in self._pending if self._is_due(step)), None)
+            if step is None:
+                return
+            self._pending.remove(step)
+            if step.delay_s > 0.0:
+                self._delayed += 1
+                self._loop.call_later(step.delay_s, lambda s=step: self._take_delayed(s))
+            else:
+                self._take(step)
+
+    def _is_due(self, step: Step) -> bool:
+        return all(self._has_happened(trigger) for trigger in step.after)
+
+    def _has_happened(self, trigger: Trigger) -> bool:
+        member = self.members[str(trigger.process)]
+        match trigger.kind:
+            case TriggerKind.STARTED:
+                return member.was_started
+            case TriggerKind.READY:
+                return member.ready
+            case TriggerKind.EXITED:
+                return member.state is MemberState.ENDED
+
+    def _take_delayed(self, step: Step) -> None:
+        self._delayed -= 1
+        if not self.stopping:
+            self._take(step)
+
+    def _take(self, step: Step) -> None:
+        match step:
+            case ProcessStep():
+                self.members[step.name].start()
+            case MessageStep():
+                self._reporter.note(step.text)
+            case ShutdownStep():
+                self._shut_down(step)
+            case DeferredStep():
+                self._expand(step)
+
+    def _shut_down(self, step: ShutdownStep) -> None:
+        ended = [self.members[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
+        for member in ended:
+            if member.exit_code:
+                self._fail(Failure(f"{member.name} {member.ending}", member.exit_code))
+        reason = step.reason or " and ".join(f"{m.name} {m.ending}" for m in ended)
+        self.stop(reason or "the launch file asks for it")
+
+    def _expand(self, step: DeferredStep) -> None:
+        try:
+            self._add(step.expand(self._event(step)))
+        except LaunchError as error:
+            self._fail(Failure(str(error), EXIT_NOT_READY))
+            self.stop("an event handler failed")
+        self._advance()
+
+    def _event(self, step: DeferredStep) -> ProcessEvent:
+        """Return the event that the step's function is told of: the last one it waited for."""
+        if not step.after:
+            return ProcessEvent("", (), 0)
+        trigger = step.after[-1]
+        member = self.members[str(trigger.process)]
+        pid = member.child.pid if member.child is not None else 0
+        command = tuple(str(word) for word in member.step.command)
+        if trigger.kind is TriggerKind.EXITED:
+            return ProcessExited(member.name, command, pid, member.exit_code)
+        return ProcessStarted(member.name, command, pid)
+
+    def _check_ended(self, member: Member, text: str) -> None:
+        """Fail where something can never happen because this process has ended."""
+        if member.ready:
+            return
+        needed = any(
+            trigger.process == member.name and trigger.kind is not TriggerKind.EXITED
+            for step in self._pending
+            for trigger in step.after
+        )
+        if member.step.ready or needed or not member.was_started:
+            missing = f" before it was ready: {member.missing()}" if member.step.ready else ""
+            code = member.exit_code or EXIT_NOT_READY
+            self._fail(Failure(text + missing, code))
+            self.stop(f"{member.name} ended before it was ready")
+
+    def _fail(self, failure: Failure) -> None:
+        """Keep the first failure; the others follow from it."""
+        if self.failure is None:
+            self.failure = failure
+            self._reporter.detail(f"failure: {failure.text}")
+
+    def _stop_next(self) -> None:
+        """Stop every process that no running one depends on."""
+        active = self._active()
+        needed = {str(t.process) for m in active for t in m.step.after}
+        for member in active:
+            if member.name not in needed and not member.stopping:
+                member.stop()

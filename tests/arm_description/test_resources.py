@@ -1,0 +1,121 @@
+"""URIs to files: where is looked, in which order, and what the error lists."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from arm_description import ResourceNotFoundError, resolve_uri
+from arm_description.resources import share_folders
+
+
+def make(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.touch()
+    return path
+
+
+def ament(*prefixes: Path) -> dict[str, str]:
+    return {"AMENT_PREFIX_PATH": ":".join(map(str, prefixes))}
+
+
+def test_a_package_is_found_in_the_first_prefix_that_has_the_file(tmp_path):
+    make(tmp_path / "one/share/robot/other.stl")
+    expected = make(tmp_path / "two/share/robot/meshes/a.stl")
+    environ = ament(tmp_path / "one", tmp_path / "two")
+    assert resolve_uri("package://robot/meshes/a.stl", environ=environ) == expected
+
+
+def test_a_package_is_found_in_the_search_path_after_the_prefixes(tmp_path):
+    behind = make(tmp_path / "source/robot/a.stl")
+    search = [tmp_path / "source"]
+    environ = ament(tmp_path / "prefix")
+    assert resolve_uri("package://robot/a.stl", search, environ) == behind
+    first = make(tmp_path / "prefix/share/robot/a.stl")
+    assert resolve_uri("package://robot/a.stl", search, environ) == first
+
+
+def test_the_search_path_may_name_the_package_itself(tmp_path):
+    expected = make(tmp_path / "robot/meshes/a.stl")
+    assert resolve_uri("package://robot/meshes/a.stl", [tmp_path / "robot"], {}) == expected
+
+
+def test_this_pythons_own_prefix_is_searched_without_any_variable():
+    assert share_folders({}) == [Path(sys.prefix) / "share"]
+    assert resolve_uri("package://arm_description/package.xml", environ={}).is_file()
+
+
+def test_a_folder_is_found_too(tmp_path):
+    make(tmp_path / "share/robot/meshes/a.stl")
+    folder = tmp_path / "share/robot/meshes"
+    assert resolve_uri("package://robot/meshes", environ=ament(tmp_path)) == folder
+
+
+def test_a_model_is_found_where_gazebos_users_put_it(tmp_path):
+    expected = make(tmp_path / "models/box/meshes/a.dae")
+    make(tmp_path / "share/box/meshes/a.dae")
+    environ = {**ament(tmp_path), "GZ_SIM_RESOURCE_PATH": f":{tmp_path}/models"}
+    assert resolve_uri("model://box/meshes/a.dae", environ=environ) == expected
+
+
+def test_a_model_is_found_in_a_package(tmp_path):
+    expected = make(tmp_path / "share/robot/meshes/a.dae")
+    assert resolve_uri("model://robot/meshes/a.dae", environ=ament(tmp_path)) == expected
+
+
+@pytest.mark.parametrize("host", ["", "localhost"])
+def test_a_file_uri_may_be_percent_encoded(tmp_path, host):
+    expected = make(tmp_path / "a b.stl")
+    assert resolve_uri(f"file://{host}{tmp_path}/a%20b.stl") == expected
+
+
+def test_a_plain_absolute_path(tmp_path):
+    expected = make(tmp_path / "a.stl")
+    assert resolve_uri(f" {expected} ") == expected
+
+
+def test_a_relative_path_is_searched_in_order_then_in_the_working_folder(tmp_path, monkeypatch):
+    here = make(tmp_path / "here/a.stl")
+    monkeypatch.chdir(tmp_path / "here")
+    search = [tmp_path / "one", tmp_path / "two"]
+    assert resolve_uri("a.stl", search) == here
+    second = make(tmp_path / "two/a.stl")
+    assert resolve_uri("a.stl", search) == second
+
+
+def test_an_error_names_every_place_tried_once(tmp_path):
+    environ = ament(tmp_path / "one", tmp_path / "one", tmp_path / "two")
+    with pytest.raises(ResourceNotFoundError) as caught:
+        resolve_uri("package://robot/a.stl", [tmp_path / "src"], environ)
+    assert str(caught.value) == (
+        "no file for 'package://robot/a.stl'; tried:"
+        f"\n  {tmp_path}/one/share/robot/a.stl"
+        f"\n  {tmp_path}/two/share/robot/a.stl"
+        f"\n  {sys.prefix}/share/robot/a.stl"
+        f"\n  {tmp_path}/src/robot/a.stl"
+    )
+
+
+@pytest.mark.parametrize(
+    ("uri", "message"),
+    [
+        ("", "'' names no file"),
+        ("package://", "'package://' names no file"),
+        ("package:///a.stl", "'package:///a.stl' names no package"),
+        (
+            "https://example.org/a.stl",
+            "cannot read 'https://example.org/a.stl'; package://, model://, file:// "
+            "and plain paths are understood",
+        ),
+    ],
+)
+def test_what_names_no_file_is_said(uri, message):
+    with pytest.raises(ResourceNotFoundError) as caught:
+        resolve_uri(uri)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("name", ["a\x00b", "\ud800", "x" * 10_000])
+def test_names_that_no_file_can_have_are_not_found(name):
+    with pytest.raises(ResourceNotFoundError, match="no file for"):
+        resolve_uri(f"package://robot/{name}")

@@ -1,0 +1,24 @@
+"""An executable needs nothing from the environment that it is started in."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+
+def test_runs_without_home_and_without_any_ros_variable(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_controller.publisher_terminal_node"],
+        env={"ROS_DOMAIN_ID": os.environ["ROS_DOMAIN_ID"], "TMPDIR": str(tmp_path)},
+        cwd=tmp_path,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
