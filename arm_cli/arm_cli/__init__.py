@@ -1,1 +1,1 @@
-"""The arm command."""
+"""The `arm` command."""

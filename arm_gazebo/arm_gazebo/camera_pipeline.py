@@ -2,7 +2,9 @@
 
 import os
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -18,6 +20,10 @@ from arm_gazebo.noise_bank import NoiseBank, noise_for
 if TYPE_CHECKING:
     from arm_gazebo.rendering.renderer import Renderer
     from arm_gazebo.rendering.scene import Scene
+
+
+BACKLOG = 2
+"""Frames of one camera worked off at once: a short stall costs none, a long one is not redone."""
 
 
 class FrameSink(Protocol):
@@ -85,15 +91,17 @@ class CameraPipeline:
         return "none" if self._renderer is None else self._renderer.backend
 
     def handle(self, messages: Iterable[ModelMessage | CameraSnapshot]) -> None:
-        """Work off messages that arrived together: all models, each camera's newest frame."""
-        newest: dict[int, tuple[CameraSnapshot, FrameDue]] = {}
+        """Work off messages that arrived together: all models, each camera's newest frames."""
+        newest = [deque[tuple[CameraSnapshot, FrameDue]](maxlen=BACKLOG) for _ in self._sensors]
         for message in messages:
             if isinstance(message, ModelMessage):
                 self._take_model(message)
-                newest.clear()
+                for frames in newest:
+                    frames.clear()
             elif self._model is not None and message.model_version == self._model.version:
-                newest.update({frame.camera: (message, frame) for frame in message.frames})
-        for snapshot, frame in newest.values():
+                for frame in message.frames:
+                    newest[frame.camera].append((message, frame))
+        for snapshot, frame in chain.from_iterable(newest):
             self._take_frame(snapshot, frame)
 
     def close(self) -> None:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from arm_description.xml_document import parse_xml
 from arm_gazebo.errors import CameraError
 
 logger = logging.getLogger(__name__)
@@ -84,6 +83,9 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
         CameraError: a value is nonsense; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
+    # The camera process knows sensors too, but parses nothing and shall start quickly.
+    from arm_description.xml_document import parse_xml
+
     root = parse_xml(urdf_xml, source)
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []

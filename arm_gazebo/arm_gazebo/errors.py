@@ -7,6 +7,7 @@ GazeboError
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
 ├── TimingError     a control rate or a physics step that cannot be
+├── SettingsError   a parameter of the simulation node that makes no sense
 └── ServoError      a joint or a command interface that the servos do not have
 """
 
@@ -37,6 +38,10 @@ class MeshError(ModelError):
 
 class TimingError(GazeboError):
     """The control rate is not positive, or a fixed physics step does not divide its period."""
+
+
+class SettingsError(GazeboError):
+    """A parameter of the simulation node makes no sense; the message names it and what would."""
 
 
 class ServoError(GazeboError):

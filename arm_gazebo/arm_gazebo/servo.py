@@ -60,7 +60,7 @@ class Servo:
         self._period_s = timing.period_s
         # A set-point's position is exact at the end of a period, the integrator's half a step
         # behind its velocity.
-        self._lead_s = TIME_CONSTANT_S + timing.step_s / 2
+        self._lead_s = TIME_CONSTANT_S - timing.step_s
         self._joints = tuple(
             DrivenJoint(joint, *bounds, timing.period_s)
             for joint, *bounds in zip(
@@ -214,7 +214,7 @@ class Servo:
         for index, driven in self._servoed:
             setpoint = driven.setpoint
             speed, limit = setpoint.velocity, driven.joint.effort
-            effort = efforts[index] + self._drag[index] * speed
+            effort = efforts[index] + driven.trim + self._drag[index] * speed
             if speed:
                 effort += math.copysign(self._friction[index], speed)
             effort = min(max(effort, -limit), limit)

@@ -46,7 +46,7 @@ WHOLE = (
     b"\x00\x01\x00\x00"  # little-endian CDR
     b"\x01\x00\x00\x00\x02\x00\x00\x00"  # stamp
     b"\x02\x00\x00\x00f\x00??"  # frame_id, and padding
-    b"\x01\x00\x00\x00\x03\x00\x00\x00j0\x00?"  # one name, and padding
+    b"\x01\x00\x00\x00\x06\x00\x00\x00joint\x00??"  # one name, and padding
     b"\x01\x00\x00\x00????"  # one position, and padding
     b"\x00\x00\x00\x00\x00\x00\xe0\x3f"
     b"\x00\x00\x00\x00\x00\x00\x00\x00"  # no velocities, no efforts
@@ -55,7 +55,9 @@ WHOLE = (
 
 def test_the_layout_by_hand():
     read = read_joint_positions(WHOLE)
-    assert (read.names, read.positions.tolist(), read.stamp_ns) == (("j0",), [0.5], 1_000_000_002)
+    assert read.names == ("joint",)
+    assert read.positions.tolist() == [0.5]
+    assert read.stamp_ns == 1_000_000_002
 
 
 @pytest.mark.parametrize("length", range(len(WHOLE) - 8))
@@ -69,7 +71,7 @@ def test_another_encoding_is_refused():
         read_joint_positions(b"\x00\x00" + WHOLE[2:])
 
 
-@pytest.mark.parametrize("at", [12, 20, 24, 32])
+@pytest.mark.parametrize("at", [12, 20, 24, 36])
 def test_a_count_beyond_all_bounds_is_refused(at):
     with pytest.raises(EncodingError):
         read_joint_positions(WHOLE[:at] + b"\xff\xff\xff\xff" + WHOLE[at + 4 :])

@@ -5,7 +5,10 @@ Prints one JSON line per answer; wall times are CLOCK_MONOTONIC, the same in eve
 
 import argparse
 import json
+import random
+import threading
 import time
+from collections import deque
 from collections.abc import Callable
 
 import rclpy
@@ -62,45 +65,55 @@ def record(node: Node, topic: str, seconds: float, best_effort: bool) -> None:
 
 
 def command_latency(node: Node, steps: int) -> None:
-    """Say how long after a command the first joint state shows motion, step by step."""
-    latest: list[tuple[float, float]] = []
+    """Say how long after a command the first joint state shows motion, step by step.
+
+    The executor spins in a thread, so that commands fall anywhere in the control period and not
+    always right after a joint state.
+    """
+    states: deque[tuple[float, float]] = deque(maxlen=5000)
     node.create_subscription(
         JointState,
         "/joint_states",
-        lambda m: latest.append((time.monotonic(), m.position[m.name.index("j0")])),
+        lambda m: states.append((time.monotonic(), m.position[m.name.index("j0")])),
         10,
     )
     publisher = node.create_publisher(Float64MultiArray, "/position_controller/commands", 10)
-    spin_until(node, lambda: bool(latest) and publisher.get_subscription_count() > 0)
-    settle(node, latest)
+    done = threading.Event()
+    spinning = threading.Thread(target=spin_until, args=(node, done.is_set, 3600.0))
+    spinning.start()
+    wait_until(lambda: bool(states) and publisher.get_subscription_count() > 0)
+    time.sleep(0.3)
+    phases = random.Random(1)
+    goal = 0.0
     latencies = []
-    for k in range(steps):
-        # The step falls anywhere in the control period, as a real client's would.
-        until = time.monotonic() + 0.013 * (k % 7) / 7
-        spin_until(node, lambda until=until: time.monotonic() > until)
-        origin = latest[-1][1]
-        goal = 0.3 if k % 2 == 0 else 0.0
-        latest.clear()
+    for _ in range(steps):
+        wait_until(lambda g=goal: still(list(states), g))
+        time.sleep(phases.uniform(0.0, 0.02))
+        origin, goal = states[-1][1], 0.3 - goal
         sent = time.monotonic()
         publisher.publish(Float64MultiArray(data=[goal, 0.0, 0.0, 0.0]))
-        spin_until(node, lambda o=origin: bool(latest) and abs(latest[-1][1] - o) > 1e-3)
-        moved = next(t for t, q in latest if abs(q - origin) > 1e-3)
-        latencies.append(moved - sent)
-        settle(node, latest, goal)
+        wait_until(lambda o=origin: abs(states[-1][1] - o) > 1e-3, 0.02)
+        latencies.append(next(t for t, q in list(states) if t > sent and abs(q - origin) > 1e-3))
+        latencies[-1] -= sent
+    done.set()
+    spinning.join()
     say(latencies_s=latencies)
 
 
-def settle(node: Node, latest: list[tuple[float, float]], goal: float | None = None) -> None:
-    """Spin until j0 has not moved for 0.3 s."""
+def wait_until(condition: Callable[[], bool], poll_s: float = 0.05) -> None:
+    """Sleep until the condition holds."""
+    deadline = time.monotonic() + 60.0
+    while not condition():
+        if time.monotonic() > deadline:
+            raise SystemExit("time-out")
+        time.sleep(poll_s)
 
-    def still() -> bool:
-        now = time.monotonic()
-        recent = [q for t, q in latest if t > now - 0.3]
-        close = goal is None or (bool(recent) and abs(recent[-1] - goal) < 0.01)
-        return close and len(recent) > 5 and max(recent) - min(recent) < 1e-4
 
-    began = time.monotonic()
-    spin_until(node, lambda: time.monotonic() - began > 0.4 and still())
+def still(states: list[tuple[float, float]], goal: float) -> bool:
+    """Return whether j0 has been at rest at the goal for 0.3 s."""
+    now = time.monotonic()
+    recent = [q for t, q in states if t > now - 0.3]
+    return len(recent) > 5 and abs(recent[-1] - goal) < 0.01 and max(recent) - min(recent) < 1e-4
 
 
 def main() -> None:
@@ -120,7 +133,6 @@ def main() -> None:
         record(node, arguments.topic, arguments.seconds, arguments.best_effort)
     else:
         command_latency(node, arguments.steps)
-    node.destroy_node()
     rclpy.try_shutdown()
 
 

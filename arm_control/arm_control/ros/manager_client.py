@@ -2,10 +2,10 @@
 
 import logging
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from arm_node.process import NodeProcess
 from builtin_interfaces.msg import Duration
 from controller_manager_msgs.srv import (
     ConfigureController,
@@ -19,14 +19,15 @@ from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from arm_control.clock import MonotonicClock
 from arm_control.errors import ArmControlError
+from arm_control.throttle import Throttle
 
 logger = logging.getLogger(__name__)
 
 POLL_S = 0.02
 REPORT_INTERVAL_S = 10.0
 ATTEMPTS = 3
-STRICT = SwitchController.Request.STRICT
 
 
 class ManagerUnreachableError(ArmControlError):
@@ -34,45 +35,181 @@ class ManagerUnreachableError(ArmControlError):
 
 
 class InterruptedCallError(ArmControlError):
-    """The process was asked to end while it waited."""
+    """Whoever waits was told to give up."""
 
 
 class ManagerClient:
-    """Calls the manager and waits for its answers.
+    """Calls the manager's services and waits for the answers.
 
-    The node must be served by a spinning executor; call the methods from another thread.
+    The node must be served by a spinning executor; call the methods from another thread. Each
+    raises `ManagerUnreachableError`, or `InterruptedCallError` where it is told to give up.
 
-    Every method raises `ManagerUnreachableError`, or `InterruptedCallError` when the process is
-    asked to end.
+    A call that is not answered in time may have been served all the same, so before it is sent
+    again the state of things is asked for: nothing is done twice.
     """
 
-    def __init__(self, node: Node, process: NodeProcess, manager: str, timeout_s: float) -> None:
+    def __init__(
+        self,
+        node: Node,
+        manager: str,
+        timeout_s: float,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> None:
         """Prepare the clients.
 
         Args:
             node: to make them on.
-            process: says when to give up waiting.
             manager: absolute name of the manager's node.
             timeout_s: how long to wait for an answer before asking again.
+            interrupted: says whether to give up waiting.
         """
         self._node = node
-        self._process = process
         self._manager = manager
+        self._interrupted = interrupted
         self._timeout_s = timeout_s
         self._clients: dict[str, Client] = {}
 
     def wait_for_manager(self, timeout_s: float) -> None:
         """Wait until the manager offers its services; 0 for ever."""
-        client = self._client(ListControllers, "list_controllers")
-        waited_s = 0.0
+        self._wait_for_service(self._client(ListControllers, "list_controllers"), timeout_s)
+
+    def states(self) -> Mapping[str, str]:
+        """Return the state of each loaded controller."""
+        answer = self._call(ListControllers, "list_controllers", ListControllers.Request())
+        return {controller.name: controller.state for controller in answer.controller}
+
+    def set_parameters(self, parameters: Mapping[str, str | Sequence[str]]) -> str:
+        """Set parameters of the manager's node; return why it refused one, or nothing."""
+        request = SetParameters.Request(
+            parameters=[
+                Parameter(
+                    name, value=value if isinstance(value, str) else list(value)
+                ).to_parameter_msg()
+                for name, value in parameters.items()
+            ]
+        )
+        answer = self._call(SetParameters, "set_parameters", request)
+        return "; ".join(result.reason for result in answer.results if not result.successful)
+
+    def load(self, name: str) -> bool:
+        """Load a controller; return whether it is."""
+        request = LoadController.Request(name=name)
+        return self._change(LoadController, "load_controller", request, lambda s: name in s)
+
+    def configure(self, name: str) -> bool:
+        """Configure a controller; return whether it is."""
+        request = ConfigureController.Request(name=name)
+        return self._change(
+            ConfigureController,
+            "configure_controller",
+            request,
+            lambda states: states.get(name) == "inactive",
+        )
+
+    def unload(self, name: str) -> bool:
+        """Unload a controller; return whether it is gone."""
+        request = UnloadController.Request(name=name)
+        return self._change(UnloadController, "unload_controller", request, lambda s: name not in s)
+
+    def activate(self, names: Sequence[str], timeout_s: float, *, asap: bool = True) -> bool:
+        """Activate all of these in one strict switch; return whether they are."""
+        return self._switch(
+            SwitchController.Request(activate_controllers=list(names), activate_asap=asap),
+            timeout_s,
+            lambda states: all(states.get(name) == "active" for name in names),
+        )
+
+    def deactivate(self, names: Sequence[str], timeout_s: float) -> bool:
+        """Deactivate all of these in one strict switch; return whether they are."""
+        return self._switch(
+            SwitchController.Request(deactivate_controllers=list(names)),
+            timeout_s,
+            lambda states: all(states.get(name) != "active" for name in names),
+        )
+
+    def _switch(
+        self,
+        request: SwitchController.Request,
+        timeout_s: float,
+        is_done: Callable[[Mapping[str, str]], bool],
+    ) -> bool:
+        request.strictness = SwitchController.Request.STRICT
+        seconds = int(timeout_s)
+        request.timeout = Duration(sec=seconds, nanosec=round((timeout_s - seconds) * 1e9))
+        return self._change(SwitchController, "switch_controller", request, is_done)
+
+    def _change(
+        self,
+        type_: Any,
+        service: str,
+        request: Any,
+        is_done: Callable[[Mapping[str, str]], bool],
+    ) -> bool:
+        """Ask for a change; return whether it was made."""
+        for _ in range(ATTEMPTS):
+            answer = self._try_call(type_, service, request)
+            if answer is not None:
+                message = getattr(answer, "message", "")
+                if not answer.ok and message:
+                    logger.error("%s", message)
+                return answer.ok
+            if is_done(self.states()):
+                return True
+        raise self._no_answer(service)
+
+    def _call(self, type_: Any, service: str, request: Any) -> Any:
+        """Ask something that may be asked twice; return the answer."""
+        for _ in range(ATTEMPTS):
+            answer = self._try_call(type_, service, request)
+            if answer is not None:
+                return answer
+        raise self._no_answer(service)
+
+    def _try_call(self, type_: Any, service: str, request: Any) -> Any:
+        """Ask once; return the answer, None where it did not come in time."""
+        client = self._client(type_, service)
+        self._wait_for_service(client, self._timeout_s)
+        answered = threading.Event()
+        future = client.call_async(request)
+        future.add_done_callback(lambda _: answered.set())
+        clock = MonotonicClock()
+        deadline_s = clock.now_s() + self._timeout_s
+        while not answered.wait(POLL_S):
+            self._check_interrupted()
+            if clock.now_s() >= deadline_s:
+                client.remove_pending_request(future)
+                logger.warning("no answer from %s within %g s", client.srv_name, self._timeout_s)
+                return None
+        return future.result()
+
+    def _wait_for_service(self, client: Client, timeout_s: float) -> None:
+        # Not Client.wait_for_service: it looks four times a second only, and cannot be ended.
+        clock = MonotonicClock()
+        start_s = clock.now_s()
+        throttle = Throttle(REPORT_INTERVAL_S, clock)
+        throttle.permits()
         while not client.service_is_ready():
-            if timeout_s and waited_s >= timeout_s:
+            if timeout_s and clock.now_s() - start_s >= timeout_s:
                 raise ManagerUnreachableError(
-                    f"no service {self._manager}/list_controllers after {timeout_s:g} s; "
-                    "is a controller manager running under that name, in this ROS domain?"
+                    f"no service {client.srv_name} after {timeout_s:g} s; is a controller "
+                    f"manager named {self._manager} running, in this ROS domain?"
                 )
-            self._pause()
-            # Counted, not measured: a test's clock is not wanted here, and POLL_S is exact enough.
-            before_s, waited_s = waited_s, waited_s + POLL_S
-            if waited_s // REPORT_INTERVAL_S > before_s // REPORT_INTERVAL_S:
-                logger.info("waiting for service %s/list_controllers", self._manager)
+            if throttle.permits():
+                logger.info("waiting for service %s", client.srv_name)
+            self._check_interrupted()
+            time.sleep(POLL_S)
+
+    def _check_interrupted(self) -> None:
+        if self._interrupted():
+            raise InterruptedCallError("interrupted")
+
+    def _client(self, type_: Any, service: str) -> Client:
+        if service not in self._clients:
+            self._clients[service] = self._node.create_client(type_, f"{self._manager}/{service}")
+        return self._clients[service]
+
+    def _no_answer(self, service: str) -> ManagerUnreachableError:
+        return ManagerUnreachableError(
+            f"{self._manager}/{service} did not answer {ATTEMPTS} times within "
+            f"{self._timeout_s:g} s each"
+        )

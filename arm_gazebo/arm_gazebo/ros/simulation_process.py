@@ -34,7 +34,7 @@ from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess
 
 NODE_NAME = "arm_gazebo"
-SUPERVISION_PERIOD_S = 1.0
+SUPERVISION_PERIOD_S = 0.5
 LOOP_JOIN_TIMEOUT_S = 5.0
 
 logger = logging.getLogger(NODE_NAME)
@@ -55,11 +55,8 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
     hardware_info = _hardware_info(settings)
     sensors = parse_cameras(settings.robot_description)
     built = _build(settings, hardware_info, sensors, timing)
-    simulation = Simulation(built, timing)
-    hardware = [
-        SimulatedHardware(simulation, info, hold_joints=settings.hold_joints)
-        for info in hardware_info
-    ]
+    simulation = Simulation(built, timing, settings.hold_joints)
+    hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
     manager = ControllerManager(hardware, manager_node.settings.update_rate)
     manager.bring_up(
         manager_node.settings.hardware_components_initial_state.unconfigured,
@@ -86,7 +83,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         loop.resume()
         if cameras is not None:
             cameras.start(built.model)
-        _supervise(node, pacer, cameras)
+        _supervise(node, pacer, simulation, hardware, cameras)
         yield
     finally:
         if cameras is not None:
@@ -139,10 +136,21 @@ def _camera_feed(
     return CameraFeed(sensors, render_backend=settings.render_backend, seed=settings.seed)
 
 
-def _supervise(node: Node, pacer: Pacer, cameras: CameraFeed | None) -> None:
-    """Once a wall second: revive the camera process, tell the supervisor how fast time goes."""
+def _supervise(
+    node: Node,
+    pacer: Pacer,
+    simulation: Simulation,
+    hardware: Sequence[SimulatedHardware],
+    cameras: CameraFeed | None,
+) -> None:
+    """Now and then: pass on what the loop may not log itself, revive the camera process."""
 
     def look() -> None:
+        for component in hardware:
+            for warning in component.take_warnings():
+                logger.warning("%s", warning)
+        for failure in simulation.take_failures():
+            logger.error("%s", failure)
         if cameras is not None:
             cameras.supervise()
         notify(f"STATUS=real-time factor {pacer.statistics.achieved_factor:.2f}")

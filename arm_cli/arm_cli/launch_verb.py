@@ -1,0 +1,29 @@
+"""`arm launch`: the simulated arm, or any launch file, under launch_py's supervisor."""
+
+from collections.abc import Sequence
+
+from launch_py import LaunchError
+from launch_py.command_line import run as run_launch
+
+DEFAULT_FILE = ("arm_gazebo", "arm_gazebo.launch.py")
+
+
+def run(argv: Sequence[str]) -> int:
+    """Launch; return the exit code."""
+    return run_launch(
+        argv, program="arm launch", default_file=DEFAULT_FILE, before_start=_check_interfaces
+    )
+
+
+def _check_interfaces() -> None:
+    """Refuse to start processes that would all fail for want of the same packages.
+
+    Raises:
+        LaunchError: an interface package is missing; the message says the fix.
+    """
+    from arm_node.environment import MissingInterfacesError, prepare_environment
+
+    try:
+        prepare_environment()
+    except MissingInterfacesError as error:
+        raise LaunchError(str(error)) from error

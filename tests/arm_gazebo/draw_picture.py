@@ -1,0 +1,37 @@
+"""Draws one picture with one OpenGL backend and saves it; a program of its own.
+
+Two OpenGL libraries do not live in one process, and a broken one may end it.
+
+usage: draw_picture.py BACKEND MODEL.xml SENSOR.json PICTURE.npy
+"""
+
+import json
+import sys
+
+import mujoco
+import numpy as np
+
+from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.rendering.backend_selection import open_renderer
+
+
+def main() -> None:
+    """Draw the model twice, for a renderer has to take a new model, too."""
+    backend, model_file, sensor_file, picture_file = sys.argv[1:]
+    with open(sensor_file) as file:
+        sensor = CameraSensor(**json.load(file))
+    picture = np.zeros((sensor.height, sensor.width, 3), np.uint8)
+    renderer = open_renderer([backend], sensor.width, sensor.height)
+    assert renderer.backend == backend
+    for _ in range(2):
+        model = mujoco.MjModel.from_xml_path(model_file)
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        renderer.set_model(model)
+        renderer.render(data, sensor, picture)
+    renderer.close()
+    np.save(picture_file, picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""States as datagrams."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from arm_gazebo.camera_schedule import FrameDue
+from arm_gazebo.camera_snapshot import CameraSnapshot
+from arm_gazebo.errors import CameraError
+
+frames = st.builds(
+    FrameDue, st.integers(0, 9), st.integers(0, 2**63), st.integers(0, 2**63)
+)
+
+
+@given(
+    version=st.integers(0, 2**32 - 1),
+    time_s=st.floats(0, 1e9),
+    due=st.lists(frames, max_size=4).map(tuple),
+    qpos=hnp.arrays(np.float64, st.integers(0, 40)),
+    mocaps=st.integers(0, 3),
+)
+def test_what_is_packed_comes_out_again(version, time_s, due, qpos, mocaps):
+    mocap_poses = np.arange(7.0 * mocaps).reshape(mocaps, 7)
+    packed = CameraSnapshot(version, time_s, due, qpos, mocap_poses).pack()
+    found = CameraSnapshot.unpack(packed)
+    assert (found.model_version, found.time_s, found.frames) == (version, time_s, due)
+    np.testing.assert_array_equal(found.qpos, qpos)
+    np.testing.assert_array_equal(found.mocap_poses, mocap_poses)
+
+
+@given(st.binary(max_size=200))
+def test_garbage_is_refused_or_read_but_never_crashes(packed):
+    try:
+        CameraSnapshot.unpack(packed)
+    except CameraError as error:
+        assert "not a camera snapshot" in str(error)
+
+
+def test_a_truncated_snapshot_is_refused():
+    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), np.zeros((1, 7))).pack()
+    with pytest.raises(CameraError, match=f"{len(packed) - 8} bytes are not"):
+        CameraSnapshot.unpack(packed[:-8])
