@@ -7,13 +7,15 @@ built in, because that takes tens of milliseconds.
 """
 
 import importlib
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arm_control.controller import Controller
 from arm_control.errors import RegistryError
 from arm_control.hardware import Hardware
 from arm_control.hardware_info import HardwareInfo
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 CONTROLLER_GROUP = "arm_control.controllers"
 HARDWARE_GROUP = "arm_control.hardware"
@@ -88,5 +90,8 @@ def _find(type_name: str, built_in: dict[str, str], group: str, what: str) -> An
     raise RegistryError(f"no {what} '{type_name}'; there is {', '.join(known)}")
 
 
-def _installed(group: str) -> tuple[EntryPoint, ...]:
+def _installed(group: str) -> "tuple[EntryPoint, ...]":
+    # Imported here: it costs a start that needs only built-in types 20 ms.
+    from importlib.metadata import entry_points
+
     return tuple(entry_points(group=group))

@@ -8,13 +8,6 @@ from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.servo_tuning import EFFORT_SHARE
 from arm_gazebo.setpoint import Setpoint
 
-TRIM_TIME_S = 0.1
-"""Time constant with which a load that the model does not know of is taken up."""
-TRIM_BAND = 2e-4
-"""Error, in rad or m, that is left as it is; without it, dry friction makes a joint hunt."""
-LOOSE_SHARE = 0.1
-"""Of the speed limit: a joint that strays from its set-point at this speed has come loose."""
-
 
 class DrivenJoint:
     """The planning half of a servo; `Servo` owns the physics half. rad or m, N m or N.
@@ -26,7 +19,6 @@ class DrivenJoint:
         setpoint: where the joint is to be at the end of the current control period.
         start_position: where the set-point was at its start.
         start_velocity: its velocity then.
-        trim: effort that a standing joint turned out to need beyond what the model says.
     """
 
     __slots__ = (
@@ -34,7 +26,6 @@ class DrivenJoint:
         "_jerkless",
         "_period_s",
         "_slack",
-        "_stiffness",
         "_stream",
         "_velocity",
         "effort",
@@ -43,7 +34,6 @@ class DrivenJoint:
         "setpoint",
         "start_position",
         "start_velocity",
-        "trim",
     )
 
     def __init__(
@@ -65,8 +55,6 @@ class DrivenJoint:
         self._period_s = period_s
         # Further from the joint than this, the set-point could not raise the effort any more.
         self._slack = joint.effort / stiffness
-        self._stiffness = stiffness
-        self.trim = 0.0
         self._stream = CommandStream(joint.initial, period_s)
         self._velocity = 0.0
 
@@ -75,7 +63,6 @@ class DrivenJoint:
         if self.mode not in SERVOED:
             speed = self.joint.velocity
             self.setpoint = Setpoint(position, min(max(velocity, -speed), speed))
-            self.trim = 0.0
         self.mode = mode
         self.effort = 0.0
         self._velocity = 0.0
@@ -96,7 +83,7 @@ class DrivenJoint:
             self.effort = value
 
     def plan(self, position: float, velocity: float, inertia: float, gravity: float) -> bool:
-        """Move the set-point on by one control period; return whether there is work left.
+        """Move the set-point on by one control period; return whether it moves.
 
         Args:
             position: of the joint, now.
@@ -106,7 +93,6 @@ class DrivenJoint:
         """
         setpoint, joint = self.setpoint, self.joint
         lead = setpoint.position - position
-        trimming = self._adjust_trim(lead, velocity)
         if abs(lead) > self._slack:
             # Something is in the way. A set-point that ran on would fling the joint, once free.
             setpoint.position = position + math.copysign(self._slack, lead)
@@ -126,23 +112,7 @@ class DrivenJoint:
         setpoint.approach(
             target, target_velocity, speed, acceleration, self._braking, self._period_s
         )
-        return trimming or setpoint.velocity != 0.0 or setpoint.position != self.start_position
-
-    def _adjust_trim(self, lead: float, velocity: float) -> bool:
-        """Take up an unknown load of a joint that stands; return whether one is left.
-
-        A joint that presses against something must not be flung when that gives way, so one
-        that comes loose loses its trim.
-        """
-        planned = self.setpoint.velocity
-        if abs(velocity - planned) > LOOSE_SHARE * self.joint.velocity:
-            self.trim = 0.0
-        elif planned == 0.0 and abs(lead) > TRIM_BAND:
-            limit = self.joint.effort
-            trim = self.trim + self._stiffness * lead * self._period_s / TRIM_TIME_S
-            self.trim = min(max(trim, -limit), limit)
-            return True
-        return False
+        return setpoint.velocity != 0.0 or setpoint.position != self.start_position
 
     def gain_less(self, share: float) -> None:
         """Let the set-point gain only this share of the speed it was to gain in this period."""

@@ -214,7 +214,7 @@ class Servo:
         for index, driven in self._servoed:
             setpoint = driven.setpoint
             speed, limit = setpoint.velocity, driven.joint.effort
-            effort = efforts[index] + driven.trim + self._drag[index] * speed
+            effort = efforts[index] + self._drag[index] * speed
             if speed:
                 effort += math.copysign(self._friction[index], speed)
             effort = min(max(effort, -limit), limit)

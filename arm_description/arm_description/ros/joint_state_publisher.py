@@ -48,16 +48,12 @@ class JointStatePublisher(Node):
             fail: ends the process as failed; called where joints depend on each other in a
                 circle, since then no joint state is right.
         """
-        super().__init__(
-            "joint_state_publisher", automatically_declare_parameters_from_overrides=True
-        )
-        for name, default in DEFAULTS.items():
+        super().__init__("joint_state_publisher")
+        self._names = [*DEFAULTS, *self._parameters_named_after_joints()]
+        for name in self._names:
             # Dynamic, so that `delta: 1` of a YAML file, an integer, is taken too.
             descriptor = ParameterDescriptor(dynamic_typing=True)
-            if self.has_parameter(name):
-                self.set_descriptor(name, descriptor)
-            else:
-                self.declare_parameter(name, default, descriptor)
+            self.declare_parameter(name, DEFAULTS.get(name), descriptor)
         self._fail = fail
         self._settings = self._checked([])
         self._merge: JointStateMerge | None = None
@@ -71,17 +67,21 @@ class JointStatePublisher(Node):
         self.add_on_set_parameters_callback(self._refuse_or_accept)
         self.add_post_set_parameters_callback(self._take_parameters)
 
+    def _parameters_named_after_joints(self) -> list[str]:
+        # What the user gave, declared or not. Node's own declaring of all that is given breaks
+        # on a YAML file's empty list.
+        with self.handle:
+            given = self.handle.get_parameters(Parameter)
+        return [name for name in given if name.startswith((ZEROS, DEPENDENT_JOINTS))]
+
     def _checked(self, changes: list[Parameter]) -> JointPublisherSettings:
-        # Every name: those under `zeros` and `dependent_joints` are the robot's joints.
-        names = self.list_parameters([], 0).names
-        values = {name: self.get_parameter(name).value for name in names}
+        values = {name: self.get_parameter(name).value for name in self._names}
         values.update((change.name, change.value) for change in changes)
         return JointPublisherSettings.from_parameters(values)
 
     def _refuse_or_accept(self, changes: list[Parameter]) -> SetParametersResult:
         for change in changes:
-            ours = change.name in DEFAULTS or change.name.startswith((ZEROS, DEPENDENT_JOINTS))
-            if ours and change.name not in CHANGEABLE:
+            if change.name in self._names and change.name not in CHANGEABLE:
                 reason = f"{change.name} is read at the start only; restart the node to change it"
                 return SetParametersResult(successful=False, reason=reason)
         try:

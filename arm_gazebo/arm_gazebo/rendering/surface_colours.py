@@ -48,8 +48,10 @@ def _paint(model: mujoco.MjModel, geom: int) -> Colours:
 
 def _tint(model: mujoco.MjModel, geom: int) -> Colours:
     material = model.geom_matid[geom]
+    if material < 0:
+        return np.ones(3, np.float32)
     texture = model.mat_texid[material, mujoco.mjtTextureRole.mjTEXROLE_RGB]
-    if material < 0 or texture < 0:
+    if texture < 0:
         return np.ones(3, np.float32)
     return _texture(model, int(texture)).mean(axis=(0, 1))
 
