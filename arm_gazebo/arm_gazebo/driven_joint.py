@@ -1,7 +1,5 @@
 """One driven joint: its mode, its command and the set-point that comes of them."""
 
-import math
-
 from arm_gazebo.command_stream import CommandStream
 from arm_gazebo.drive_mode import SERVOED, DriveMode
 from arm_gazebo.robot_joint import RobotJoint
@@ -23,9 +21,11 @@ class DrivenJoint:
 
     __slots__ = (
         "_braking",
+        "_effort",
         "_jerkless",
         "_period_s",
         "_slack",
+        "_speed",
         "_stream",
         "_velocity",
         "effort",
@@ -50,6 +50,9 @@ class DrivenJoint:
         self.setpoint = Setpoint(joint.initial)
         self.start_position = joint.initial
         self.start_velocity = 0.0
+        # Looked up in every tick, so copied out of the joint.
+        self._speed = joint.velocity
+        self._effort = joint.effort
         self._braking = braking
         self._jerkless = jerkless
         self._period_s = period_s
@@ -91,28 +94,38 @@ class DrivenJoint:
             inertia: that it feels in this pose.
             gravity: effort that it needs in this pose to stay as it moves.
         """
-        setpoint, joint = self.setpoint, self.joint
+        setpoint = self.setpoint
         lead = setpoint.position - position
-        if abs(lead) > self._slack:
+        slack = self._slack
+        if lead > slack:
             # Something is in the way. A set-point that ran on would fling the joint, once free.
-            setpoint.position = position + math.copysign(self._slack, lead)
-            setpoint.velocity = max(velocity, 0.0) if lead > 0 else min(velocity, 0.0)
-        self.start_position, self.start_velocity = setpoint.position, setpoint.velocity
-        able = EFFORT_SHARE * (joint.effort - abs(gravity)) / inertia
-        acceleration = max(self._braking, min(able, self._jerkless))
+            setpoint.position = position + slack
+            setpoint.velocity = velocity if velocity > 0.0 else 0.0
+        elif lead < -slack:
+            setpoint.position = position - slack
+            setpoint.velocity = velocity if velocity < 0.0 else 0.0
+        start = self.start_position = setpoint.position
+        self.start_velocity = setpoint.velocity
         if self.mode is DriveMode.POSITION:
             stream = self._stream
             stream.advance()
-            target, target_velocity, speed = stream.target, stream.velocity, joint.velocity
+            target, target_velocity, speed = stream.target, stream.velocity, self._speed
+            if target == start and not target_velocity and not setpoint.velocity:
+                return False
         else:
             # A velocity is a way to the limit of the joint at that speed; holding, at none.
             speed = abs(self._velocity)
-            target = joint.upper if self._velocity > 0 else joint.lower
+            target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
             target_velocity = 0.0
+        acceleration = EFFORT_SHARE * (self._effort - abs(gravity)) / inertia
+        if acceleration > self._jerkless:
+            acceleration = self._jerkless
+        if acceleration < self._braking:
+            acceleration = self._braking
         setpoint.approach(
             target, target_velocity, speed, acceleration, self._braking, self._period_s
         )
-        return setpoint.velocity != 0.0 or setpoint.position != self.start_position
+        return setpoint.velocity != 0.0 or setpoint.position != start
 
     def gain_less(self, share: float) -> None:
         """Let the set-point gain only this share of the speed it was to gain in this period."""

@@ -73,9 +73,10 @@ class Servo:
         )
         self._servoed: tuple[tuple[int, DrivenJoint], ...] = ()
         self._bind(model, data, joints)
-        self._spread = tuning.coupling
+        self._spread = tuning.coupling / timing.period_s
+        self._gains = [0.0] * len(joints)
         self._coupling = np.ascontiguousarray(tuning.coupling.T)
-        self._stiffness: list[float] = tuning.stiffness.tolist()
+        self._compliance: list[float] = (1.0 / tuning.stiffness).tolist()
         self._followers: list[float] = tuning.followers.tolist()
         self._friction = _felt(model.dof_frictionloss, tuning.coupling)
         self._drag = _felt(model.dof_damping, tuning.coupling)
@@ -185,9 +186,11 @@ class Servo:
 
     def _efforts(self) -> list[float]:
         """Return inertia x acceleration + gravity and Coriolis effort of the driven joints."""
+        gains = self._gains
         for index, driven in self._servoed:
-            gain = driven.setpoint.velocity - driven.start_velocity
-            self._accelerations[index] = gain / self._period_s
+            gains[index] = driven.setpoint.velocity - driven.start_velocity
+        self._accelerations[:] = gains
+        # The couplings are divided by the period beforehand: gain to acceleration.
         self._spread.dot(self._accelerations, self._motion)
         mujoco.mj_mulM(self._model, self._data, self._load, self._motion)
         np.add(self._load, self._bias, self._load)
@@ -207,27 +210,25 @@ class Servo:
 
     def _write(self, efforts: list[float]) -> None:
         """Hand over to MuJoCo: where the activations start and how fast they move."""
-        lead_s, period_s = self._lead_s, self._period_s
-        activations, rates = [0.0] * len(efforts), [0.0] * len(efforts)
-        for index, driven in enumerate(self._joints):
-            activations[index] = driven.effort
+        lead_s, per_period = self._lead_s, 1.0 / self._period_s
+        activations = [driven.effort for driven in self._joints]
+        rates = [0.0] * len(activations)
         for index, driven in self._servoed:
             setpoint = driven.setpoint
-            speed, limit = setpoint.velocity, driven.joint.effort
-            effort = efforts[index] + self._drag[index] * speed
+            speed, start_speed = setpoint.velocity, driven.start_velocity
+            effort = efforts[index]
             if speed:
-                effort += math.copysign(self._friction[index], speed)
-            effort = min(max(effort, -limit), limit)
-            activations[index] = (
-                driven.start_position
-                + lead_s * driven.start_velocity
-                + effort / self._stiffness[index]
-            )
+                effort += self._drag[index] * speed + math.copysign(self._friction[index], speed)
+            limit = driven.joint.effort
+            if effort > limit:
+                effort = limit
+            elif effort < -limit:
+                effort = -limit
+            start = driven.start_position
+            activations[index] = start + lead_s * start_speed + effort * self._compliance[index]
             rates[index] = (
-                setpoint.position
-                - driven.start_position
-                + lead_s * (speed - driven.start_velocity)
-            ) / period_s
+                setpoint.position - start + lead_s * (speed - start_speed)
+            ) * per_period
         self._act[:] = activations
         self._ctrl[:] = rates
 
@@ -235,7 +236,8 @@ class Servo:
         actuator = self._actuators[index]
         stiffness, damping, gain = 0.0, 0.0, 0.0
         if mode in SERVOED:
-            stiffness, damping = self._stiffness[index], float(self._tuning.damping[index])
+            stiffness = float(self._tuning.stiffness[index])
+            damping = float(self._tuning.damping[index])
             gain = stiffness
         elif mode is DriveMode.EFFORT:
             gain = 1.0

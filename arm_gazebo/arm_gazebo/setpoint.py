@@ -1,6 +1,6 @@
 """A set-point that moves as a joint can: bounded in speed, acceleration and braking."""
 
-import math
+from math import inf, sqrt
 
 LANDING_SLACK = 1.0001
 """Rounding allowance on the speed of the last stretch."""
@@ -42,31 +42,40 @@ class Setpoint:
             braking: what it can do wherever it stops, above 0; stops are planned with it.
             period_s: length of the period.
         """
+        # Comparisons instead of min, max and abs: this runs for every joint in every tick.
+        if target_velocity > speed:
+            target_velocity = speed
+        elif target_velocity < -speed:
+            target_velocity = -speed
         # Seen from the target, which moves with constant velocity, everything is a way to rest.
-        target_velocity = min(max(target_velocity, -speed), speed)
         way = target - target_velocity * period_s - self.position
         velocity = self.velocity - target_velocity
-        brake = braking * period_s
         change = acceleration * period_s
+        brake = braking * period_s
         # A moving target is one that can be followed: it asks no more than the joint can now.
         landing = change if target_velocity else brake
-        if (
-            abs(velocity) <= landing
-            and abs(way - 0.5 * velocity * period_s) <= 0.25 * landing * period_s
-            and abs(target - self.position) <= speed * period_s * LANDING_SLACK
-        ):
-            self.position = target
-            self.velocity = target_velocity
-            return
+        reach = speed * period_s * LANDING_SLACK
+        if -landing <= velocity <= landing and -reach <= target - self.position <= reach:
+            miss = way - 0.5 * velocity * period_s
+            within = 0.25 * landing * period_s
+            if -within <= miss <= within:
+                self.position = target
+                self.velocity = target_velocity
+                return
         sign = 1.0
-        if way < 0 or (way == 0 and velocity > 0):
+        if way < 0.0 or (way == 0.0 and velocity > 0.0):
             sign, way, velocity = -1.0, -way, -velocity
         # The fastest end of this period from which `braking` still stops at the target:
         # v'^2 <= 2 braking (way - (v + v') period / 2), solved for v'.
         root = brake * (0.25 * brake - velocity) + 2.0 * braking * way
-        fastest = math.sqrt(root) - 0.5 * brake if root > 0 else -math.inf
-        fastest = min(fastest, speed - sign * target_velocity, velocity + change)
-        fastest = max(fastest, velocity - change)
+        fastest = sqrt(root) - 0.5 * brake if root > 0.0 else -inf
+        cruise = speed - sign * target_velocity
+        if fastest > cruise:
+            fastest = cruise
+        if fastest > velocity + change:
+            fastest = velocity + change
+        elif fastest < velocity - change:
+            fastest = velocity - change
         end = target_velocity + sign * fastest
         self.position += 0.5 * period_s * (self.velocity + end)
         self.velocity = end

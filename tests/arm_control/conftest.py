@@ -22,8 +22,8 @@ from arm_control.testing import FakeHardware, fake_hardware
 class ProbeParameters:
     """What the probe asks for."""
 
-    commands: InterfaceConfiguration = InterfaceConfiguration.none()
-    states: InterfaceConfiguration = InterfaceConfiguration.none()
+    commands: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
 
 
 class Probe(Controller[ProbeParameters]):
@@ -41,10 +41,10 @@ class Probe(Controller[ProbeParameters]):
         self._parameters = ProbeParameters()
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
-        return self._parameters.commands
+        return InterfaceConfiguration.individual(self._parameters.commands)
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
-        return self._parameters.states
+        return InterfaceConfiguration.individual(self._parameters.states)
 
     def on_configure(self, parameters: ProbeParameters) -> None:
         self._note("configure")
@@ -120,10 +120,7 @@ class Bench:
         probe = self.load(name, fallback_names=fallback_names)
         self.manager.configure_controller(
             name,
-            ProbeParameters(
-                InterfaceConfiguration.individual(commands),
-                InterfaceConfiguration.individual(states),
-            ),
+            ProbeParameters(commands, states),
             rate_hz,
         )
         return probe

@@ -14,7 +14,6 @@ from arm_control import (
     LifecycleState,
     ReturnType,
     SwitchRequest,
-    parameter,
 )
 from arm_control.forward_command_controller import (
     JointGroupPositionController,
@@ -58,7 +57,7 @@ def test_configure_makes_it_inactive(bench: Any) -> None:
 
 def test_configure_of_an_unknown_name_says_what_is_loaded(bench: Any) -> None:
     bench.load("a")
-    with pytest.raises(ControllerManagerError, match="no controller with this name.*loaded: a"):
+    with pytest.raises(ControllerManagerError, match=r"no controller with this name.*loaded: a"):
         bench.manager.configure_controller("b", None)
 
 
@@ -221,8 +220,6 @@ def test_a_tick_without_changes_reports_nothing(bench: Any, observer: Any) -> No
 class Follower(Controller[Any]):
     """Publishes the state that it reads."""
 
-    parameters_type = parameter
-
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self.published: list[float] = []
@@ -303,9 +300,7 @@ def test_a_controller_whose_update_fails_is_deactivated(
     bench.tick(2)
     assert bench.states() == {"good": "active", "bad": "inactive"}
     assert (len(probe.updates), len(good.updates)) == (1, 2)
-    assert (
-        "Deactivating controllers : [ bad ] as their update resulted in an error!" in caplog.text
-    )
+    assert "Deactivating controllers : [ bad ] as their update resulted in an error!" in caplog.text
     assert "activate again with: spawner bad" in caplog.text
 
 
@@ -508,7 +503,7 @@ def test_two_components_of_one_name_are_refused() -> None:
 
 
 def test_two_components_with_the_same_interface_are_refused() -> None:
-    with pytest.raises(ControllerManagerError, match="'j0/position' belongs to .*'FakeSystem'"):
+    with pytest.raises(ControllerManagerError, match=r"'j0/position' belongs to .*'FakeSystem'"):
         ControllerManager([fake_hardware(), fake_hardware(("j0",), name="B")], 100)
 
 

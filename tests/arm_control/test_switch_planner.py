@@ -109,8 +109,7 @@ def test_an_inactive_controller_is_not_deactivated(bench: Any) -> None:
     strict = bench.manager.switch_controller(SwitchRequest((), ("a",), STRICT))
     soft = bench.manager.switch_controller(SwitchRequest((), ("a",)))
     assert (
-        strict.message
-        == "Controller with name 'a' can not be deactivated since it is not active."
+        strict.message == "Controller with name 'a' can not be deactivated since it is not active."
     )
     assert (soft.ok, soft.message) == (True, NOTHING_TO_SWITCH)
 

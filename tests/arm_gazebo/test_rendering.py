@@ -185,14 +185,14 @@ def test_a_colour_of_a_material_counts(draw, backend):
 
 
 STILL_LIFE = world(
-    FLOOR,
+    '<geom type="plane" size="0 0 1" material="matte"/>',
     '<geom type="box" size=".2 .2 .2" pos="2 .5 .2" euler="0 0 30" rgba=".8 .2 .2 1"/>',
     '<geom type="cylinder" size=".15 .2" pos="1.6 0 .2" rgba=".2 .6 .2 1"/>',
     '<geom type="sphere" size=".2" pos="2 -.6 .2" rgba=".2 .3 .8 1"/>',
     '<geom type="capsule" size=".1 .2" pos="3 .2 .6" euler="50 0 20" rgba=".8 .7 .2 1"/>',
     '<geom type="ellipsoid" size=".3 .1 .2" pos="3 -.5 1" rgba=".3 .7 .7 1"/>',
     camera='pos="0 0 1" xyaxes="0 -1 0 0.35 0 0.94"',
-)
+).replace("<asset>", '<asset><material name="matte" rgba=".5 .5 .5 1" specular="0"/>')
 
 
 @gl_backends

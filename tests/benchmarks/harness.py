@@ -105,7 +105,7 @@ class Suite:
             if k not in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE")
         }
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "arm_cli.main", "launch", *arguments],
+            [sys.executable, "-m", "arm_cli", "launch", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,

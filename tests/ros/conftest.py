@@ -26,7 +26,7 @@ class Launched:
         self.lines: list[str] = []
         self._changed = threading.Condition()
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "arm_cli.main", "launch", *arguments],
+            [sys.executable, "-m", "arm_cli", "launch", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
@@ -72,6 +72,13 @@ class Launched:
     def descendants(self) -> list[psutil.Process]:
         """All processes below the launcher."""
         return psutil.Process(self.process.pid).children(recursive=True)
+
+    def shared_memory(self) -> set[str]:
+        """The shared-memory files that the launcher and all below it have mapped."""
+        files = set()
+        for process in [psutil.Process(self.process.pid), *self.descendants()]:
+            files |= {m.path for m in process.memory_maps() if m.path.startswith("/dev/shm/")}
+        return files
 
     def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:
         """Send a signal, wait for the end, and return the exit code."""
@@ -202,10 +209,13 @@ class Client:
                 pytest.fail(f"not within {timeout_s} s: {what}")
             self._stop.wait(0.02)
 
-    def publisher(self, message_type: type, topic: str, qos: object = 10):
-        """Return a publisher that a subscription has matched, ready for a single message."""
+    def publisher(self, message_type: type, topic: str, qos: object = 10, matches: int = 1):
+        """Return a publisher that subscriptions have matched, ready for a single message."""
         publisher = self.node.create_publisher(message_type, topic, qos)
-        self.wait_until(publisher.get_subscription_count, f"a subscription on {topic}")
+        self.wait_until(
+            lambda: publisher.get_subscription_count() >= matches,
+            f"{matches} subscriptions on {topic}",
+        )
         # A best-effort reader may miss what is sent at the very instant of the match.
         self._stop.wait(0.2)
         return publisher

@@ -9,7 +9,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_without_holding_the_arm_falls(launch, client):
-    from tf2_msgs.msg import TFMessage
+    from sensor_msgs.msg import JointState
 
     launched = launch(
         "arm_gazebo",
@@ -21,13 +21,10 @@ def test_without_holding_the_arm_falls(launch, client):
         "j2_pos:=0.5",
     )
     launched.wait_until_ready()
-    from sensor_msgs.msg import JointState
-
     states = client.subscribe(JointState, "/joint_states")
     states.wait_until(
         lambda m: bool(m) and abs(m[-1].position[1]) > 1.2, "the arm lies on the floor"
     )
-    del TFMessage
 
 
 def test_unclaimed_joints_hold_by_default(launch, client):

@@ -14,7 +14,8 @@ from rclpy.executors import Executor
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 
-LONGEST_WAIT_S = 0.5
+LONGEST_WAIT_S = 0.1
+"""How long the end may take: a spin_once of this executor cannot be woken."""
 
 
 @contextmanager
@@ -29,7 +30,6 @@ def spinning(node: Node) -> Iterator[None]:
         yield
     finally:
         ended.set()
-        executor.wake()
         thread.join()
         executor.shutdown()
         node.destroy_node()

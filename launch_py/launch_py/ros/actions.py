@@ -40,6 +40,8 @@ class Node(ExecuteProcess):
         namespace: the namespace, inside the one of `PushRosNamespace`.
         exec_name: what to call the process; default the node's name, else the executable's.
         parameters: parameter files and dicts of parameters; later ones win.
+        parameters_node: the node that dicts of parameters are meant for, in a process with
+            several; default `name`, else every node of the process.
         remappings: pairs of a name and what it becomes.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
@@ -54,6 +56,7 @@ class Node(ExecuteProcess):
         namespace: Text | None = None,
         exec_name: Text | None = None,
         parameters: Iterable[Parameters] = (),
+        parameters_node: Text | None = None,
         remappings: Iterable[tuple[Text, Text]] = (),
         arguments: Iterable[Text] = (),
         ros_arguments: Iterable[Text] = (),
@@ -99,6 +102,7 @@ class Node(ExecuteProcess):
         self.node_name = name
         self.namespace = namespace
         self.parameters = [parameters] if isinstance(parameters, Mapping) else list(parameters)
+        self.parameters_node = parameters_node
         self.remappings = list(remappings)
         self.arguments = list(arguments)
         self.ros_arguments = list(ros_arguments)
@@ -120,7 +124,11 @@ class Node(ExecuteProcess):
             ros += ["-r", f"__node:={name}"]
         if namespace:
             ros += ["-r", f"__ns:={namespace}"]
-        for parameters in self._parameter_files(context, f"{namespace}/{name}" if name else "/**"):
+        meant_for = (
+            name if self.parameters_node is None else perform_text(context, self.parameters_node)
+        )
+        node_key = f"{namespace}/{meant_for}" if meant_for else "/**"
+        for parameters in self._parameter_files(context, node_key):
             ros += ["--params-file", parameters]
         for old, new in [*context.remappings, *self.remappings]:
             ros += ["-r", f"{perform_text(context, old)}:={perform_text(context, new)}"]

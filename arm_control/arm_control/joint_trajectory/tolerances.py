@@ -1,0 +1,140 @@
+"""How far the joints may be from where they are wanted."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.joint_trajectory.motion import ACCELERATION, POSITION, QUANTITIES, VELOCITY
+from arm_control.joint_trajectory.requests import GoalRequest, JointTolerance
+
+CHECKED_ROWS = 3
+"""Position, velocity and acceleration; there is no tolerance for efforts."""
+
+DISABLED = -1.0
+"""In a goal: no tolerance, whatever the controller's own is."""
+
+Array = NDArray[np.floating[Any]]
+
+
+class ToleranceError(ValueError):
+    """A goal's tolerance cannot be used; the message says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Greatest errors allowed, in absolute value.
+
+    Attributes:
+        values: of position, velocity and acceleration, shape (3, n); infinite where any goes.
+        is_any: whether there is a bound at all.
+    """
+
+    values: NDArray[np.float64]
+    is_any: bool
+
+    @classmethod
+    def of(cls, tolerances: Array) -> "Bounds":
+        """Take tolerances, shape (3, n), of which zero and less means none."""
+        values = np.where(tolerances > 0.0, tolerances, np.inf)
+        return cls(values, bool(np.isfinite(values).any()))
+
+    def hold(self, error: Array) -> bool:
+        """Return whether errors, shape (k, n) with k <= 3, are within bounds; NaN is not."""
+        return not self.is_any or bool((np.abs(error) <= self.values[: len(error)]).all())
+
+    def excess(self, error: Array, joints: Sequence[str]) -> str:
+        """Say which error is out of bounds; there must be one."""
+        bounds = self.values[: len(error)]
+        row, joint = np.argwhere(~(np.abs(error) <= bounds))[0]
+        return (
+            f"{QUANTITIES[row]} error of joint {joints[joint]} is {error[row, joint]:f}, "
+            f"tolerance {bounds[row, joint]:f}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """What is checked while a trajectory is followed.
+
+    Attributes:
+        path: bounds on the way.
+        goal: bounds at the end.
+        goal_time_s: how late the joints may come within `goal`; 0 for any time.
+    """
+
+    path: Bounds
+    goal: Bounds
+    goal_time_s: float
+
+    @classmethod
+    def none(cls, joint_count: int) -> "Tolerances":
+        """Check nothing."""
+        off = Bounds.of(np.zeros((CHECKED_ROWS, joint_count)))
+        return cls(off, off, 0.0)
+
+    @classmethod
+    def of(
+        cls, path: Array, goal: Array, stopped_velocity: float, goal_time_s: float
+    ) -> "Tolerances":
+        """Take the controller's parameters.
+
+        Args:
+            path: of position on the way, shape (n,).
+            goal: of position at the end, shape (n,).
+            stopped_velocity: of every joint's velocity at the end.
+            goal_time_s: how late the end may be.
+        """
+        on_the_way, at_end = np.zeros((2, CHECKED_ROWS, len(path)))
+        on_the_way[POSITION] = path
+        at_end[POSITION] = goal
+        at_end[VELOCITY] = stopped_velocity
+        return cls(Bounds.of(on_the_way), Bounds.of(at_end), goal_time_s)
+
+    def for_goal(self, goal: GoalRequest, joints: Sequence[str]) -> "Tolerances":
+        """Return these tolerances with what a goal asks for instead.
+
+        Raises:
+            ToleranceError: the goal asks for a negative tolerance other than -1, or names a joint
+                that there is not.
+        """
+        return replace(
+            self,
+            path=_overridden(self.path, goal.path_tolerance, joints),
+            goal=_overridden(self.goal, goal.goal_tolerance, joints),
+            goal_time_s=_resolve(
+                self.goal_time_s, goal.goal_time_tolerance_s, 0.0, "goal_time_tolerance"
+            ),
+        )
+
+
+def _overridden(
+    bounds: Bounds, tolerances: Iterable[JointTolerance], joints: Sequence[str]
+) -> Bounds:
+    values = bounds.values.copy()
+    for tolerance in tolerances:
+        if tolerance.name not in joints:
+            raise ToleranceError(
+                f"there is no joint '{tolerance.name}'; there is {', '.join(joints)}"
+            )
+        column = joints.index(tolerance.name)
+        for row, asked in (
+            (POSITION, tolerance.position),
+            (VELOCITY, tolerance.velocity),
+            (ACCELERATION, tolerance.acceleration),
+        ):
+            what = f"the {QUANTITIES[row]} tolerance of joint '{tolerance.name}'"
+            values[row, column] = _resolve(values[row, column], asked, np.inf, what)
+    return Bounds(values, bool(np.isfinite(values).any()))
+
+
+def _resolve(default: float, asked: float, off: float, what: str) -> float:
+    if asked == 0.0:
+        return default
+    if asked > 0.0:
+        return asked
+    if asked == DISABLED:
+        return off
+    raise ToleranceError(f"{what} is {asked:f}; it may be positive, 0 for the default or -1 for none")

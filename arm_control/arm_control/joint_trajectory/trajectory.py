@@ -1,0 +1,101 @@
+"""A trajectory as the controller keeps it."""
+
+from collections.abc import Sequence
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.joint_trajectory.angles import nearest_turn
+from arm_control.joint_trajectory.completion import hold_joints, integrate
+from arm_control.joint_trajectory.motion import POSITION, ROWS
+from arm_control.joint_trajectory.plans import Plan, SplinePlan, StepPlan
+from arm_control.joint_trajectory.requests import TrajectoryPoint, TrajectoryRequest
+from arm_control.joint_trajectory.spline import Spline
+
+
+class Interpolation(Enum):
+    """What happens between two way points; the value is that of the parameter."""
+
+    SPLINES = "splines"
+    NONE = "none"
+
+
+class Trajectory:
+    """Way points in the controller's order of joints; immutable.
+
+    What needs no state of the robot is computed here, on the thread where the request comes in.
+
+    Attributes:
+        stamp_s: when it starts; 0 for at once.
+        times_s: when each point is due after that, shape (m,).
+        motions: the points, shape (m, 4, n); NaN where they leave something open.
+        missing: joints that it does not name, shape (n,).
+    """
+
+    __slots__ = ("_interpolation", "_spline", "missing", "motions", "stamp_s", "times_s")
+
+    def __init__(
+        self,
+        request: TrajectoryRequest,
+        joints: Sequence[str],
+        interpolation: Interpolation = Interpolation.SPLINES,
+    ) -> None:
+        """Take over a request.
+
+        Args:
+            request: without fault, see `find_fault`.
+            joints: the controller's joints.
+            interpolation: what happens between the points.
+        """
+        columns = [joints.index(name) for name in request.joint_names]
+        self.stamp_s = request.stamp_s
+        self.times_s = np.array([point.time_from_start_s for point in request.points])
+        self.motions = np.full((len(request.points), ROWS, len(joints)), np.nan)
+        for i, point in enumerate(request.points):
+            for row, values in enumerate(_rows(point)):
+                if len(values):
+                    self.motions[i, row, columns] = values
+        self.missing = np.ones(len(joints), dtype=np.bool_)
+        self.missing[columns] = False
+        self._interpolation = interpolation
+        self._spline = None
+        if interpolation is Interpolation.SPLINES and not self._has_open_positions():
+            self._spline = Spline(self.times_s, self.motions)
+
+    def plan(
+        self,
+        now_s: float,
+        start: NDArray[np.float64],
+        held_position: NDArray[np.float64],
+        continuous: NDArray[np.bool_],
+    ) -> Plan:
+        """Return what to do from now on.
+
+        Args:
+            now_s: time 0 of the plan.
+            start: motion to start from, shape (4, n).
+            held_position: where joints stay that the trajectory does not name, shape (n,).
+            continuous: which joints turn without end, shape (n,): they go to the first point the
+                short way.
+        """
+        offset_s = self.stamp_s - now_s if self.stamp_s else 0.0
+        motions, spline = self.motions, self._spline
+        if self.missing.any():
+            motions = hold_joints(motions, self.missing, held_position)
+        if np.isnan(motions[:, POSITION]).any():
+            motions = integrate(self.times_s + offset_s, motions, start)
+        start = start.copy()
+        start[POSITION] = nearest_turn(start[POSITION], motions[0, POSITION], continuous)
+        if self._interpolation is Interpolation.NONE:
+            return StepPlan(start, motions, self.times_s + offset_s)
+        if spline is None:
+            spline = Spline(self.times_s, motions)
+        return SplinePlan(start, motions[0], float(self.times_s[0]), spline, offset_s)
+
+    def _has_open_positions(self) -> bool:
+        return bool(np.isnan(self.motions[:, POSITION]).any())
+
+
+def _rows(point: TrajectoryPoint) -> tuple[Sequence[float], ...]:
+    return point.positions, point.velocities, point.accelerations, point.effort

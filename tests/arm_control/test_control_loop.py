@@ -1,0 +1,288 @@
+"""The loop thread: calls between ticks, pause, steps, failure, end."""
+
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from typing import Any
+
+import pytest
+
+from arm_control.control_loop import ControlLoop
+from arm_control.errors import LoopStoppedError
+from arm_control.pacer import Pacer
+
+TIMEOUT_S = 20.0
+
+
+class Ticks:
+    """Counts ticks and lets a test wait for them."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.threads: set[int] = set()
+        self._changed = threading.Condition()
+
+    def __call__(self) -> None:
+        with self._changed:
+            self.count += 1
+            self.threads.add(threading.get_ident())
+            self._changed.notify_all()
+
+    def wait_for(self, count: int) -> None:
+        with self._changed:
+            assert self._changed.wait_for(lambda: self.count >= count, TIMEOUT_S)
+
+
+@pytest.fixture
+def ticks() -> Ticks:
+    return Ticks()
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[..., ControlLoop]]:
+    """Return a function that starts a loop, which ends with the test."""
+    loops: list[ControlLoop] = []
+
+    def start_loop(
+        tick: Callable[[], None], factor: float = 1.0, paused: bool = False, **options: Any
+    ) -> ControlLoop:
+        loop = ControlLoop(tick, Pacer(0.002, real_time_factor=factor), **options)
+        loops.append(loop)
+        loop.start(paused=paused)
+        return loop
+
+    yield start_loop
+    for loop in loops:
+        loop.stop()
+        assert loop.join(TIMEOUT_S)
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_it_ticks_on_one_thread_of_its_own(start: Any, ticks: Ticks, factor: float) -> None:
+    start(ticks, factor)
+    ticks.wait_for(20)
+    assert len(ticks.threads) == 1
+    assert threading.get_ident() not in ticks.threads
+
+
+@pytest.mark.parametrize("paused", [True, False])
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_a_call_runs_on_the_loop_thread(
+    start: Any, ticks: Ticks, factor: float, paused: Any
+) -> None:
+    loop = start(ticks, factor, paused=paused)
+    thread = loop.call(threading.get_ident).result(TIMEOUT_S)
+    loop.step() if paused else None
+    ticks.wait_for(1)
+    assert ticks.threads == {thread}
+
+
+def test_a_call_does_not_wait_for_a_distant_deadline(ticks: Ticks) -> None:
+    loop = ControlLoop(ticks, Pacer(3600.0))
+    loop.start()
+    ticks.wait_for(1)
+    assert loop.call(lambda: 7).result(TIMEOUT_S) == 7
+    assert ticks.count == 1
+    loop.stop()
+    assert loop.join(TIMEOUT_S)
+
+
+def test_calls_run_in_the_order_they_came(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+    order: list[int] = []
+    futures = [loop.call(lambda i=i: order.append(i)) for i in range(50)]
+    for future in futures:
+        future.result(TIMEOUT_S)
+    assert order == list(range(50))
+
+
+def test_a_call_that_comes_before_the_start_waits_for_it(ticks: Ticks) -> None:
+    loop = ControlLoop(ticks, Pacer(0.002))
+    future = loop.call(lambda: "early")
+    loop.start(paused=True)
+    assert future.result(TIMEOUT_S) == "early"
+    loop.stop()
+    assert loop.join(TIMEOUT_S)
+
+
+def test_what_a_call_raises_is_the_callers(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+
+    def broken() -> None:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        loop.call(broken).result(TIMEOUT_S)
+    ticks.wait_for(ticks.count + 3)
+
+
+def test_a_cancelled_call_is_skipped(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    release = threading.Event()
+    loop.call(lambda: release.wait(TIMEOUT_S))
+    ran: list[int] = []
+    future = loop.call(lambda: ran.append(1))
+    assert future.cancel()
+    release.set()
+    loop.call(lambda: None).result(TIMEOUT_S)
+    assert ran == []
+    with pytest.raises(CancelledError):
+        future.result(0)
+
+
+def test_callers_that_keep_coming_do_not_hold_up_the_ticks(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, 0.0)
+
+    def again() -> None:
+        if ticks.count < 100:
+            loop.call(again)
+
+    loop.call(again)
+    ticks.wait_for(100)
+
+
+# Pause and steps
+
+
+def test_time_stands_still_while_paused(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, 0.0)
+    ticks.wait_for(5)
+    loop.pause().result(TIMEOUT_S)
+    count = ticks.count
+    for _ in range(20):
+        loop.call(lambda: None).result(TIMEOUT_S)
+    assert loop.paused
+    assert ticks.count == count
+
+
+def test_it_can_start_paused(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, 0.0, paused=True)
+    loop.call(lambda: None).result(TIMEOUT_S)
+    assert ticks.count == 0
+
+
+def test_resume_lets_time_go_on(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    loop.resume().result(TIMEOUT_S)
+    ticks.wait_for(3)
+    assert not loop.paused
+
+
+def test_steps_run_while_paused(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    assert loop.step(7).result(TIMEOUT_S) == 7
+    assert ticks.count == 7
+    assert loop.paused
+
+
+def test_steps_do_not_wait_for_the_clock(ticks: Ticks) -> None:
+    loop = ControlLoop(ticks, Pacer(3600.0))
+    loop.start(paused=True)
+    assert loop.step(5).result(TIMEOUT_S) == 5
+    loop.stop()
+    assert loop.join(TIMEOUT_S)
+
+
+def test_calls_are_served_between_steps(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    steps = loop.step(10_000_000)
+    seen = loop.call(lambda: ticks.count).result(TIMEOUT_S)
+    assert seen < 10_000_000
+    loop.resume().result(TIMEOUT_S)
+    assert 0 <= steps.result(TIMEOUT_S) < 10_000_000
+
+
+def test_step_requests_follow_one_another(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    first, second = loop.step(3), loop.step(4)
+    assert (first.result(TIMEOUT_S), second.result(TIMEOUT_S)) == (3, 4)
+    assert ticks.count == 7
+
+
+def test_steps_need_a_pause(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+    with pytest.raises(ValueError, match="pause it first"):
+        loop.step(1).result(TIMEOUT_S)
+
+
+def test_the_number_of_steps_must_be_positive(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    with pytest.raises(ValueError, match="must be positive, not 0"):
+        loop.step(0).result(TIMEOUT_S)
+
+
+# The end
+
+
+def test_stop_ends_the_thread(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+    assert loop.running
+    loop.stop()
+    assert loop.join(TIMEOUT_S)
+    assert not loop.running
+
+
+def test_stop_ends_a_paused_loop(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    loop.stop()
+    assert loop.join(TIMEOUT_S)
+
+
+def test_a_call_after_the_end_is_refused(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+    loop.stop()
+    loop.join(TIMEOUT_S)
+    with pytest.raises(LoopStoppedError):
+        loop.call(lambda: None).result(0)
+    with pytest.raises(LoopStoppedError):
+        loop.step().result(0)
+
+
+def test_a_call_that_waits_when_the_loop_ends_is_refused(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    release = threading.Event()
+    loop.call(lambda: release.wait(TIMEOUT_S))
+    loop.stop()
+    left_over = loop.call(lambda: None)
+    release.set()
+    with pytest.raises(LoopStoppedError):
+        left_over.result(TIMEOUT_S)
+
+
+def test_steps_not_done_at_the_end_are_told(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    steps = loop.step(10_000_000)
+    loop.stop()
+    assert steps.result(TIMEOUT_S) < 10_000_000
+
+
+def test_a_tick_that_raises_ends_the_loop_with_its_reason(
+    start: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    failures: list[Exception] = []
+
+    def broken() -> None:
+        raise RuntimeError("unstable")
+
+    loop = start(broken, on_failure=failures.append)
+    assert loop.join(TIMEOUT_S)
+    assert [str(failure) for failure in failures] == ["unstable"]
+    assert not loop.running
+    assert "the control loop ends: a tick failed" in caplog.text
+    with pytest.raises(LoopStoppedError):
+        loop.call(lambda: None).result(0)
+
+
+def test_without_the_right_to_a_priority_it_says_so_and_runs(
+    start: Any,
+    ticks: Ticks,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(*_: Any) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr("os.sched_setscheduler", refuse)
+    start(ticks, fifo_priority=50)
+    ticks.wait_for(2)
+    assert "without SCHED_FIFO priority 50: Operation not permitted" in caplog.text

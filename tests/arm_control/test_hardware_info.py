@@ -1,0 +1,115 @@
+"""<ros2_control> blocks, right and wrong."""
+
+import pytest
+
+from arm_control.errors import HardwareInfoError
+from arm_control.hardware_info import HardwareInfo, parse_hardware_info
+
+
+def robot(*blocks: str) -> str:
+    return f"<robot name='r'>{''.join(blocks)}</robot>"
+
+
+def block(inner: str = "", name: str = "H", type_: str = "system", plugin: str = "p/P") -> str:
+    return (
+        f"<ros2_control name='{name}' type='{type_}'>"
+        f"<hardware><plugin>{plugin}</plugin><param name='port'>/dev/x</param></hardware>"
+        f"{inner}</ros2_control>"
+    )
+
+
+def parse_one(inner: str) -> HardwareInfo:
+    (info,) = parse_hardware_info(robot(block(inner)))
+    return info
+
+
+JOINT = """
+<joint name="j0">
+  <command_interface name="position">
+    <param name="min">-1.5</param><param name="max">2</param>
+  </command_interface>
+  <state_interface name="position"><param name="initial_value">0.25</param></state_interface>
+  <state_interface name="velocity"/>
+  <param name="gear">3</param>
+</joint>
+"""
+
+
+def test_a_description_without_a_block_has_no_hardware() -> None:
+    assert parse_hardware_info(robot()) == ()
+
+
+def test_the_components_own_data() -> None:
+    info = parse_one("")
+    assert (info.name, info.type, info.plugin) == ("H", "system", "p/P")
+    assert info.parameters == {"port": "/dev/x"}
+    assert info.line == 1
+
+
+def test_a_joint_with_its_interfaces() -> None:
+    (joint,) = parse_one(JOINT).joints
+    (command,) = joint.command_interfaces
+    position, velocity = joint.state_interfaces
+    assert (command.name, command.minimum, command.maximum) == ("position", -1.5, 2.0)
+    assert (position.initial_value, velocity.initial_value) == (0.25, None)
+    assert joint.parameters == {"gear": "3"}
+    assert command.parameters == {"min": "-1.5", "max": "2"}
+
+
+def test_full_names_come_in_document_order_joints_first() -> None:
+    info = parse_one(
+        "<gpio name='io'><command_interface name='out'/><state_interface name='in'/></gpio>"
+        "<sensor name='imu'><state_interface name='gyro.x'/></sensor>" + JOINT
+    )
+    assert info.state_interface_names == ("j0/position", "j0/velocity", "imu/gyro.x", "io/in")
+    assert info.command_interface_names == ("j0/position", "io/out")
+
+
+def test_several_components() -> None:
+    infos = parse_hardware_info(robot(block(name="A"), block(name="B", type_="sensor")))
+    assert [info.name for info in infos] == ["A", "B"]
+
+
+@pytest.mark.parametrize(
+    ("blocks", "says"),
+    [
+        ("<ros2_control type='system'/>", "line 1: <ros2_control> has no name"),
+        (block(type_="thing"), "has type 'thing'; it must be one of system, actuator, sensor"),
+        (block(plugin=""), "names no <hardware><plugin>"),
+        ("<ros2_control name='H' type='system'/>", "names no <hardware><plugin>"),
+        (block() + block(), "a second <ros2_control> component is named 'H'"),
+        (block("<joint/>"), "<joint> of <ros2_control name='H'> has no name"),
+        (block("<joint name='a'/><joint name='a'/>"), "has a second <joint> named 'a'"),
+        (
+            block("<joint name='a'><state_interface/></joint>"),
+            "<state_interface> of <joint name='a'> of <ros2_control name='H'> has no name",
+        ),
+        (
+            block("<joint name='a'>" + 2 * "<command_interface name='position'/>" + "</joint>"),
+            "has a second <command_interface> named 'position'",
+        ),
+        (
+            block(
+                "<joint name='a'><command_interface name='position'>"
+                "<param name='min'>low</param></command_interface></joint>"
+            ),
+            "'min' of <command_interface name='position'>.* is 'low'; it must be a finite number",
+        ),
+        (
+            block(
+                "<joint name='a'><state_interface name='position'>"
+                "<param name='initial_value'>nan</param></state_interface></joint>"
+            ),
+            "'initial_value' of .* is 'nan'; it must be a finite number",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_line(blocks: str, says: str) -> None:
+    with pytest.raises(HardwareInfoError, match=says):
+        parse_hardware_info(robot(blocks))
+
+
+def test_the_line_is_that_of_the_element() -> None:
+    text = robot("\n\n", block("\n<joint name='a'/>\n<joint name='a'/>"))
+    with pytest.raises(HardwareInfoError, match=r"^line 5:"):
+        parse_hardware_info(text)

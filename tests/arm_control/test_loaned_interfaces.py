@@ -1,0 +1,39 @@
+"""Windows on the arrays, evenly spaced or not."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from arm_control.loaned_interfaces import LoanedInterfaces
+
+
+def loan(array: np.ndarray, positions: list[int]) -> LoanedInterfaces:
+    return LoanedInterfaces([f"i{p}" for p in positions], array, positions)
+
+
+@given(st.lists(st.integers(0, 11), unique=True, max_size=12))
+def test_it_reads_and_writes_in_the_order_asked(positions: list[int]) -> None:
+    array = np.arange(12.0)
+    window = loan(array, positions)
+    assert window.read().tolist() == [float(p) for p in positions]
+    window.write(np.arange(100.0, 100.0 + len(positions)))
+    assert array[positions].tolist() == [100.0 + i for i in range(len(positions))]
+    untouched = [p for p in range(12) if p not in positions]
+    assert array[untouched].tolist() == [float(p) for p in untouched]
+
+
+@pytest.mark.parametrize("positions", [[2, 3, 4], [1, 4, 7, 10], [5]])
+def test_evenly_spaced_interfaces_are_read_without_a_copy(positions: list[int]) -> None:
+    array = np.zeros(12)
+    assert np.shares_memory(loan(array, positions).read(), array)
+
+
+def test_one_value_is_written_to_all() -> None:
+    array = np.ones(4)
+    loan(array, [3, 0]).write(0.0)
+    assert array.tolist() == [0.0, 1.0, 1.0, 0.0]
+
+
+def test_its_length_is_the_number_of_interfaces() -> None:
+    assert (len(loan(np.zeros(4), [3, 0])), len(loan(np.zeros(4), []))) == (2, 0)

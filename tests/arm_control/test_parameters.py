@@ -1,0 +1,79 @@
+"""Parameters described by a dataclass."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from arm_control.errors import ParameterError
+from arm_control.parameters import build_parameters, parameter, specs_of
+
+
+@dataclass(frozen=True, slots=True)
+class Gains:
+    p: float = parameter(1.0, "Proportional", read_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    joint: str = parameter("j0", "The joint")
+    count: int = parameter(3, "How many")
+    on: bool = parameter(False, "Whether")
+    names: tuple[str, ...] = parameter((), "Some names")
+    limits: tuple[float, ...] = parameter((1.0,), "Some numbers")
+    gains: Gains = Gains()
+
+
+def test_specs_name_type_and_rules() -> None:
+    specs = {spec.name: spec for spec in specs_of(Example)}
+    assert list(specs) == ["joint", "count", "on", "names", "limits", "gains.p"]
+    assert (specs["names"].type, specs["names"].is_list, specs["names"].default) == (str, True, ())
+    assert (specs["gains.p"].read_only, specs["joint"].read_only) == (True, False)
+    assert specs["gains.p"].description == "Proportional"
+
+
+def test_what_is_not_given_has_its_default() -> None:
+    assert build_parameters(Example, {}) == Example()
+
+
+def test_values_are_taken_by_full_name() -> None:
+    built = build_parameters(Example, {"gains.p": 2.0, "names": ["a", "b"], "on": True})
+    assert built == Example(gains=Gains(2.0), names=("a", "b"), on=True)
+
+
+def test_an_integer_serves_as_a_float() -> None:
+    built = build_parameters(Example, {"gains.p": 2, "limits": [1, 2.5]})
+    assert (built.gains.p, built.limits) == (2.0, (1.0, 2.5))
+    assert isinstance(built.gains.p, float)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "says"),
+    [
+        ("count", 1.5, "'count' must be of type int, not 1.5"),
+        ("count", True, "'count' must be of type int, not True"),
+        ("gains.p", True, "'gains.p' must be of type float, not True"),
+        ("joint", 3, "'joint' must be of type str, not 3"),
+        ("on", 1, "'on' must be of type bool, not 1"),
+        ("names", "j0", "'names' must be a list, not 'j0'"),
+        ("names", 3, "'names' must be a list, not 3"),
+        ("names", ["a", 2], r"'names\[1\]' must be of type str, not 2"),
+    ],
+)
+def test_a_wrong_type_is_refused(name: str, value: Any, says: str) -> None:
+    with pytest.raises(ParameterError, match=says):
+        build_parameters(Example, {name: value})
+
+
+def test_an_unknown_name_is_refused_with_those_there_are() -> None:
+    with pytest.raises(ParameterError, match=r"unknown parameter gain; there is joint, count, on"):
+        build_parameters(Example, {"gain": 1.0})
+
+
+def test_a_field_that_cannot_be_a_parameter_is_the_authors_mistake() -> None:
+    @dataclass(frozen=True)
+    class Bad:
+        table: dict[str, int]
+
+    with pytest.raises(ParameterError, match="field 'table' of Bad needs a default and one of"):
+        specs_of(Bad)

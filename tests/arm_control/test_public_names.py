@@ -1,0 +1,20 @@
+"""What `import arm_control` offers."""
+
+import subprocess
+import sys
+
+import arm_control
+
+
+def test_every_public_name_exists() -> None:
+    assert sorted(arm_control.__all__) == arm_control.__all__
+    assert all(hasattr(arm_control, name) for name in arm_control.__all__)
+
+
+def test_the_core_needs_neither_ros_nor_mujoco() -> None:
+    code = (
+        "import sys, arm_control, arm_control.testing, arm_control.forward_command_controller, "
+        "arm_control.joint_state_broadcaster, arm_control.registry, arm_control.spawner_options; "
+        "sys.exit(bool({'rclpy', 'mujoco'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
