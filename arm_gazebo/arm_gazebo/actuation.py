@@ -84,13 +84,13 @@ def _drive(joint: Joint, report: BuildReport) -> Drive:
         report.warn(element, f"it has no velocity limit; {velocity:g} {unit} is used", joint.line)
     if not (math.isfinite(effort) and effort > 0):
         effort = math.inf
-        report.warn(element, "it has no effort limit; its drive is as strong as need be", joint.line)
+        report.warn(
+            element, "it has no effort limit; its drive is as strong as need be", joint.line
+        )
     return Drive(joint.name, velocity, effort)
 
 
-def add_actuators(
-    spec: mujoco.MjSpec, driven: Iterable[Drive], default: mujoco.MjsDefault
-) -> None:
+def add_actuators(spec: mujoco.MjSpec, driven: Iterable[Drive], default: mujoco.MjsDefault) -> None:
     """Add one actuator for each driven joint, of the same name.
 
     Its activation integrates its control within a control period, so that a set-point moves on

@@ -87,9 +87,7 @@ class BodyTree:
             self._bodies[root.name] = world
             self._geometry.add(world, root)
             return
-        body = world.add_body(
-            name=root.name, pos=self._spawn.xyz, quat=wxyz(self._spawn.rpy)
-        )
+        body = world.add_body(name=root.name, pos=self._spawn.xyz, quat=wxyz(self._spawn.rpy))
         self._bodies[root.name] = body
         if self._free:
             body.add_freejoint(name=f"{root.name}_free")
@@ -146,11 +144,15 @@ class BodyTree:
             case "floating":
                 # MuJoCo's free joint is for children of the world only.
                 for axis, direction in zip("xyz", np.eye(3), strict=True):
-                    body.add_joint(self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
+                    body.add_joint(
+                        self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction
+                    )
                 body.add_joint(self._default, name=f"{joint.name}_rotation", type=BALL)
             case "planar":
                 for axis, direction in zip("xy", _plane(joint.axis), strict=True):
-                    body.add_joint(self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction)
+                    body.add_joint(
+                        self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction
+                    )
                 body.add_joint(self._default, name=f"{joint.name}_yaw", type=HINGE, axis=joint.axis)
             case "fixed":
                 pass

@@ -47,9 +47,7 @@ def massless() -> PrincipalInertia:
     )
 
 
-def repair_inertia(
-    inertial: Inertial, box: NDArray[np.float64] | None = None
-) -> PrincipalInertia:
+def repair_inertia(inertial: Inertial, box: NDArray[np.float64] | None = None) -> PrincipalInertia:
     """Return the inertia of a link, repaired where no rigid body can have it.
 
     Args:

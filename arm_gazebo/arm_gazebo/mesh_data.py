@@ -66,6 +66,4 @@ def merged(vertices: NDArray[np.float32], rgba: Color | None = None) -> MeshData
     rows = np.ascontiguousarray(vertices + np.float32(0))  # -0 and 0 are the same place
     keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).ravel()
     _, first, index = np.unique(keys, return_index=True, return_inverse=True)
-    return MeshData(
-        rows[first].astype(np.float64), index.reshape(-1, 3).astype(np.int32), rgba
-    )
+    return MeshData(rows[first].astype(np.float64), index.reshape(-1, 3).astype(np.int32), rgba)

@@ -105,6 +105,7 @@ class Servo:
         self._diagonal = as_slice(model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1)
         self._qpos, self._qvel = data.qpos, data.qvel
         self._inertia, self._bias = data.M, data.qfrc_bias
+
     @property
     def joints(self) -> tuple[RobotJoint, ...]:
         """The driven joints; their order is that of the indices below."""
@@ -226,9 +227,7 @@ class Servo:
                 effort = -limit
             start = driven.start_position
             activations[index] = start + lead_s * start_speed + effort * self._compliance[index]
-            rates[index] = (
-                setpoint.position - start + lead_s * (speed - start_speed)
-            ) * per_period
+            rates[index] = (setpoint.position - start + lead_s * (speed - start_speed)) * per_period
         self._act[:] = activations
         self._ctrl[:] = rates
 

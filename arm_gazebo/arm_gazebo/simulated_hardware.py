@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from arm_control.hardware import HardwareReturn
-from arm_control.hardware_info import HardwareInfo, InterfaceInfo
 from numpy.typing import NDArray
 
+from arm_control.hardware import HardwareReturn
+from arm_control.hardware_info import HardwareInfo, InterfaceInfo
 from arm_gazebo.drive_mode import DriveMode
 from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.servo import as_slice
@@ -214,9 +214,7 @@ class SimulatedHardware:
                     drive = drives[part.name]
                     joint, mode = self._servo.joints[drive], MODES[command.name]
                     name, bounds = f"{part.name}/{command.name}", _bounds(joint, mode, command)
-                    found.append(
-                        _CommandInterface(name, len(found), drive, mode, joint, *bounds)
-                    )
+                    found.append(_CommandInterface(name, len(found), drive, mode, joint, *bounds))
         return tuple(found)
 
     def _log_left_out(self) -> None:

@@ -5,24 +5,17 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from launch_py.errors import NotFoundError
+from launch_py.packages import Packages, ament_prefixes
+
 BOOTSTRAP_GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 LIBRARY_PATH = "LD_LIBRARY_PATH"
-
-
-def ament_prefixes(environ: Mapping[str, str]) -> list[str]:
-    """Return the prefixes to look for packages in: those of AMENT_PREFIX_PATH, then this Python's.
-
-    The ROS wheels do not set AMENT_PREFIX_PATH; without it nothing that pip installed is found.
-    """
-    prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    return prefixes if sys.prefix in prefixes else [*prefixes, sys.prefix]
 
 
 def default_environment(
     environ: Mapping[str, str],
     log_folder: Path | None,
     notify_address: str | None,
-    dds_profile: Path | None,
     colours: bool,
 ) -> dict[str, str]:
     """Return what the supervisor adds to the environment of every process.
@@ -34,14 +27,14 @@ def default_environment(
         environ: the supervisor's own environment.
         log_folder: where the processes' own log files go.
         notify_address: the supervisor's notification socket.
-        dds_profile: the shipped Fast DDS profile, None where it is not installed.
         colours: whether a terminal shows the output, in colours.
     """
     defaults = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "PYTHONUNBUFFERED": "1"}
     if log_folder is not None:
         defaults["ROS_LOG_DIR"] = str(log_folder)
-    if dds_profile is not None and "FASTDDS_DEFAULT_PROFILES_FILE" not in environ:
-        defaults["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(dds_profile)
+    profile = dds_profile(environ)
+    if profile is not None:
+        defaults["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(profile)
     if colours:
         defaults["RCUTILS_COLORIZED_OUTPUT"] = "1"
     added = {name: value for name, value in defaults.items() if name not in environ}
@@ -49,6 +42,15 @@ def default_environment(
     if notify_address is not None:
         added["NOTIFY_SOCKET"] = notify_address
     return added
+
+
+def dds_profile(environ: Mapping[str, str]) -> Path | None:
+    """Return the shipped Fast DDS profile, None where launch_py is not installed with its data."""
+    try:
+        path = Packages(environ).share_folder("launch_py") / "config" / "dds_profile.xml"
+    except NotFoundError:
+        return None
+    return path if path.is_file() else None
 
 
 def for_program(program: str, environ: Mapping[str, str]) -> dict[str, str]:

@@ -11,12 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from launch_py.child_environment import ament_prefixes
 from launch_py.errors import LaunchError, UsageError
 from launch_py.expansion import expand_description, survey_description
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.near_names import describe_known
-from launch_py.packages import Packages
+from launch_py.packages import Packages, ament_prefixes
 
 EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130

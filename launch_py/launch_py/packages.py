@@ -12,11 +12,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from launch_py.child_environment import ament_prefixes
 from launch_py.errors import NotFoundError
 from launch_py.near_names import describe_known
 
 MARKERS = "share/ament_index/resource_index/packages"
+
+
+def ament_prefixes(environ: Mapping[str, str]) -> list[str]:
+    """Return the prefixes to look for packages in: those of AMENT_PREFIX_PATH, then this Python's.
+
+    The ROS wheels do not set AMENT_PREFIX_PATH; without it nothing that pip installed is found.
+    """
+    prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+    return prefixes if sys.prefix in prefixes else [*prefixes, sys.prefix]
 
 
 @dataclass(frozen=True, slots=True)

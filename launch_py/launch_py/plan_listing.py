@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 from launch_py.child_environment import default_environment
 from launch_py.plan import (
@@ -22,7 +23,7 @@ MAX_TEXT = 300
 def list_plan(plan: Plan, environ: Mapping[str, str]) -> str:
     """Return the steps of a plan, and what is added to the environment of all processes."""
     lines = ["Environment added for all processes:"]
-    added = default_environment(environ, None, None, None, colours=False)
+    added = default_environment(environ, Path("<log folder>"), "<socket>", colours=False)
     lines += [f"  {name}={value}" for name, value in sorted(added.items())]
     for step in plan.steps:
         lines += ["", *_describe(step)]

@@ -73,9 +73,7 @@ class World:
         )
 
     def make_process(self, settings: CameraSettings, arguments: Sequence[str]) -> CameraProcess:
-        return CameraProcess(
-            settings, arguments, {}, clock=lambda: self.now_s, spawn=self.spawn
-        )
+        return CameraProcess(settings, arguments, {}, clock=lambda: self.now_s, spawn=self.spawn)
 
     def spawn(self, command: list[str], **options) -> Child:
         self.children.append(Child(command, **options))

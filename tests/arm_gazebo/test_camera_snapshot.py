@@ -1,5 +1,7 @@
 """States as datagrams."""
 
+import contextlib
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,9 +12,7 @@ from arm_gazebo.camera_schedule import FrameDue
 from arm_gazebo.camera_snapshot import CameraSnapshot
 from arm_gazebo.errors import CameraError
 
-frames = st.builds(
-    FrameDue, st.integers(0, 9), st.integers(0, 2**63), st.integers(0, 2**63)
-)
+frames = st.builds(FrameDue, st.integers(0, 9), st.integers(0, 2**63), st.integers(0, 2**63))
 
 
 @given(
@@ -32,11 +32,9 @@ def test_what_is_packed_comes_out_again(version, time_s, due, qpos, mocaps):
 
 
 @given(st.binary(max_size=200))
-def test_garbage_is_refused_or_read_but_never_crashes(packed):
-    try:
+def test_garbage_is_read_or_refused_and_nothing_else(packed):
+    with contextlib.suppress(CameraError):
         CameraSnapshot.unpack(packed)
-    except CameraError as error:
-        assert "not a camera snapshot" in str(error)
 
 
 def test_a_truncated_snapshot_is_refused():

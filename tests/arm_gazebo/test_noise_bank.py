@@ -8,9 +8,7 @@ from arm_gazebo.noise_bank import NoiseBank, noise_for
 
 
 def sensor(stddev: float = 0.007, mean: float = 0.0, name: str = "camera") -> CameraSensor:
-    return CameraSensor(
-        name, "l", "f", width=200, height=150, noise_stddev=stddev, noise_mean=mean
-    )
+    return CameraSensor(name, "l", "f", width=200, height=150, noise_stddev=stddev, noise_mean=mean)
 
 
 def noisy(bank: NoiseBank, frame: int, level: int = 128) -> np.ndarray:

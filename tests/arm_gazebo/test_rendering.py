@@ -114,9 +114,7 @@ def test_the_intrinsics_project_a_point_to_the_pixel_that_shows_it(
     f = eye.focal_length
     for right, down, ahead in [(0.0, 0.0, 2.0), (0.5, 0.3, 2.0), (-0.6, -0.2, 1.5)]:
         # The camera looks along x: right of it is -y, below it is -z.
-        ball = (
-            f'<geom type="sphere" size="0.05" pos="{ahead} {-right} {1 - down}" rgba="1 0 0 1"/>'
-        )
+        ball = f'<geom type="sphere" size="0.05" pos="{ahead} {-right} {1 - down}" rgba="1 0 0 1"/>'
         rows, columns = np.nonzero(reddish(draw(backend, world(ball), eye)))
         assert rows.size > 20
         assert np.mean(columns) + 0.5 == pytest.approx(width / 2 + f * right / ahead, abs=1.0)

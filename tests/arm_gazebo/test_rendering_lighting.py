@@ -12,7 +12,7 @@ ORIGIN = np.zeros((1, 3))
 
 def brightness(light: str, point: np.ndarray = ORIGIN, normal: np.ndarray = UP, head: str = ""):
     model = mujoco.MjModel.from_xml_string(
-        f'<mujoco><visual><headlight {head or "active=" + repr("0")}/></visual>'
+        f"<mujoco><visual><headlight {head or 'active=' + repr('0')}/></visual>"
         f"<worldbody>{light}</worldbody></mujoco>"
     )
     data = mujoco.MjData(model)

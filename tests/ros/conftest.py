@@ -74,10 +74,14 @@ class Launched:
         return psutil.Process(self.process.pid).children(recursive=True)
 
     def shared_memory(self) -> set[str]:
-        """The shared-memory files that the launcher and all below it have mapped."""
+        """The middleware's shared-memory files that the launcher and all below it have mapped."""
         files = set()
         for process in [psutil.Process(self.process.pid), *self.descendants()]:
-            files |= {m.path for m in process.memory_maps() if m.path.startswith("/dev/shm/")}
+            files |= {
+                m.path
+                for m in process.memory_maps()
+                if "/dev/shm/" in m.path and "fastrtps" in m.path
+            }
         return files
 
     def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_control.errors import ArmControlError
 from arm_control.joint_trajectory.motion import ACCELERATION, POSITION, QUANTITIES, VELOCITY
 from arm_control.joint_trajectory.requests import GoalRequest, JointTolerance
 
@@ -19,7 +20,7 @@ DISABLED = -1.0
 Array = NDArray[np.floating[Any]]
 
 
-class ToleranceError(ValueError):
+class ToleranceError(ArmControlError):
     """A goal's tolerance cannot be used; the message says which."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TextIO
 
 from launch_py.screen.screen import ReadySummary
@@ -16,7 +16,7 @@ class PlainScreen:
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
-    def begin(self, names: Sequence[str]) -> None:
+    def begin(self, names: Sequence[str], status: Callable[[], str]) -> None:
         """Do nothing: plain lines are not aligned."""
 
     def line(self, name: str, text: str) -> None:
@@ -39,7 +39,7 @@ class PlainScreen:
         self._stream.write(f"ready {elapsed_s:.2f} s\n")
         self._stream.flush()
 
-    def status(self, text: str) -> None:
+    def refresh(self) -> None:
         """Do nothing: a status that cannot be replaced would only pile up."""
 
     def end(self, text: str, failed: bool) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -22,8 +22,8 @@ class ReadySummary:
 class Screen(Protocol):
     """Where the output goes. Every method may raise OSError when nobody reads any more."""
 
-    def begin(self, names: Sequence[str]) -> None:
-        """Learn the names of the processes whose lines will come."""
+    def begin(self, names: Sequence[str], status: Callable[[], str]) -> None:
+        """Learn the names of the processes whose lines will come, and how to ask for the status."""
         ...
 
     def line(self, name: str, text: str) -> None:
@@ -42,8 +42,8 @@ class Screen(Protocol):
         """Show that everything is ready."""
         ...
 
-    def status(self, text: str) -> None:
-        """Show how things stand, in place of what was shown before."""
+    def refresh(self) -> None:
+        """Show how things stand now, in place of what was shown before."""
         ...
 
     def end(self, text: str, failed: bool) -> None:

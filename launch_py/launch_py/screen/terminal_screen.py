@@ -41,13 +41,14 @@ class TerminalScreen:
         self._started_s = started_s
         self._colours = colours
         self._clock = clock
-        self._status = ""
+        self._status: Callable[[], str] | None = None
         self._width = len(OWN_NAME)
         self._colour_of: dict[str, str] = {OWN_NAME: BOLD}
         self._next_colour = itertools.cycle(COLOURS)
 
-    def begin(self, names: Sequence[str]) -> None:
-        """Align the prefixes for these names."""
+    def begin(self, names: Sequence[str], status: Callable[[], str]) -> None:
+        """Align the prefixes for these names, and show the status from now on."""
+        self._status = status
         longest = max((len(name) for name in names), default=0)
         self._width = min(max(longest, len(OWN_NAME)), MAX_NAME_WIDTH)
 
@@ -90,22 +91,20 @@ class TerminalScreen:
             self._write(f"  {self._paint(DIM, label)}\n    {self._paint(BOLD, text)}\n")
         self._write("")
 
-    def status(self, text: str) -> None:
-        """Show how things stand, below everything else."""
-        self._status = text
+    def refresh(self) -> None:
+        """Show how things stand now, below everything else."""
         self._write("")
 
     def end(self, text: str, failed: bool) -> None:
         """Remove the status line and show the last line."""
-        self._status = ""
+        self._status = None
         self.line(OWN_NAME, self._paint(RED if failed else GREEN, text))
 
     def _write(self, text: str, keep_status: bool = True) -> None:
         """Write lines above the status line, in one go so that nothing flickers."""
         status = ""
-        if keep_status and self._status:
-            columns = _columns(self._stream)
-            status = self._paint(DIM, self._status[: columns - 1])
+        if keep_status and self._status is not None:
+            status = self._paint(DIM, self._status()[: _columns(self._stream) - 1])
         self._stream.write(f"{ERASE_LINE}{text}{status}")
         self._stream.flush()
 

@@ -72,6 +72,7 @@ class ChildProcess:
     def stop(self, delays: StopDelays) -> None:
         """Send SIGINT to the group, then SIGTERM, then SIGKILL, while it does not end."""
         self._signal(signal.SIGINT)
+        self._signal(signal.SIGCONT)  # A stopped process would not even see it.
         self._escalate(delays.sigterm_timeout_s, lambda: self._terminate(delays))
 
     def kill(self) -> None:

@@ -103,6 +103,7 @@ class Member:
         self._cancel: list[Callable[[], None]] = []
         self._restart_timer: Timer | None = None
         self._started_s = 0.0
+        self._killed = False
 
     @property
     def name(self) -> str:
@@ -148,6 +149,7 @@ class Member:
     def kill(self) -> None:
         """End it now."""
         self.stopping = True
+        self._killed = True
         if self.state is MemberState.BACKING_OFF:
             self._end_for_good("was stopped")
         elif self.child is not None:
@@ -213,25 +215,27 @@ class Member:
     def _on_end(self, exit_code: int) -> None:
         self._stop_watching()
         self.exit_code = exit_code
-        ran_s = self._loop.clock() - self._started_s
-        ending = describe_exit(exit_code)
         if self.stopping:
-            killed = self.child is not None and self.child.killed
-            self._end_for_good("did not stop and was killed" if killed else "stopped")
+            self._end_for_good(self._describe_stop())
             return
         for condition in [c for c in self._pending if isinstance(c, ProcessExited)]:
             if condition.code == exit_code:
                 self._met(condition)
+        ending = f"{describe_exit(exit_code)} after {self._loop.clock() - self._started_s:.2f} s"
         decision = self._history.ended(exit_code)
         if decision.delay_s is None:
             why = f"; giving up: {decision.gave_up}" if decision.gave_up else ""
-            self._end_for_good(f"{ending} after {ran_s:.2f} s{why}")
+            self._end_for_good(ending + why)
             return
         self.state = MemberState.BACKING_OFF
-        self._reporter.problem(
-            f"{self.name} {ending} after {ran_s:.2f} s; restart in {decision.delay_s:g} s"
-        )
+        self._reporter.problem(f"{self.name} {ending}; restart in {decision.delay_s:g} s")
         self._restart_timer = self._loop.call_later(decision.delay_s, self.start)
+
+    def _describe_stop(self) -> str:
+        if self._killed:
+            return "was killed"
+        hung = self.child is not None and self.child.killed
+        return "did not stop and was killed" if hung else "stopped"
 
     def _end_for_good(self, ending: str) -> None:
         if self._restart_timer is not None:

@@ -27,9 +27,9 @@ class Reporter:
         self._logs = logs
         self._show_all = show_all
 
-    def begin(self, names: list[str]) -> None:
-        """Announce the names of the processes."""
-        self._show(lambda: self._screen.begin(names))
+    def begin(self, names: list[str], status: Callable[[], str]) -> None:
+        """Announce the names of the processes, and how to ask for the status."""
+        self._show(lambda: self._screen.begin(names, status))
 
     def line(self, name: str, text: str, shown: bool) -> None:
         """Report a line that a process has written."""
@@ -58,9 +58,9 @@ class Reporter:
         self._logs.write(OWN_NAME, f"ready {elapsed_s:.2f} s")
         self._show(lambda: self._screen.ready(elapsed_s, summary))
 
-    def status(self, text: str) -> None:
-        """Report how things stand, on the screen only."""
-        self._show(lambda: self._screen.status(text))
+    def refresh(self) -> None:
+        """Show how things stand now, on the screen only."""
+        self._show(self._screen.refresh)
 
     def end(self, text: str, failed: bool) -> None:
         """Report the last line."""

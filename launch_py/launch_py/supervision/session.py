@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from launch_py.child_environment import default_environment
-from launch_py.errors import NotFoundError
-from launch_py.packages import Packages
 from launch_py.plan import Plan
 from launch_py.screen import PlainScreen, ReadySummary, Screen, TerminalScreen
 from launch_py.supervision import linux
@@ -88,9 +86,7 @@ class Session:
         self._notify = NotifySocket(self._take_notification)
         self._ledger = SharedMemoryLedger(self._is_ours)
         self._probes = ProbeClient(self._loop, logs.path / "probe.log", self._reporter.problem)
-        added = default_environment(
-            environ, logs.path, self._notify.address, dds_profile(environ), colours
-        )
+        added = default_environment(environ, logs.path, self._notify.address, colours)
         runner = LocalRunner(
             self._loop, {**environ, **added}, logs, self._probes, self._ledger.observe
         )
@@ -112,7 +108,7 @@ class Session:
         with self._loop.signals(self._signal_callbacks()):
             self._supervisor.begin()
             if self._live:
-                self._show_status()
+                self._refresh()
             self._loop.run(until=self._is_over)
             self._end_orphans()
         self._ledger.sweep()
@@ -138,7 +134,8 @@ class Session:
             self._supervisor.kill("stopped now by SIGQUIT")
         elif first_s is None:
             self._stop_requested_s = now_s
-            self._supervisor.stop(f"{number.name} received; Ctrl-C again stops now")
+            hint = "; Ctrl-C again stops now" if number is signal.SIGINT else ""
+            self._supervisor.stop(f"{number.name} received{hint}")
         elif number is signal.SIGINT and now_s - first_s > REPEATED_SIGNAL_S:
             self._supervisor.kill("stopped now by a second Ctrl-C")
 
@@ -159,23 +156,28 @@ class Session:
         return [pid for pid in linux.children() if pid not in own | self._probes.pids]
 
     def _end_orphans(self) -> None:
-        """End what left its process group and so outlived its parent; close the probes."""
+        """End what left its process group and so outlived its parent, and the probes."""
         self._probes.close()
-        deadline_s = time.monotonic() + ORPHAN_GRACE_S
-        terminated: set[int] = set()
+        self._end_remaining(signal.SIGTERM, time.monotonic() + ORPHAN_GRACE_S)
+        self._end_remaining(signal.SIGKILL, time.monotonic() + ORPHAN_GRACE_S)
 
-        def look() -> None:
-            late = time.monotonic() > deadline_s
-            for pid in {*self._orphans(), *(self._probes.pids if late else ())}:
-                if late or pid not in terminated:
-                    terminated.add(pid)
-                    linux.signal_group(pid, signal.SIGKILL if late else signal.SIGTERM)
-                    linux.signal_process(pid, signal.SIGKILL if late else signal.SIGTERM)
-            if self._orphans() or self._probes.pids:
-                self._loop.call_later(ORPHAN_POLL_S, look)
+    def _end_remaining(self, number: signal.Signals, deadline_s: float) -> None:
+        """Send a signal to each remaining child once, and wait until none is left."""
+        signalled = set(self._probes.pids) if number is signal.SIGTERM else set[int]()
 
-        look()
-        self._loop.run(until=lambda: not self._orphans() and not self._probes.pids)
+        def none_is_left() -> bool:
+            remaining = {*self._orphans(), *self._probes.pids}
+            for pid in remaining - signalled:
+                linux.signal_group(pid, number)
+                linux.signal_process(pid, number)
+                signalled.add(pid)
+            return not remaining or time.monotonic() > deadline_s
+
+        def look_again() -> None:
+            self._loop.call_later(ORPHAN_POLL_S, look_again)
+
+        look_again()
+        self._loop.run(until=none_is_left)
 
     def _is_ours(self, pid: int) -> bool:
         session = linux.session_of(pid)
@@ -194,18 +196,9 @@ class Session:
             if member.child is not None and member.child.pid == session:
                 member.notified(fields)
 
-    def _show_status(self) -> None:
-        self._reporter.status(self._supervisor.status())
-        self._loop.call_later(STATUS_PERIOD_S, self._show_status)
-
-
-def dds_profile(environ: Mapping[str, str]) -> Path | None:
-    """Return the shipped Fast DDS profile, None where launch_py is not installed with its data."""
-    try:
-        path = Packages(environ).share_folder("launch_py") / "config" / "dds_profile.xml"
-    except NotFoundError:
-        return None
-    return path if path.is_file() else None
+    def _refresh(self) -> None:
+        self._reporter.refresh()
+        self._loop.call_later(STATUS_PERIOD_S, self._refresh)
 
 
 def _screen(options: SessionOptions, terminal: bool, colours: bool) -> Screen:

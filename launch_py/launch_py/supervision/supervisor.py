@@ -18,6 +18,7 @@ from launch_py.plan import (
     Trigger,
     TriggerKind,
 )
+from launch_py.readiness import ProcessExited as ProcessHasExited
 from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.member import Member, MemberState, ProcessRunner
@@ -84,7 +85,7 @@ class Supervisor:
 
     def begin(self) -> None:
         """Take the first steps."""
-        self._reporter.begin(list(self.members))
+        self._reporter.begin(list(self.members), self.status)
         for warning in self._plan.warnings:
             self._reporter.problem(warning)
         self._advance()
@@ -143,7 +144,7 @@ class Supervisor:
         """Take the steps that wait for the readiness; say so when it was the last one."""
         if self.stopping:
             return
-        if member.step.ready:
+        if any(not isinstance(condition, ProcessHasExited) for condition in member.step.ready):
             elapsed_s = self._loop.clock() - self._started_s
             self._reporter.note(f"{member.name} is ready after {elapsed_s:.2f} s")
         self._advance()

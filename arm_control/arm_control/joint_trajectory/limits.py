@@ -1,0 +1,101 @@
+"""What the robot description allows the joints, and trajectories that ask for more."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.joint_trajectory.motion import POSITION, VELOCITY
+from arm_control.joint_trajectory.plans import Plan
+from arm_control.joint_trajectory.results import ErrorCode, Refusal
+from arm_description.robot import Robot
+
+SAMPLES_PER_SEGMENT = 8
+"""Enough to see a polynomial of degree five overshoot between its ends."""
+
+SLACK = 1e-6
+"""A value counts as outside only by more than this: planners go exactly to the limit."""
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class JointModel:
+    """What the robot description says of the joints of a controller, in their order.
+
+    Attributes:
+        joints: their names.
+        continuous: which turn without end, shape (n,).
+        lower: least positions, shape (n,); -inf where there is no limit.
+        upper: greatest positions, shape (n,).
+        velocity: greatest speeds, shape (n,); inf where there is no limit.
+    """
+
+    joints: tuple[str, ...]
+    continuous: NDArray[np.bool_]
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, robot: Robot | None, names: Sequence[str]) -> "JointModel":
+        """Look joints up; one that the robot does not have is without limits."""
+        known = {joint.name: joint for joint in robot.joints} if robot else {}
+        joints = [known.get(name) for name in names]
+        limits = [joint.limit if joint else None for joint in joints]
+        return cls(
+            tuple(names),
+            np.array([joint is not None and joint.type == "continuous" for joint in joints]),
+            np.array([limit.lower if limit else -np.inf for limit in limits]),
+            np.array([limit.upper if limit else np.inf for limit in limits]),
+            np.array([limit.velocity if limit and limit.velocity else np.inf for limit in limits]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LimitCheck:
+    """Which limits a trajectory has to keep."""
+
+    model: JointModel
+    positions: bool
+    velocities: bool
+
+    def find_excess(self, plan: Plan, times_s: Array) -> Refusal | None:
+        """Return what is wrong with a plan, None where it keeps the limits.
+
+        Between the way points a few samples stand for the whole.
+
+        Args:
+            plan: the plan.
+            times_s: when its way points are due, shape (m,).
+        """
+        knots_s = np.concatenate([[0.0], times_s[times_s > 0.0]])
+        fractions = np.arange(SAMPLES_PER_SEGMENT) / SAMPLES_PER_SEGMENT
+        between_s = knots_s[:-1, None] + np.diff(knots_s)[:, None] * fractions
+        sampled_s = np.append(between_s, knots_s[-1])
+        motions = np.stack([plan.sample(time_s) for time_s in sampled_s.tolist()])
+        model = self.model
+        if self.positions:
+            position = motions[:, POSITION]
+            outside = (position < model.lower - SLACK) | (position > model.upper + SLACK)
+            for row, i in np.argwhere(outside):
+                return _refusal(
+                    f"The trajectory takes joint {model.joints[i]} to {position[row, i]:f}, "
+                    f"outside its limits [{model.lower[i]:f}, {model.upper[i]:f}]",
+                    sampled_s[row],
+                )
+        if self.velocities:
+            speed = np.abs(motions[:, VELOCITY])
+            for row, i in np.argwhere(speed > model.velocity + SLACK):
+                return _refusal(
+                    f"The trajectory moves joint {model.joints[i]} with {speed[row, i]:f}, "
+                    f"above its velocity limit of {model.velocity[i]:f}",
+                    sampled_s[row],
+                )
+        return None
+
+
+def _refusal(fault: str, time_s: float) -> Refusal:
+    return Refusal(ErrorCode.INVALID_GOAL, f"{fault}, {time_s:.3f} s after its start.")

@@ -1,0 +1,124 @@
+"""PID control of several joints at once, as control_toolbox computes it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+
+class AntiWindup(Enum):
+    """What keeps the integral from running away; the value is that of the parameter.
+
+    LEGACY lets it grow, but clamps what it contributes. CONDITIONAL_INTEGRATION stops it while
+    the output is saturated and the error would drive it further. BACK_CALCULATION lets the
+    saturation pull it back. NONE does nothing.
+    """
+
+    LEGACY = "legacy"
+    NONE = "none"
+    BACK_CALCULATION = "back_calculation"
+    CONDITIONAL_INTEGRATION = "conditional_integration"
+
+
+@dataclass(frozen=True, slots=True)
+class PidGains:
+    """Gains of one joint.
+
+    Attributes:
+        p: of the position's error.
+        i: of its integral.
+        d: of the velocity's error.
+        i_max: most that the integral contributes.
+        i_min: least that the integral contributes.
+        u_max: greatest output.
+        u_min: least output.
+        anti_windup: what keeps the integral from running away.
+        tracking_time_constant: of BACK_CALCULATION [s]; 0 derives it from the gains.
+        error_deadband: an error up to this is not integrated.
+    """
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_max: float = np.inf
+    i_min: float = -np.inf
+    u_max: float = np.inf
+    u_min: float = -np.inf
+    anti_windup: AntiWindup = AntiWindup.LEGACY
+    tracking_time_constant: float = 0.0
+    error_deadband: float = 0.0
+
+
+class Pid:
+    """One controller for each of n joints. One thread at a time."""
+
+    def __init__(self, gains: Sequence[PidGains]) -> None:
+        """Start with these gains and no integral."""
+        self._integral = np.zeros(len(gains))
+        self.set_gains(gains)
+
+    def set_gains(self, gains: Sequence[PidGains]) -> None:
+        """Take other gains, one for each joint; the integral stays."""
+        self._p, self._i, self._d = (_column(gains, name) for name in ("p", "i", "d"))
+        self._u_max, self._u_min = _column(gains, "u_max"), _column(gains, "u_min")
+        self._deadband = _column(gains, "error_deadband")
+        legacy = _uses(gains, AntiWindup.LEGACY)
+        self._i_max = np.where(legacy, _column(gains, "i_max"), np.inf)
+        self._i_min = np.where(legacy, _column(gains, "i_min"), -np.inf)
+        self._legacy = legacy
+        self._conditional = _uses(gains, AntiWindup.CONDITIONAL_INTEGRATION)
+        self._back = np.array([_back_gain(gain) for gain in gains])
+        self._integrates = bool(self._i.any())
+
+    def reset(self) -> None:
+        """Forget the integral."""
+        self._integral[:] = 0.0
+
+    def update(self, error: Array, rate: Array, period_s: float) -> NDArray[np.float64]:
+        """Return the outputs.
+
+        Args:
+            error: of position, shape (n,).
+            rate: of velocity, shape (n,).
+            period_s: since the last update.
+        """
+        output = self._p * error + self._d * rate
+        if not self._integrates:
+            return np.clip(output, self._u_min, self._u_max)
+        growth = np.where(np.abs(error) > self._deadband, self._i * period_s * error, 0.0)
+        # A broken sensor must not spoil the integral for good.
+        growth[~np.isfinite(growth)] = 0.0
+        self._integral += np.where(self._legacy, growth, 0.0)
+        wanted = output + np.clip(self._integral, self._i_min, self._i_max)
+        output = np.clip(wanted, self._u_min, self._u_max)
+        held = self._legacy | (self._conditional & (wanted != output) & (error * wanted > 0.0))
+        pull = self._back * period_s * np.where(growth, output - wanted, 0.0)
+        self._integral += np.where(held, 0.0, growth + pull)
+        return output
+
+
+def _column(gains: Sequence[PidGains], name: str) -> NDArray[np.float64]:
+    return np.array([getattr(gain, name) for gain in gains])
+
+
+def _uses(gains: Sequence[PidGains], strategy: AntiWindup) -> NDArray[np.bool_]:
+    return np.array([gain.anti_windup is strategy for gain in gains])
+
+
+def _back_gain(gains: PidGains) -> float:
+    """Return how fast saturation pulls the integral back [1/s].
+
+    The default time constant is sqrt(d / i), or p / i without d (Åström & Hägglund, PID
+    Controllers, 1995).
+    """
+    if gains.anti_windup is not AntiWindup.BACK_CALCULATION or not gains.i:
+        return 0.0
+    time_constant = gains.tracking_time_constant
+    if not time_constant:
+        time_constant = np.sqrt(gains.d / gains.i) if gains.d else gains.p / gains.i
+    return 1.0 / time_constant if time_constant > 0.0 else 0.0

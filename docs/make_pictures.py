@@ -1,0 +1,99 @@
+"""Makes the README's pictures: the arm, and what its front camera publishes.
+
+    python docs/make_pictures.py
+
+The first is drawn from the model that is simulated; the second is taken off /videocamera of a
+running `arm launch`, with the gripper lowered into the view.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+os.environ.setdefault("MUJOCO_GL", "egl")
+os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+os.environ.setdefault("ROS_DOMAIN_ID", "61")
+
+import cv2
+import mujoco
+import numpy as np
+import rclpy
+from ament_index_python.packages import get_package_share_directory
+from arm_control.hardware_info import parse_hardware_info
+from arm_description.urdf import parse_urdf
+from arm_description.xacro_expansion import expand_xacro
+from arm_gazebo.model_builder import build_model
+from rclpy.node import Node
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64MultiArray
+
+IMAGES = Path(__file__).with_name("images")
+REACHING = {"j0_pos": "0.4", "j1_pos": "0.5", "j2_pos": "0.5", "j3_pos": "1.0"}
+INTO_THE_VIEW = [0.0, 1.0, 0.6, 0.6]
+
+
+def draw_arm(path: Path, width: int = 960, height: int = 720) -> None:
+    """Draw the arm, reaching forward, in the empty world."""
+    arm = get_package_share_directory("arm_description") + "/urdf/arm.urdf.xacro"
+    text = expand_xacro(arm, {**REACHING, "camera": "front"})
+    built = build_model(parse_urdf(text), parse_hardware_info(text))
+    model, data = built.model, mujoco.MjData(built.model)
+    model.vis.global_.offwidth, model.vis.global_.offheight = width * 2, height * 2
+    # The cameras render without shadows, which cost most of a software frame; a picture has time.
+    model.vis.quality.shadowsize = 4096
+    model.light_castshadow[:] = True
+    data.qpos[:] = built.qpos
+    mujoco.mj_forward(model, data)
+    view = mujoco.MjvCamera()
+    view.lookat[:] = 0.04, -0.07, 0.15
+    view.distance, view.azimuth, view.elevation = 0.62, 215.0, -16.0
+    with mujoco.Renderer(model, height * 2, width * 2) as renderer:
+        renderer.update_scene(data, view)
+        picture = renderer.render()
+    picture = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(path), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+
+
+def take_camera_picture(path: Path) -> None:
+    """Save what /videocamera shows once the gripper is in the view."""
+    launcher = subprocess.Popen([sys.executable, "-m", "arm_cli", "launch", "world:=objects"])
+    rclpy.init()
+    node = Node("make_pictures")
+    latest: dict[str, Image | JointState] = {}
+    node.create_subscription(JointState, "/joint_states", lambda m: latest.update(states=m), 10)
+    node.create_subscription(Image, "/videocamera", lambda m: latest.update(image=m), 10)
+    commands = node.create_publisher(Float64MultiArray, "/position_controller/commands", 10)
+    command = Float64MultiArray(data=INTO_THE_VIEW)
+    node.create_timer(0.5, lambda: commands.publish(command))
+
+    def there() -> bool:
+        states = latest.get("states")
+        return isinstance(states, JointState) and np.allclose(
+            states.position, INTO_THE_VIEW, atol=0.01
+        )
+
+    while not there():
+        rclpy.spin_once(node)
+    latest.pop("image", None)
+    while "image" not in latest:
+        rclpy.spin_once(node)
+    image = latest["image"]
+    pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
+    cv2.imwrite(str(path), cv2.cvtColor(pixels, cv2.COLOR_RGB2BGR))
+    node.destroy_node()
+    rclpy.try_shutdown()
+    launcher.send_signal(signal.SIGINT)
+    launcher.wait(30)
+
+
+def main() -> None:
+    """Make both pictures."""
+    IMAGES.mkdir(exist_ok=True)
+    draw_arm(IMAGES / "arm.png")
+    take_camera_picture(IMAGES / "camera.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,252 @@
+"""A controller manager over fake hardware in a process of its own."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[3]
+TIMEOUT_S = 30.0
+
+PARAMETERS = {
+    "controller_manager": {
+        "ros__parameters": {
+            "update_rate": 100,
+            "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
+            "position_controller": {"type": "position_controllers/JointGroupPositionController"},
+            "second_controller": {"type": "position_controllers/JointGroupPositionController"},
+            "strange_controller": {"type": "strange_controllers/StrangeController"},
+        }
+    },
+    "position_controller": {"ros__parameters": {"joints": ["j0", "j1", "j2", "j3"]}},
+    "second_controller": {"ros__parameters": {"joints": ["j3"]}},
+}
+
+
+class Program:
+    """A child process whose output is read as it comes."""
+
+    def __init__(self, arguments: Sequence[str], log_directory: Path) -> None:
+        self.lines: list[str] = []
+        self._changed = threading.Condition()
+        self.process = subprocess.Popen(
+            [sys.executable, *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={
+                **os.environ,
+                "ROS_LOG_DIR": str(log_directory),
+                "FASTRTPS_DEFAULT_PROFILES_FILE": str(ROOT / "launch_py/config/dds_profile.xml"),
+            },
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def output(self) -> str:
+        """All that it printed so far."""
+        with self._changed:
+            return "\n".join(self.lines)
+
+    def wait_for_line(self, text: str) -> str:
+        """Block until a line with this text was printed; return it."""
+
+        def found() -> str | None:
+            return next((line for line in self.lines if text in line), None)
+
+        with self._changed:
+            if not self._changed.wait_for(lambda: found() or self._ended(), TIMEOUT_S):
+                pytest.fail(f"no line with {text!r} within {TIMEOUT_S} s:\n" + self.output)
+            line = found()
+        if line is None:
+            pytest.fail(f"it ended without a line with {text!r}:\n" + self.output)
+        return line
+
+    def tell(self, line: str) -> None:
+        """Write a line to its standard input and wait until it has obeyed."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{line}\n")
+        self.process.stdin.flush()
+        self.wait_for_line(f"{line} done")
+
+    def wait(self) -> int:
+        """Wait for its end; return the exit code."""
+        code = self.process.wait(TIMEOUT_S)
+        self._reader.join(TIMEOUT_S)
+        return code
+
+    def stop(self, number: int = signal.SIGTERM) -> int:
+        """Send a signal and wait for the end; return the exit code."""
+        self.process.send_signal(number)
+        return self.wait()
+
+    def close(self) -> None:
+        """Make sure that it is gone."""
+        if self.process.poll() is None:
+            self.process.terminate()
+            try:
+                self.process.wait(15.0)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait(15.0)
+        self._reader.join(TIMEOUT_S)
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            with self._changed:
+                self.lines.append(line.rstrip("\n"))
+                self._changed.notify_all()
+        with self._changed:
+            self.lines.append("<end>")
+            self._changed.notify_all()
+
+    def _ended(self) -> bool:
+        return bool(self.lines) and self.lines[-1] == "<end>"
+
+
+Run = Callable[..., Program]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    """Return a function that runs Python with arguments; ended with the module at the latest."""
+    programs: list[Program] = []
+
+    def start(*arguments: str) -> Program:
+        program = Program(arguments, tmp_path_factory.mktemp("log"))
+        programs.append(program)
+        return program
+
+    yield start
+    for program in programs:
+        program.close()
+
+
+@pytest.fixture(scope="module")
+def run_manager(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Return a function that starts a manager and, unless told not to, waits until it serves."""
+
+    def start(
+        *arguments: str,
+        parameters: dict[str, Any] | None = None,
+        ros_arguments: Sequence[str] = (),
+        wait: bool = True,
+    ) -> Program:
+        file = tmp_path_factory.mktemp("parameters") / "controllers.yaml"
+        file.write_text(yaml.safe_dump(PARAMETERS if parameters is None else parameters))
+        script = str(Path(__file__).parent / "fake_manager.py")
+        program = run(
+            script, *arguments, "--ros-args", "--params-file", str(file), *ros_arguments
+        )
+        if wait:
+            program.wait_for_line("ready")
+        return program
+
+    return start
+
+
+@pytest.fixture(scope="module")
+def manager(run_manager: Run) -> Program:
+    """Return the module's manager; tests leave it without controllers."""
+    return run_manager()
+
+
+class Control:
+    """What a client says to a controller manager."""
+
+    def __init__(self, client: Any, namespace: str = "") -> None:
+        self._client = client
+        self._prefix = f"{namespace}/controller_manager"
+
+    def call(self, type_name: str, service: str, **fields: Any) -> Any:
+        """Call one of its services."""
+        import controller_manager_msgs.srv
+
+        type_ = getattr(controller_manager_msgs.srv, type_name)
+        return self._client.call(type_, f"{self._prefix}/{service}", type_.Request(**fields))
+
+    def load(self, name: str) -> bool:
+        return self.call("LoadController", "load_controller", name=name).ok
+
+    def configure(self, name: str) -> bool:
+        return self.call("ConfigureController", "configure_controller", name=name).ok
+
+    def unload(self, name: str) -> bool:
+        return self.call("UnloadController", "unload_controller", name=name).ok
+
+    def switch(
+        self, activate: Sequence[str] = (), deactivate: Sequence[str] = (), strictness: int = 2
+    ) -> Any:
+        return self.call(
+            "SwitchController",
+            "switch_controller",
+            activate_controllers=list(activate),
+            deactivate_controllers=list(deactivate),
+            strictness=strictness,
+        )
+
+    def start(self, *names: str) -> None:
+        """Load, configure and activate."""
+        for name in names:
+            assert self.load(name)
+            assert self.configure(name)
+        answer = self.switch(names)
+        assert answer.ok, answer.message
+
+    def list(self) -> list[Any]:
+        return list(self.call("ListControllers", "list_controllers").controller)
+
+    def states(self) -> dict[str, str]:
+        return {controller.name: controller.state for controller in self.list()}
+
+    def wait_for_states(self, **expected: str) -> None:
+        self._client.wait_until(lambda: self.states() == expected, f"states {expected}")
+
+    def unload_all(self) -> None:
+        """Take every controller out."""
+        states = self.states()
+        self.switch((), [name for name, state in states.items() if state == "active"])
+        for name in states:
+            assert self.unload(name)
+
+
+@pytest.fixture
+def control(client: Any, manager: Program) -> Iterator[Control]:
+    """Return a client of the module's manager, which is without controllers before and after."""
+    control = Control(client)
+    yield control
+    control.unload_all()
+
+
+@pytest.fixture
+def control_of(client: Any) -> Callable[[str], Control]:
+    """Return a function that makes a client of the manager in a namespace."""
+    return lambda namespace: Control(client, namespace)
+
+
+@pytest.fixture
+def until() -> Callable[[Callable[[], object]], None]:
+    """Return a function that waits until a condition holds."""
+
+    def wait(condition: Callable[[], object]) -> None:
+        deadline_s = time.monotonic() + TIMEOUT_S
+        event = threading.Event()
+        while not condition():
+            assert time.monotonic() < deadline_s, "the condition never came true"
+            event.wait(0.02)
+
+    return wait
