@@ -2,6 +2,7 @@
 
 import logging
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, ClassVar, Generic, TypeVar
@@ -10,6 +11,7 @@ import numpy as np
 
 from arm_control.interface_configuration import InterfaceConfiguration
 from arm_control.loaned_interfaces import LoanedInterfaces
+from arm_control.parameters import ParameterSpec, build_parameters, specs_of
 
 
 class ReturnType(Enum):
@@ -48,8 +50,8 @@ _NOTHING = LoanedInterfaces((), np.empty(0), ())
 class Controller(ABC, Generic[ParametersT]):
     """Base class of all controllers: no ROS, no hardware of its own.
 
-    The constructor and `parameters_type` run on the control-plane thread; everything else runs on
-    the loop thread. A life-cycle method that raises refuses the transition: `ControllerError` with
+    The constructor and the class methods about parameters run on a control-plane thread,
+    everything else on the loop thread. A life-cycle method that raises refuses the transition: `ControllerError` with
     a sentence for the user, anything else counts as a bug and is logged with its traceback.
 
     Attributes:
@@ -69,6 +71,26 @@ class Controller(ABC, Generic[ParametersT]):
         self.logger = logging.getLogger(context.name)
         self.commands = _NOTHING
         self.states = _NOTHING
+
+    @classmethod
+    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
+        """Return the controller's parameters.
+
+        Override it where the names of some depend on the values of others.
+
+        Args:
+            given: what parameter files and arguments say, by full name.
+        """
+        return specs_of(cls.parameters_type)
+
+    @classmethod
+    def build_parameters(cls, values: Mapping[str, Any]) -> ParametersT:
+        """Return the values of all `parameter_specs` as what `on_configure` takes.
+
+        Raises:
+            ParameterError: a value cannot be used.
+        """
+        return build_parameters(cls.parameters_type, values)
 
     @abstractmethod
     def command_interface_configuration(self) -> InterfaceConfiguration:

@@ -12,7 +12,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.inertia_repair import (
     LARGEST_GYRATION_M2,
     PrincipalInertia,
-    massless,
+    missing_inertia,
     repair_inertia,
 )
 from arm_gazebo.link_geometry import LinkGeometry, wxyz
@@ -104,15 +104,16 @@ class BodyTree:
 
     def _add_link(self, body: mujoco.MjsBody, link: Link, moves: bool) -> None:
         self._geometry.add(body, link)
-        if link.inertial is not None:
-            inertia = repair_inertia(link.inertial, self._doubtful_box(link.inertial, link))
+        inertial = link.inertial
+        if inertial is not None and (inertial.mass > 0 or moves):
+            inertia = repair_inertia(inertial, self._doubtful_box(inertial, link))
             for remark in inertia.remarks:
                 self._report.warn(f"link '{link.name}'", remark, link.line)
         elif moves and not self._carries_mass(link.name):
-            inertia = massless()
+            inertia = missing_inertia(self._geometry.bounds(link))
             self._report.warn(
                 f"link '{link.name}'",
-                f"it moves but has no mass; {inertia.mass:g} kg is used",
+                f"it moves but has no mass; {inertia.mass:.3g} kg is used, going by its size",
                 link.line,
             )
         else:
@@ -125,12 +126,12 @@ class BodyTree:
         doubtful = trace > LARGEST_GYRATION_M2 * inertial.mass
         return self._geometry.bounds(link) if doubtful else None
 
-    def _carries_mass(self, link: str) -> bool:
+    def _carries_mass(self, name: str) -> bool:
         """Return whether something with mass is fixed to a link."""
-        return any(
-            self._robot.link(joint.child).inertial is not None or self._carries_mass(joint.child)
-            for joint in self._robot.children(link)
-            if joint.type == "fixed"
+        fixed = [j.child for j in self._robot.children(name) if j.type == "fixed"]
+        links = [self._robot.link(child) for child in fixed]
+        return any(link.inertial is not None and link.inertial.mass > 0 for link in links) or any(
+            self._carries_mass(child) for child in fixed
         )
 
     def _add_joints(self, body: mujoco.MjsBody, joint: Joint) -> None:

@@ -3,7 +3,7 @@
 from arm_gazebo.command_stream import CommandStream
 from arm_gazebo.drive_mode import SERVOED, DriveMode
 from arm_gazebo.robot_joint import RobotJoint
-from arm_gazebo.servo_tuning import EFFORT_SHARE
+from arm_gazebo.servo_tuning import EFFORT_SHARE, MotionBounds
 from arm_gazebo.setpoint import Setpoint
 
 
@@ -36,28 +36,20 @@ class DrivenJoint:
         "start_velocity",
     )
 
-    def __init__(
-        self,
-        joint: RobotJoint,
-        braking: float,
-        jerkless: float,
-        stiffness: float,
-        period_s: float,
-    ) -> None:
+    def __init__(self, joint: RobotJoint, bounds: MotionBounds, period_s: float) -> None:
         self.joint = joint
         self.mode = DriveMode.LIMP
         self.effort = 0.0
         self.setpoint = Setpoint(joint.initial)
         self.start_position = joint.initial
         self.start_velocity = 0.0
-        # Looked up in every tick, so copied out of the joint.
+        # Looked up in every tick, so copied out of their classes.
         self._speed = joint.velocity
         self._effort = joint.effort
-        self._braking = braking
-        self._jerkless = jerkless
+        self._braking = bounds.braking
+        self._jerkless = bounds.jerkless
+        self._slack = bounds.slack
         self._period_s = period_s
-        # Further from the joint than this, the set-point could not raise the effort any more.
-        self._slack = joint.effort / stiffness
         self._stream = CommandStream(joint.initial, period_s)
         self._velocity = 0.0
 

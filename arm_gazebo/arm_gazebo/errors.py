@@ -7,8 +7,7 @@ GazeboError
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
 ├── TimingError     a control rate or a physics step that cannot be
-├── SettingsError   a parameter of the simulation node that makes no sense
-└── ServoError      a joint or a command interface that the servos do not have
+└── SettingsError   a parameter of the simulation node that makes no sense
 """
 
 
@@ -42,7 +41,3 @@ class TimingError(GazeboError):
 
 class SettingsError(GazeboError):
     """A parameter of the simulation node makes no sense; the message names it and what would."""
-
-
-class ServoError(GazeboError):
-    """A command interface is asked of a joint that does not have it."""

@@ -15,6 +15,8 @@ SMALLEST_MASS_KG = 1e-3
 SMALLEST_INERTIA = 1e-9
 """Below this, in kg m2, an inertia about an axis is taken for missing: a 1 mg bead of 30 mm."""
 DEFAULT_INERTIA = 1e-6
+HOLLOW_KG_M3 = 300.0
+"""Mass of a robot's link over the volume of the box around it: between 200 and 500 in practice."""
 LARGEST_GYRATION_M2 = 4.0
 """Inertia over mass that no link of an arm has: a mesh in millimetres taken for metres has it."""
 ROUNDING = 1e-3
@@ -40,11 +42,20 @@ class PrincipalInertia:
     remarks: tuple[str, ...] = ()
 
 
-def massless() -> PrincipalInertia:
-    """Return what a moving link without any mass gets: too little to be felt."""
-    return PrincipalInertia(
-        SMALLEST_MASS_KG, np.zeros(3), np.array([1.0, 0, 0, 0]), np.full(3, DEFAULT_INERTIA)
-    )
+def missing_inertia(box: Array | None) -> PrincipalInertia:
+    """Return what a moving link that is given no mass gets.
+
+    Args:
+        box: lowest and highest corner of the link's shapes, shape (2, 3), taken for a hollow
+            body; None for a mere frame, which gets too little to be felt.
+    """
+    upright = np.array([1.0, 0.0, 0.0, 0.0])
+    if box is None:
+        return PrincipalInertia(SMALLEST_MASS_KG, np.zeros(3), upright, np.full(3, DEFAULT_INERTIA))
+    size = box[1] - box[0]
+    mass = max(HOLLOW_KG_M3 * float(size.prod()), SMALLEST_MASS_KG)
+    moments = np.maximum(_box_moments(mass, size), DEFAULT_INERTIA)
+    return PrincipalInertia(mass, box.mean(axis=0), upright, moments)
 
 
 def repair_inertia(inertial: Inertial, box: NDArray[np.float64] | None = None) -> PrincipalInertia:
@@ -86,15 +97,19 @@ def _implausible(
     if box is None:
         remarks.append(f"{finding}; it is used as it is")
         return moments, axes
-    x, y, z = (box[1] - box[0]) ** 2
-    moments = mass / 12 * np.array([y + z, x + z, x + y])
+    moments = _box_moments(mass, box[1] - box[0])
     remarks.append(f"{finding}; that of its bounding box is used, up to {moments.max():.3g} kg m2")
     return moments, np.eye(3)
 
 
+def _box_moments(mass: float, size: Array) -> Array:
+    x, y, z = size**2
+    return mass / 12 * np.array([y + z, x + z, x + y])
+
+
 def _physical(moments: Array, remarks: list[str]) -> Array:
     """Return moments above 0, none of which exceeds the sum of the other two."""
-    if moments[-1] < SMALLEST_INERTIA and moments.max() < SMALLEST_INERTIA:
+    if moments.max() < SMALLEST_INERTIA:
         remarks.append(f"it has no inertia; {DEFAULT_INERTIA:g} kg m2 is used")
         return np.full(3, DEFAULT_INERTIA)
     largest = moments.max()

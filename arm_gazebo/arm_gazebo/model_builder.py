@@ -23,11 +23,11 @@ from arm_gazebo.camera_mount import add_cameras
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.collision_policy import leave_out_neighbours, masks_for
 from arm_gazebo.errors import ModelError
+from arm_gazebo.footing import Footing
 from arm_gazebo.initial_state import initial_positions
 from arm_gazebo.link_geometry import LinkGeometry
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mimic_joints import add_equalities, followings
-from arm_gazebo.resting_height import lowest_point
 from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.world_file import check_world, load_world
 
@@ -78,8 +78,8 @@ def build_model(
     model = _compile(spec, robot, world)
     start = initial_positions(robot, hardware, follow, report)
     qpos = _initial_qpos(model, start)
-    if free and options.spawn is None:
-        _stand_on_floor(model, qpos, robot.root)
+    if free:
+        _stand(model, qpos, robot.root, options.spawn, report)
     if options.self_collide:
         links = [name for name in bodies if name != WORLD_LINK]
         leave_out_neighbours(spec, model, qpos, links, report)
@@ -138,15 +138,29 @@ def _initial_qpos(model: mujoco.MjModel, start: Mapping[str, float]) -> NDArray[
     return qpos
 
 
-def _stand_on_floor(model: mujoco.MjModel, qpos: NDArray[np.float64], root: str) -> None:
-    """Lift or lower a free robot until its lowest point is at z = 0."""
+def _stand(
+    model: mujoco.MjModel,
+    qpos: NDArray[np.float64],
+    root: str,
+    spawn: Pose | None,
+    report: BuildReport,
+) -> None:
+    """Put a free robot on the floor, unless a pose is given, and say if it will topple."""
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
     body = model.body(root)
-    bottom = lowest_point(model, data, body.id)
-    if bottom is not None:
-        qpos[model.jnt_qposadr[body.jntadr[0]] + 2] -= bottom
+    footing = Footing(model, data, body.id)
+    if spawn is None and footing.lowest is not None:
+        qpos[model.jnt_qposadr[body.jntadr[0]] + 2] -= footing.lowest
+    overhang = footing.overhang()
+    if overhang > 0:
+        report.warn(
+            f"link '{root}'",
+            f"it stands free, and the centre of mass is {overhang * 1000:.0f} mm outside its "
+            "feet: the robot will topple",
+        )
 
 
 def _open_clip_planes(model: mujoco.MjModel, cameras: Sequence[CameraSensor]) -> None:

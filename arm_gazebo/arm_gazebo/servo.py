@@ -62,14 +62,8 @@ class Servo:
         # behind its velocity.
         self._lead_s = TIME_CONSTANT_S - timing.step_s
         self._joints = tuple(
-            DrivenJoint(joint, *bounds, timing.period_s)
-            for joint, *bounds in zip(
-                joints,
-                tuning.braking.tolist(),
-                tuning.jerkless.tolist(),
-                tuning.stiffness.tolist(),
-                strict=True,
-            )
+            DrivenJoint(joint, tuning.bounds(index), timing.period_s)
+            for index, joint in enumerate(joints)
         )
         self._servoed: tuple[tuple[int, DrivenJoint], ...] = ()
         self._bind(model, data, joints)

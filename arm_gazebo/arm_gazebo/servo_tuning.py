@@ -42,15 +42,31 @@ ENDLESS_RANGE = (-math.pi, math.pi)
 
 
 @dataclass(frozen=True, slots=True)
+class MotionBounds:
+    """What the set-point of one joint may do; rad or m, and per second.
+
+    Attributes:
+        braking: deceleration that the joint can have anywhere, whatever the others do.
+        jerkless: highest acceleration at all.
+        slack: how far off the joint a set-point makes the drive use all of its effort.
+    """
+
+    braking: float
+    jerkless: float
+    slack: float
+
+
+@dataclass(frozen=True, slots=True)
 class ServoTuning:
-    """Gains and bounds of the driven joints, each of shape (n,), in the joints' order.
+    """Gains and bounds of the driven joints, arrays of shape (n,) in the joints' order.
 
     Attributes:
         stiffness: N m/rad or N/m.
         damping: N m s/rad or N s/m.
-        braking: acceleration that every joint can have at once anywhere, rad/s2 or m/s2.
-        jerkless: highest acceleration at all, rad/s2 or m/s2.
-        gravity: largest effort that gravity asks for, N m or N.
+        efforts: limits, N m or N; inf for none.
+        braking: accelerations that all joints can have at once anywhere, rad/s2 or m/s2.
+        jerkless: highest accelerations at all, rad/s2 or m/s2.
+        gravity: largest efforts that gravity asks for, N m or N.
         followers: inertia that mimicking joints add to that of their leader, kg m2 or kg.
         coupling: shape (nv, n): velocities of all degrees of freedom for those of the driven
             joints; mimicking joints move along.
@@ -58,11 +74,20 @@ class ServoTuning:
 
     stiffness: Array
     damping: Array
+    efforts: Array
     braking: Array
     jerkless: Array
     gravity: Array
     followers: Array
     coupling: Array
+
+    def bounds(self, index: int) -> MotionBounds:
+        """Return what one joint's set-point may do."""
+        return MotionBounds(
+            braking=float(self.braking[index]),
+            jerkless=float(self.jerkless[index]),
+            slack=float(self.efforts[index] / self.stiffness[index]),
+        )
 
 
 def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> ServoTuning:
@@ -90,6 +115,7 @@ def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> Se
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
+        efforts=efforts,
         braking=_shared_accelerations(worst, spare, jerkless),
         jerkless=jerkless,
         gravity=gravity,

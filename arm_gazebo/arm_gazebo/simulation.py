@@ -45,6 +45,15 @@ class Simulation:
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
         tuning = tune(self.model, driven, built.qpos)
+        for joint, gravity in zip(driven, tuning.gravity.tolist(), strict=True):
+            if gravity > joint.effort:
+                logger.warning(
+                    "joint '%s': its effort limit of %.4g is below the %.4g that gravity asks for "
+                    "in some poses; there it will sink",
+                    joint.name,
+                    joint.effort,
+                    gravity,
+                )
         self.servo = Servo(self.model, self.data, driven, tuning, timing)
         self._failures: list[str] = []
         self._ticks_to_save = 0

@@ -42,12 +42,13 @@ class NodeProcess:
     thread.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, stop: threading.Event) -> None:
+        """Make the executor; `stop` is set to end the process."""
         from rclpy.executors import SingleThreadedExecutor
 
         self.executor = SingleThreadedExecutor()
         self.exit_code = EXIT_OK
-        self._stop = threading.Event()
+        self._stop = stop
         self._spin_ended = threading.Event()
         self._spinning: threading.Thread | None = None
         self._failures: dict[tuple[type[Exception], str, int | None], float] = {}
@@ -118,11 +119,22 @@ def run_process(
 
     A missing interface package is one sentence on stderr and exit code 2.
     """
-    try:
-        prepare_environment()
-    except MissingInterfacesError as error:
-        sys.stderr.write(f"{error}\n")
-        return EXIT_USAGE
+    # Before the imports below, which take some tenths of a second: Ctrl-C is heard from now on.
+    with _signals_set(threading.Event()) as stop:
+        try:
+            prepare_environment()
+        except MissingInterfacesError as error:
+            sys.stderr.write(f"{error}\n")
+            return EXIT_USAGE
+        return _run_with_ros(application, argv, user_errors, stop)
+
+
+def _run_with_ros(
+    application: Application,
+    argv: Sequence[str] | None,
+    user_errors: tuple[type[Exception], ...],
+    stop: threading.Event,
+) -> int:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
     from rclpy.utilities import try_shutdown
@@ -138,16 +150,18 @@ def run_process(
         sys.stderr.write(f"cannot start ROS: {first_line(error)}\n")
         return EXIT_USAGE
     try:
-        return _run_initialised(application, user_errors)
+        return _run_initialised(application, user_errors, stop)
     finally:
         try_shutdown()
 
 
-def _run_initialised(application: Application, user_errors: tuple[type[Exception], ...]) -> int:
+def _run_initialised(
+    application: Application, user_errors: tuple[type[Exception], ...], stop: threading.Event
+) -> int:
     from arm_node.log_bridge import bridge_logging
 
-    process = NodeProcess()
-    with _signals_stop(process), bridge_logging():
+    process = NodeProcess(stop)
+    with bridge_logging():
         try:
             with application(process):
                 process.start_spinning()
@@ -186,14 +200,16 @@ def first_line(error: BaseException) -> str:
 
 
 @contextmanager
-def _signals_stop(process: NodeProcess) -> Iterator[None]:
+def _signals_set(stop: threading.Event) -> Iterator[threading.Event]:
+    """Let the signals that mean the end set an event, and nothing else."""
+
     def ask_to_stop(_number: int, _frame: FrameType | None) -> None:
-        process.stop()
+        stop.set()
 
     numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     previous = {number: signal.signal(number, ask_to_stop) for number in numbers}
     try:
-        yield
+        yield stop
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)

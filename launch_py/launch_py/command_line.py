@@ -101,6 +101,9 @@ def find_launch_file(words: Sequence[str], default_file: tuple[str, str] | None)
         NotFoundError: there is no such package or launch file.
     """
     packages = Packages(os.environ)
+    for word in words:
+        if "=" in word and not os.path.exists(word):
+            raise UsageError(f"{word!r}: launch arguments are written name:=value")
     match words:
         case []:
             if default_file is None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 MAX_LISTED = 15
-"""More names than this are not listed in an error message; only near ones are named."""
+"""More names than this are not listed in an error message: nobody would read them."""
 
 
 def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> str:
@@ -26,5 +26,6 @@ def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> s
         return f"did you mean {' or '.join(repr(n) for n in near)}?"
     if not names:
         return f"{noun} none"
-    listed = ", ".join(names[:MAX_LISTED])
-    return f"{noun} {listed}" + (", ..." if len(names) > MAX_LISTED else "")
+    if len(names) > MAX_LISTED:
+        return f"{noun} {len(names)}, none with a name like it"
+    return f"{noun} {', '.join(names)}"

@@ -123,6 +123,11 @@ class Packages:
                 files.update(f for f in os.listdir(folder) if os.access(f"{folder}/{f}", os.X_OK))
         indexed = self._indexed_packages()
         if not own and not files and package not in indexed:
+            homes = sorted({script.package for script in scripts if script.name == name})
+            if homes:
+                raise NotFoundError(
+                    f"no package {package!r}; executable {name!r} is in package {homes[0]!r}"
+                )
             raise self._no_package(package, indexed | {script.package for script in scripts})
         known = describe_known(name, files | {script.name for script in own}, "it has")
         raise NotFoundError(f"package {package!r} has no executable {name!r}; {known}")

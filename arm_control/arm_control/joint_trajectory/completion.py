@@ -10,9 +10,7 @@ from arm_control.joint_trajectory.motion import ACCELERATION, POSITION, VELOCITY
 Array = NDArray[np.floating[Any]]
 
 
-def hold_joints(
-    motions: Array, held: NDArray[np.bool_], position: Array
-) -> NDArray[np.float64]:
+def hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> NDArray[np.float64]:
     """Return way points in which some joints stand still.
 
     Args:
@@ -42,9 +40,7 @@ def integrate(times_s: Array, motions: Array, start: Array) -> NDArray[np.float6
     """
     chain = np.concatenate([start[None], motions])
     halves = np.diff(np.maximum(times_s, 0.0), prepend=0.0)[:, None] / 2.0
-    position, velocity, acceleration = (
-        chain[:, row] for row in (POSITION, VELOCITY, ACCELERATION)
-    )
+    position, velocity, acceleration = (chain[:, row] for row in (POSITION, VELOCITY, ACCELERATION))
     open_position = np.isnan(position)
     open_velocity = open_position & np.isnan(velocity)
     acceleration[_and_before(open_velocity) & np.isnan(acceleration)] = 0.0

@@ -73,7 +73,7 @@ class Constraints:
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedScaling:
+class SpeedScalingParameters:
     """How fast trajectory time runs."""
 
     initial_scaling_factor: float = parameter(1.0, "Factor to begin with", read_only=True)
@@ -130,7 +130,7 @@ class CommonParameters:
     smooth_replacement_time: float = parameter(
         0.0, "Join a new trajectory without a step, within so many s; 0 for upstream's step"
     )
-    speed_scaling: SpeedScaling = SpeedScaling()
+    speed_scaling: SpeedScalingParameters = SpeedScalingParameters()
     constraints: Constraints = Constraints()
 
 
@@ -229,6 +229,4 @@ def _at_least(least: float, name: str, value: float) -> None:
 
 def _one_of(choices: Sequence[str], name: str, value: str) -> None:
     if value not in choices:
-        raise ParameterError(
-            f"parameter '{name}' is '{value}'; it may be {' or '.join(choices)}"
-        )
+        raise ParameterError(f"parameter '{name}' is '{value}'; it may be {' or '.join(choices)}")

@@ -138,4 +138,6 @@ def _resolve(default: float, asked: float, off: float, what: str) -> float:
         return asked
     if asked == DISABLED:
         return off
-    raise ToleranceError(f"{what} is {asked:f}; it may be positive, 0 for the default or -1 for none")
+    raise ToleranceError(
+        f"{what} is {asked:f}; it may be positive, 0 for the default or -1 for none"
+    )

@@ -82,9 +82,7 @@ def _name_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator
         seen.add(name)
 
 
-def _end_faults(
-    request: TrajectoryRequest, rules: TrajectoryRules, now_s: float
-) -> Iterator[str]:
+def _end_faults(request: TrajectoryRequest, rules: TrajectoryRules, now_s: float) -> Iterator[str]:
     last = request.points[-1]
     if not rules.allow_moving_end:
         for name, velocity in zip(request.joint_names, last.velocities, strict=False):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from arm_control.controller_switch import Strictness
 from arm_control.errors import ParameterError
-from arm_control.parameters import specs_of
+from arm_control.parameters import build_parameters, specs_of
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.node_arguments import manager_arguments
 from arm_control.ros.parameter_node import ParameterNode
@@ -49,9 +49,10 @@ class ControllerManagerNode(ParameterNode):
             use_global_arguments=False,
             allow_undeclared_parameters=True,
         )
-        self.declare_specs(specs_of(ManagerSettings))
+        specs = specs_of(ManagerSettings)
+        self.declare_specs(specs)
         self.declare_rest()
-        self.settings: ManagerSettings = self.read_parameters(ManagerSettings)
+        self.settings: ManagerSettings = build_parameters(ManagerSettings, self.values_of(specs))
         if self.settings.update_rate < 1:
             raise ParameterError(
                 f"parameter 'update_rate' of /{name} must be positive, "

@@ -48,10 +48,10 @@ class ControllerNode(ParameterNode):
             use_global_arguments=False,
         )
         self.controller = controller
-        self._general = _general_parameters(controller.context.update_rate_hz)
-        specs = (*specs_of(controller.parameters_type), *specs_of(self._general))
-        self.declare_specs(specs)
-        self.warn_of_unknown([spec.name for spec in specs], type_name)
+        self._specs = controller.parameter_specs(self.given_parameters())
+        general = specs_of(_general_parameters(controller.context.update_rate_hz))
+        self.declare_specs((*self._specs, *general))
+        self.warn_of_unknown([spec.name for spec in (*self._specs, *general)], type_name)
         self._adapter = self._make_adapter()
         self._events = self.create_publisher(
             TransitionEvent, "~/transition_event", QoSProfile(depth=EVENT_DEPTH)
@@ -63,7 +63,7 @@ class ControllerNode(ParameterNode):
         Raises:
             ParameterError: a value does not fit.
         """
-        parameters = self.read_parameters(self.controller.parameters_type)
+        parameters = self.controller.build_parameters(self.values_of(self._specs))
         rate_hz = self.get_parameter("update_rate").value
         if not isinstance(rate_hz, int) or rate_hz < 0:
             raise ParameterError(f"parameter 'update_rate' must not be negative, but is {rate_hz}")

@@ -26,6 +26,7 @@ from arm_control.throttle import Throttle
 logger = logging.getLogger(__name__)
 
 POLL_S = 0.02
+PATIENCE_S = 1.0
 REPORT_INTERVAL_S = 10.0
 ATTEMPTS = 3
 
@@ -187,14 +188,14 @@ class ManagerClient:
         clock = MonotonicClock()
         start_s = clock.now_s()
         throttle = Throttle(REPORT_INTERVAL_S, clock)
-        throttle.permits()
         while not client.service_is_ready():
-            if timeout_s and clock.now_s() - start_s >= timeout_s:
+            waited_s = clock.now_s() - start_s
+            if timeout_s and waited_s >= timeout_s:
                 raise ManagerUnreachableError(
                     f"no service {client.srv_name} after {timeout_s:g} s; is a controller "
                     f"manager named {self._manager} running, in this ROS domain?"
                 )
-            if throttle.permits():
+            if waited_s >= PATIENCE_S and throttle.permits():
                 logger.info("waiting for service %s", client.srv_name)
             self._check_interrupted()
             time.sleep(POLL_S)

@@ -9,7 +9,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from arm_control.errors import ParameterError
-from arm_control.parameters import ParameterSpec, build_parameters, specs_of
+from arm_control.parameters import ParameterSpec
 
 _LIST_TYPES = {
     bool: Parameter.Type.BOOL_ARRAY,
@@ -91,16 +91,9 @@ class ParameterNode(Node):
                 ", ".join(names),
             )
 
-    def read_parameters(self, parameters_type: type[Any]) -> Any:
-        """Return the present values as an instance of the dataclass.
-
-        Raises:
-            ParameterError: a value has the wrong type.
-        """
-        return build_parameters(
-            parameters_type,
-            {spec.name: self.get_parameter(spec.name).value for spec in specs_of(parameters_type)},
-        )
+    def values_of(self, specs: Iterable[ParameterSpec]) -> dict[str, Any]:
+        """Return the present values of declared parameters."""
+        return {spec.name: self.get_parameter(spec.name).value for spec in specs}
 
     def _declare(self, spec: ParameterSpec, value: Any) -> None:
         if spec.is_list and not value:

@@ -8,8 +8,6 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from arm_gazebo.simulated_hardware import SimulatedHardware
-from arm_gazebo.simulation import Simulation
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
@@ -29,6 +27,8 @@ from arm_gazebo.model_builder import build_model
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
+from arm_gazebo.simulated_hardware import SimulatedHardware
+from arm_gazebo.simulation import Simulation
 from arm_gazebo.simulation_tick import SimulationTick
 from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess

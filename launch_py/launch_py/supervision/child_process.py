@@ -56,8 +56,7 @@ class ChildProcess:
         on_end: Callable[[int], None],
         before_kill: Callable[[], None],
     ) -> None:
-        self.killed = False
-        """Whether it had to be ended by SIGKILL."""
+        self._killed = False
         self.ended = False
         self._loop = loop
         self._on_line = on_line
@@ -67,12 +66,26 @@ class ChildProcess:
         self._escalation: Timer | None = None
         self._exit_code: int | None = None
         self._process = self._start(spec)
-        self.pid = self._process.pid
+
+    @property
+    def pid(self) -> int:
+        """The process id, also that of its session and group."""
+        return self._process.pid
+
+    @property
+    def killed(self) -> bool:
+        """Whether it had to be ended by SIGKILL."""
+        return self._killed
 
     def stop(self, delays: StopDelays) -> None:
-        """Send SIGINT to the group, then SIGTERM, then SIGKILL, while it does not end."""
-        self._signal(signal.SIGINT)
-        self._signal(signal.SIGCONT)  # A stopped process would not even see it.
+        """Send SIGINT to the process, then SIGTERM and SIGKILL to its group, until it ends.
+
+        Only the leader is asked politely: it knows best how to end its children. What it leaves
+        behind gets SIGTERM.
+        """
+        if self._exit_code is None:
+            linux.signal_process(self.pid, signal.SIGINT)
+            linux.signal_process(self.pid, signal.SIGCONT)  # A stopped one would not even see it.
         self._escalate(delays.sigterm_timeout_s, lambda: self._terminate(delays))
 
     def kill(self) -> None:
@@ -81,7 +94,7 @@ class ChildProcess:
             return
         self._before_kill()
         if self._exit_code is None:
-            self.killed = True
+            self._killed = True
         else:
             # What is left may be a zombie that its own parent never reaps: do not wait for it.
             self._escalate(GROUP_GRACE_S, self._end)

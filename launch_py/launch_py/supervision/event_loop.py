@@ -63,7 +63,15 @@ class EventLoop:
         """Call back until `until()` is true; it is asked after each round of callbacks."""
         while not until():
             self._wait()
-            self._call_due_timers()
+            self.call_due_timers()
+
+    def call_due_timers(self) -> None:
+        """Call back for the timers that are due; `run` does this by itself."""
+        now_s = self.clock()
+        while self._timers and self._timers[0][0] <= now_s:
+            timer = heapq.heappop(self._timers)[2]
+            if not timer.cancelled:
+                timer.callback()
 
     def close(self) -> None:
         """Release the selector."""
@@ -77,13 +85,6 @@ class EventLoop:
             # An earlier callback of this round may have removed this one.
             if key.fd in self._selector.get_map():
                 key.data()
-
-    def _call_due_timers(self) -> None:
-        now_s = self.clock()
-        while self._timers and self._timers[0][0] <= now_s:
-            timer = heapq.heappop(self._timers)[2]
-            if not timer.cancelled:
-                timer.callback()
 
     @contextmanager
     def signals(self, callbacks: Mapping[signal.Signals, Callback]) -> Iterator[None]:

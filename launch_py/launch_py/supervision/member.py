@@ -11,7 +11,6 @@ from launch_py.errors import StartError
 from launch_py.plan import ProcessStep, StopDelays
 from launch_py.readiness import LogLine, Notified, Probe, ProcessExited, Readiness
 from launch_py.restart_policy import RestartHistory
-from launch_py.supervision.child_process import ChildProcess
 from launch_py.supervision.event_loop import EventLoop, Timer
 from launch_py.supervision.reporter import Reporter
 
@@ -48,6 +47,32 @@ class MemberListener(Protocol):
         ...
 
 
+class Child(Protocol):
+    """A started process; see `ChildProcess`."""
+
+    @property
+    def pid(self) -> int:
+        """The process id, also that of its session and group."""
+        ...
+
+    @property
+    def killed(self) -> bool:
+        """Whether it had to be ended by SIGKILL."""
+        ...
+
+    def stop(self, delays: StopDelays) -> None:
+        """Ask it to end, with signals of growing force."""
+        ...
+
+    def kill(self) -> None:
+        """End it now."""
+        ...
+
+    def reap(self) -> None:
+        """Notice whether it has ended."""
+        ...
+
+
 class ProcessRunner(Protocol):
     """Starts processes and watches conditions from outside them."""
 
@@ -56,7 +81,7 @@ class ProcessRunner(Protocol):
         step: ProcessStep,
         on_line: Callable[[str, str], None],
         on_end: Callable[[int], None],
-    ) -> ChildProcess:
+    ) -> Child:
         """Start the process of a step; raises StartError."""
         ...
 
@@ -92,7 +117,7 @@ class Member:
         """How it ended, to be put after its name in a sentence."""
         self.status = ""
         """What it last said of itself; see `NotifySocket`."""
-        self.child: ChildProcess | None = None
+        self.child: Child | None = None
         self._loop = loop
         self._runner = runner
         self._reporter = reporter

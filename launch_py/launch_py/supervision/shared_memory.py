@@ -43,7 +43,11 @@ class SharedMemoryLedger:
                 self._owned.add(_stem(name))
 
     def sweep(self) -> list[str]:
-        """Remove the noted segments that have no living owner; return their names."""
+        """Remove the noted segments that have no living owner; return their names.
+
+        What has been removed stays noted: a survivor that still sends to a dead process makes the
+        segment of its port anew, and leaves it behind even when it ends in order itself.
+        """
         removed: list[str] = []
         for stem in sorted(self._owned):
             if self._is_abandoned(stem):
@@ -52,7 +56,6 @@ class SharedMemoryLedger:
                     with suppress(OSError):
                         os.unlink(os.path.join(self._folder, name))
                         removed.append(name)
-                self._owned.discard(stem)
         return removed
 
     def _lock_files(self) -> list[tuple[str, int]]:

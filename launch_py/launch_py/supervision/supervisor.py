@@ -126,7 +126,7 @@ class Supervisor:
         up_s = int(self._loop.clock() - self._started_s)
         facts = [f"up {up_s // 60}:{up_s % 60:02d}"]
         facts.append(f"{len(running)} process{'' if len(running) == 1 else 'es'}")
-        if self.stopping:
+        if self.stopping and running:
             facts.append("stopping " + ", ".join(m.name for m in running))
         elif not self._announced:
             late = sorted(name for name in self._start_up if not self.members[name].ready)

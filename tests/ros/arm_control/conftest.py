@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -149,9 +148,7 @@ def run_manager(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Run:
         file = tmp_path_factory.mktemp("parameters") / "controllers.yaml"
         file.write_text(yaml.safe_dump(PARAMETERS if parameters is None else parameters))
         script = str(Path(__file__).parent / "fake_manager.py")
-        program = run(
-            script, *arguments, "--ros-args", "--params-file", str(file), *ros_arguments
-        )
+        program = run(script, *arguments, "--ros-args", "--params-file", str(file), *ros_arguments)
         if wait:
             program.wait_for_line("ready")
         return program
@@ -236,17 +233,3 @@ def control(client: Any, manager: Program) -> Iterator[Control]:
 def control_of(client: Any) -> Callable[[str], Control]:
     """Return a function that makes a client of the manager in a namespace."""
     return lambda namespace: Control(client, namespace)
-
-
-@pytest.fixture
-def until() -> Callable[[Callable[[], object]], None]:
-    """Return a function that waits until a condition holds."""
-
-    def wait(condition: Callable[[], object]) -> None:
-        deadline_s = time.monotonic() + TIMEOUT_S
-        event = threading.Event()
-        while not condition():
-            assert time.monotonic() < deadline_s, "the condition never came true"
-            event.wait(0.02)
-
-    return wait

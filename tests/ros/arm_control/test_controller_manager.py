@@ -1,5 +1,6 @@
 """The controller manager as clients of ros2_control see it."""
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -20,9 +21,7 @@ BEST_EFFORT, STRICT = 1, 2
 
 def test_the_services_of_a_real_one_are_there(control: Any, client: Any) -> None:
     control.list()
-    services = dict(
-        client.node.get_service_names_and_types_by_node("controller_manager", "/")
-    )
+    services = dict(client.node.get_service_names_and_types_by_node("controller_manager", "/"))
     expected = {
         "cleanup_controller": "CleanupController",
         "configure_controller": "ConfigureController",
@@ -287,9 +286,7 @@ def test_there_is_a_node_for_each_controller_and_component(control: Any, client:
 
 def test_controllers_have_no_life_cycle_services(control: Any, client: Any) -> None:
     control.start("joint_state_broadcaster")
-    client.wait_until(
-        lambda: "joint_state_broadcaster" in client.node.get_node_names(), "the node"
-    )
+    client.wait_until(lambda: "joint_state_broadcaster" in client.node.get_node_names(), "the node")
     services = client.node.get_service_names_and_types_by_node("joint_state_broadcaster", "/")
     assert not [name for name, types in services if "lifecycle_msgs" in types[0]]
 
@@ -315,16 +312,12 @@ def test_a_late_listener_learns_the_activity(control: Any, client: Any, latched:
     from controller_manager_msgs.msg import ControllerManagerActivity
 
     control.start("position_controller")
-    activity = client.subscribe(
-        ControllerManagerActivity, "/controller_manager/activity", latched
-    )
+    activity = client.subscribe(ControllerManagerActivity, "/controller_manager/activity", latched)
     message = activity.wait_for(1)[0]
     assert [(c.name, c.state.label) for c in message.controllers] == [
         ("position_controller", "active")
     ]
-    assert [(c.name, c.state.id) for c in message.hardware_components] == [
-        ("HardwareInterface", 3)
-    ]
+    assert [(c.name, c.state.id) for c in message.hardware_components] == [("HardwareInterface", 3)]
     control.switch([], ["position_controller"])
     message = activity.wait_for(2)[-1]
     assert message.controllers[0].state.label == "inactive"
@@ -375,7 +368,7 @@ def test_stamps_are_one_period_apart(control: Any, client: Any) -> None:
     control.start("joint_state_broadcaster")
     messages = client.subscribe(JointState, "/joint_states").wait_for(20)
     stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in messages]
-    steps = {b - a for a, b in zip(stamps, stamps[1:], strict=False)}
+    steps = {b - a for a, b in itertools.pairwise(stamps)}
     assert all(step > 0 and step % 10_000_000 == 0 for step in steps)
 
 
@@ -401,9 +394,7 @@ def test_topics_can_be_local(control: Any, client: Any, run_manager: Any) -> Non
         "/**/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}},
         "/**/jsb": {"ros__parameters": {"use_local_topics": True}},
     }
-    run_manager(
-        "--start", "jsb", parameters=parameters, ros_arguments=("-r", "__ns:=/left")
-    )
+    run_manager("--start", "jsb", parameters=parameters, ros_arguments=("-r", "__ns:=/left"))
     client.subscribe(JointState, "/left/jsb/joint_states").wait_for(1)
 
 
@@ -576,9 +567,7 @@ def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager
 # Namespaces, failures, the end
 
 
-def test_all_of_it_can_live_in_a_namespace(
-    run_manager: Any, control_of: Any, client: Any
-) -> None:
+def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, client: Any) -> None:
     from sensor_msgs.msg import JointState
 
     program = run_manager(
@@ -599,9 +588,7 @@ def test_all_of_it_can_live_in_a_namespace(
     assert program.stop() == 0
 
 
-def test_hardware_that_fails_takes_its_controllers_down(
-    run_manager: Any, control_of: Any
-) -> None:
+def test_hardware_that_fails_takes_its_controllers_down(run_manager: Any, control_of: Any) -> None:
     program = run_manager(
         "--start",
         "jsb",

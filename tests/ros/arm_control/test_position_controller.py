@@ -15,12 +15,12 @@ def publish(client: Any) -> Callable[..., None]:
     """Return a function that publishes one command."""
     from std_msgs.msg import Float64MultiArray
 
-    publishers: dict[Any, Any] = {}
+    publishers: list[Any] = []
 
-    def send(*data: float, qos: Any = 10) -> None:
-        if qos not in publishers:
-            publishers[qos] = client.publisher(Float64MultiArray, COMMANDS, qos)
-        publishers[qos].publish(Float64MultiArray(data=list(data)))
+    def send(*data: float) -> None:
+        if not publishers:
+            publishers.append(client.publisher(Float64MultiArray, COMMANDS))
+        publishers[0].publish(Float64MultiArray(data=list(data)))
 
     return send
 
@@ -47,10 +47,12 @@ def test_a_command_shows_in_the_joint_states(positions: Any, publish: Any) -> No
     wait_for(positions, 0.1, 0.2, 0.3, 0.4)
 
 
-def test_a_best_effort_publisher_is_heard(positions: Any, publish: Any) -> None:
+def test_a_best_effort_publisher_is_heard(positions: Any, client: Any) -> None:
     from rclpy.qos import qos_profile_sensor_data
+    from std_msgs.msg import Float64MultiArray
 
-    publish(0.5, 0.0, 0.0, 0.0, qos=qos_profile_sensor_data)
+    publisher = client.publisher(Float64MultiArray, COMMANDS, qos_profile_sensor_data)
+    publisher.publish(Float64MultiArray(data=[0.5, 0.0, 0.0, 0.0]))
     wait_for(positions, 0.5, 0.0, 0.0, 0.0)
 
 
@@ -60,8 +62,7 @@ def test_a_wrong_length_deactivates_it_and_the_log_says_how_to_go_on(
     publish(0.1, 0.2)
     manager.wait_for_line("command size (2) does not match number of interfaces (4)")
     manager.wait_for_line(
-        "Deactivating controllers : [ position_controller ] "
-        "as their update resulted in an error!"
+        "Deactivating controllers : [ position_controller ] as their update resulted in an error!"
     )
     manager.wait_for_line("activate again with: spawner position_controller")
     control.wait_for_states(position_controller="inactive", joint_state_broadcaster="active")

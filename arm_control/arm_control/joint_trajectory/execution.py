@@ -1,0 +1,79 @@
+"""A plan on its way."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.joint_trajectory.motion import RESOLUTION_S
+from arm_control.joint_trajectory.plans import Plan
+from arm_control.joint_trajectory.requests import GoalRequest
+from arm_control.joint_trajectory.tolerances import Tolerances
+
+
+class Verdict(Enum):
+    """How an execution is doing."""
+
+    UNDER_WAY = "under way"
+    OFF_THE_PATH = "off the path"
+    AT_THE_GOAL = "at the goal"
+    NOT_THERE_YET = "not there yet"
+    TOO_LATE = "too late"
+
+
+@dataclass(slots=True)
+class Execution:
+    """A plan, and how far it has got. Loop thread only.
+
+    Attributes:
+        plan: what to do.
+        tolerances: what to check meanwhile.
+        goal: whose plan it is; None where nobody waits for the end.
+        is_stop: whether it only brings the joints to rest: in real time, without a time-out.
+        elapsed_s: the plan's time.
+        is_first: whether this is its first cycle.
+    """
+
+    plan: Plan
+    tolerances: Tolerances
+    goal: GoalRequest | None = None
+    is_stop: bool = False
+    elapsed_s: float = 0.0
+    is_first: bool = True
+
+    def advance(self, period_s: float, speed_scaling: float) -> None:
+        """Let a period pass."""
+        self.elapsed_s += period_s if self.is_stop else period_s * speed_scaling
+        self.is_first = False
+
+    @property
+    def late_s(self) -> float:
+        """Time since the end of the plan; negative before it."""
+        return self.elapsed_s - self.plan.end_s
+
+    def judge(self, error: NDArray[np.floating[Any]]) -> Verdict:
+        """Compare errors with the tolerances.
+
+        Args:
+            error: of position and, where they count, velocity and acceleration; shape (k, n).
+        """
+        late_s = self.late_s
+        has_ended = late_s >= -RESOLUTION_S
+        # A plan may have ended before it began; then the way there is checked for once.
+        if (self.is_first or not has_ended) and not self.tolerances.path.hold(error):
+            return Verdict.OFF_THE_PATH
+        if not has_ended:
+            return Verdict.UNDER_WAY
+        if self.tolerances.goal.hold(error):
+            return Verdict.AT_THE_GOAL
+        if 0.0 < self.tolerances.goal_time_s < late_s:
+            return Verdict.TOO_LATE
+        return Verdict.NOT_THERE_YET
+
+    def settle(self) -> None:
+        """Stay at the end for good: nobody waits, nothing is checked any more."""
+        self.goal = None
+        self.tolerances = Tolerances.none(self.tolerances.path.values.shape[1])
+        self.is_stop = True
