@@ -51,8 +51,9 @@ class Controller(ABC, Generic[ParametersT]):
     """Base class of all controllers: no ROS, no hardware of its own.
 
     The constructor and the class methods about parameters run on a control-plane thread,
-    everything else on the loop thread. A life-cycle method that raises refuses the transition: `ControllerError` with
-    a sentence for the user, anything else counts as a bug and is logged with its traceback.
+    everything else on the loop thread. A life-cycle method that raises refuses the transition:
+    `ControllerError` with a sentence for the user; anything else counts as a bug and is logged
+    with its traceback.
 
     Attributes:
         parameters_type: frozen dataclass of the controller's parameters, see

@@ -98,17 +98,18 @@ class DrivenJoint:
             setpoint.velocity = velocity if velocity < 0.0 else 0.0
         start = self.start_position = setpoint.position
         self.start_velocity = setpoint.velocity
-        if self.mode is DriveMode.POSITION:
+        if self.mode is DriveMode.VELOCITY:
+            # A velocity is a way to the limit of the joint at that speed.
+            speed = abs(self._velocity)
+            target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
+            target_velocity = 0.0
+        else:
+            # Holding is going to where the joint could stop when it was told to.
             stream = self._stream
             stream.advance()
             target, target_velocity, speed = stream.target, stream.velocity, self._speed
             if target == start and not target_velocity and not setpoint.velocity:
                 return False
-        else:
-            # A velocity is a way to the limit of the joint at that speed; holding, at none.
-            speed = abs(self._velocity)
-            target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
-            target_velocity = 0.0
         acceleration = EFFORT_SHARE * (self._effort - abs(gravity)) / inertia
         if acceleration > self._jerkless:
             acceleration = self._jerkless

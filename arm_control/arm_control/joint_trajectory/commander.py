@@ -54,7 +54,11 @@ class Commander:
         return values[positions] if positions and np.isfinite(values).all() else None
 
     def command(
-        self, state: ControllerState, upcoming: NDArray[np.float64], period_s: float
+        self,
+        state: ControllerState,
+        upcoming: NDArray[np.float64],
+        period_s: float,
+        requested_scaling: float,
     ) -> None:
         """Fill `state.output`, and write it.
 
@@ -62,6 +66,7 @@ class Commander:
             state: the present state, its errors included.
             upcoming: motion wanted at the end of the period, shape (4, n).
             period_s: length of the period.
+            requested_scaling: for hardware that takes a speed scaling factor.
         """
         output = state.output
         if self._pid is not None:
@@ -78,7 +83,7 @@ class Commander:
             output[:, self._passive] = np.nan
         values = output.reshape(-1)[self._wiring.command_index]
         if self._hands_scaling_on:
-            values = np.append(values, state.requested_scaling)
+            values = np.append(values, requested_scaling)
         self._commands.write(values)
 
     def let_go(self) -> None:

@@ -58,7 +58,6 @@ class ControllerState:
         output: the commands.
         time_s: the controller's time.
         speed_scaling: how fast trajectory time runs.
-        requested_scaling: how fast a client wants it to run.
     """
 
     __slots__ = (
@@ -67,7 +66,6 @@ class ControllerState:
         "layout",
         "output",
         "reference",
-        "requested_scaling",
         "speed_scaling",
         "time_s",
         "values",
@@ -82,7 +80,6 @@ class ControllerState:
         self.reference, self.feedback, self.error, self.output = np.split(self.values, ends[:-1])
         self.time_s = 0.0
         self.speed_scaling = 1.0
-        self.requested_scaling = 1.0
 
 
 @dataclass(frozen=True, slots=True)
