@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable
 
-from arm_control.errors import ControllerError
+from arm_control.errors import ArmControlError
 
 logger = logging.getLogger(__name__)
 
@@ -11,7 +11,7 @@ logger = logging.getLogger(__name__)
 def failure_of(step: Callable[[], object], what: str) -> str:
     """Run a life-cycle step of outside code; return why it failed, empty if it did not.
 
-    A step fails by returning False, by raising `ControllerError` with its reason, or by raising
+    A step fails by returning False, by raising an `ArmControlError` with its reason, or by raising
     anything else: then the traceback is logged.
 
     Args:
@@ -20,7 +20,7 @@ def failure_of(step: Callable[[], object], what: str) -> str:
     """
     try:
         return f"{what} returned False" if step() is False else ""
-    except ControllerError as error:
+    except ArmControlError as error:
         return str(error)
     except Exception as error:
         logger.exception("%s failed", what)

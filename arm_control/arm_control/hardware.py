@@ -55,11 +55,11 @@ class Hardware(Protocol):
         ...
 
     def on_deactivate(self) -> bool:
-        """Stop taking commands."""
+        """Stop taking commands; controllers keep their claims, and go on after `on_activate`."""
         ...
 
     def on_cleanup(self) -> bool:
-        """Undo `on_configure`."""
+        """Undo `on_configure`; after a failed read or write, from whatever state it was in."""
         ...
 
     def on_shutdown(self) -> bool:
@@ -74,7 +74,10 @@ class Hardware(Protocol):
         ...
 
     def perform_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
-        """Switch over to the command interfaces in `start`, away from those in `stop`."""
+        """Switch over to the command interfaces in `start`, away from those in `stop`.
+
+        An interface in both passes from one controller to another, or is claimed anew.
+        """
         ...
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:

@@ -1,5 +1,6 @@
 """Reading one element's attributes, with errors that name the element and its line."""
 
+import logging
 import math
 import re
 from collections.abc import Iterator
@@ -8,6 +9,8 @@ import lxml.etree as etree
 
 from arm_description.errors import UrdfError
 from arm_description.robot import Pose, Vector
+
+_logger = logging.getLogger(__name__)
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
@@ -31,8 +34,8 @@ class UrdfElement:
 
     @property
     def tag(self) -> str:
-        """The element's name without a namespace."""
-        return local_name(self._element)
+        """The element's name."""
+        return written_name(self._element)
 
     @property
     def line(self) -> int:
@@ -49,21 +52,25 @@ class UrdfElement:
         """Return an error that says where: the line, the element, what it is part of."""
         return UrdfError(f"line {self.line}: {self._label} {problem}")
 
+    def warn(self, problem: str) -> None:
+        """Log what is wrong with the element, but does not keep the robot from being one."""
+        _logger.warning("%s", self.error(problem))
+
     def children(self, tag: str) -> Iterator["UrdfElement"]:
         """Yield the children with this tag."""
         for child in self._element:
-            if local_name(child) == tag:
+            if written_name(child) == tag:
                 yield UrdfElement(child, self._owner)
 
     def child(self, tag: str) -> "UrdfElement | None":
-        """Return the only child with this tag, or None."""
+        """Return the first child with this tag, or None; a second one is warned about."""
         found = list(self.children(tag))
         if len(found) > 1:
-            raise found[1].error(f"stands there twice, first in line {found[0].line}")
+            found[1].warn(f"is the second one; the one in line {found[0].line} counts")
         return found[0] if found else None
 
     def needed_child(self, tag: str) -> "UrdfElement":
-        """Return the only child with this tag, which must be there."""
+        """Return the first child with this tag, which must be there."""
         child = self.child(tag)
         if child is None:
             raise self.error(f"needs a <{tag}>")
@@ -125,7 +132,13 @@ class UrdfElement:
         return value
 
 
-def local_name(element: etree._Element) -> str:
-    """Return an element's name without its namespace; empty for what is no element."""
+def written_name(element: etree._Element) -> str:
+    """Return an element's name as it is written, a prefix included; empty for no element.
+
+    A prefix makes it another's element: <x:link> is no link, whatever x stands for.
+    """
     tag = element.tag
-    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
+    if not isinstance(tag, str):
+        return ""
+    name = tag.rpartition("}")[2]
+    return f"{element.prefix}:{name}" if element.prefix else name

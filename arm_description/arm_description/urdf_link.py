@@ -43,16 +43,17 @@ def read_material(element: UrdfElement) -> Material:
     """Read a <material>; without colour and texture it is only a name.
 
     Raises:
-        UrdfError: a colour that is not four numbers from 0 to 1, a texture without a file.
+        UrdfError: a colour that is not four numbers, a texture without a file.
     """
     color = element.child("color")
     texture = element.child("texture")
     rgba = None
     if color is not None:
-        red, green, blue, alpha = color.numbers("rgba", 4)
+        values = color.numbers("rgba", 4)
+        red, green, blue, alpha = (min(max(value, 0.0), 1.0) for value in values)
         rgba = (red, green, blue, alpha)
-        if min(rgba) < 0.0 or max(rgba) > 1.0:
-            raise color.error(f"has rgba='{color.text('rgba', '')}'; each value is from 0 to 1")
+        if rgba != values:
+            color.warn(f"has rgba='{color.text('rgba', '')}'; values are brought to 0 to 1")
     return Material(
         name=element.text("name", ""),
         rgba=rgba,

@@ -91,6 +91,8 @@ class CameraProcess:
             env=camera_environment(self._environ),
             pass_fds=(socket_fd,),
             stdin=subprocess.DEVNULL,
+            # Out of the reach of Ctrl-C: it ends with the simulation, and not before.
+            process_group=0,
         )
 
     def start_again_due(self, backends_tried: Sequence[str]) -> bool:

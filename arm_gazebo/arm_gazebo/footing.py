@@ -26,9 +26,9 @@ class Footing:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, root: int) -> None:
         points = [
-            data.geom_xpos[geom]
-            + _extremes(model, data, geom) @ data.geom_xmat[geom].reshape(3, 3).T
+            data.geom_xpos[geom] + _extremes(model, geom, rotation) @ rotation.T
             for geom in _touching_geoms(model, root)
+            for rotation in [data.geom_xmat[geom].reshape(3, 3)]
         ]
         self._points = np.concatenate(points) if points else np.zeros((0, 3))
         self._centre: Array = data.subtree_com[root, :2].copy()

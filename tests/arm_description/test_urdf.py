@@ -38,7 +38,7 @@ def test_what_belongs_to_others_and_what_is_unknown_is_passed_over():
              text
              <gazebo reference='nowhere'><sensor type='camera'/></gazebo>
              <ros2_control name='x'><joint name='j9'/></ros2_control>
-             <transmission name='t'/> <x:macro/> <anything><joint/></anything>
+             <transmission name='t'/> <x:macro/> <x:link/> <y:joint/> <anything><joint/></anything>
              <link name='a' new='1'><self_collision_checking/> <sensor/></link>
            </robot>"""
     )

@@ -152,10 +152,6 @@ def test_a_mimic_with_defaults_and_without():
             text("<dynamics damping='x'/>" + LIMIT),
             "line 3: <dynamics> of joint 'j' has damping='x', which is not a finite number",
         ),
-        (
-            text("<origin xyz='0 0 0'/>\n<origin xyz='1 0 0'/>" + LIMIT),
-            "line 4: <origin> of joint 'j' stands there twice, first in line 3",
-        ),
     ],
 )
 def test_an_error_names_line_and_joint(urdf, message):

@@ -135,16 +135,12 @@ def test_every_shape_is_read_for_seeing_and_for_touching(shape, geometry):
             "line 3: <sphere> of link 'a' has radius='1e999', which is not a finite number",
         ),
         (
-            visual("<material name='m'><color rgba='255 0 0 1'/></material>"),
-            "line 3: <color> of link 'a' has rgba='255 0 0 1'; each value is from 0 to 1",
+            visual("<material name='m'><color rgba='1 0 0'/></material>"),
+            "line 3: <color> of link 'a' has rgba='1 0 0': 3 values, not 4",
         ),
         (
             visual("<material name='m'><texture/></material>"),
             "line 3: <texture> of link 'a' needs the attribute 'filename'",
-        ),
-        (
-            "<inertial/>\n<inertial/>",
-            "line 4: <inertial> of link 'a' stands there twice, first in line 3",
         ),
     ],
 )
@@ -196,3 +192,17 @@ def test_a_material_without_a_name_is_not_carried_over():
 
 def test_a_material_that_is_only_a_name_stays_one():
     assert link(visual("<material name='green'/>")).visuals[0].material == Material("green")
+
+
+def test_a_colour_out_of_range_is_brought_into_it_with_a_warning(caplog):
+    read = link(visual("<material name='m'><color rgba='255 0 -1 1'/></material>"))
+    assert read.visuals[0].material == Material("m", RED)
+    assert "line 3: <color> of link 'a' has rgba='255 0 -1 1'" in caplog.text
+
+
+def test_of_an_element_that_stands_twice_the_first_counts_with_a_warning(caplog):
+    geometry = (
+        "<geometry><sphere radius='1'/></geometry>\n<geometry><sphere radius='2'/></geometry>"
+    )
+    assert link(f"<collision>{geometry}</collision>").collisions[0].geometry == Sphere(1.0)
+    assert "line 4: <geometry> of link 'a' is the second one; the one in line 3" in caplog.text

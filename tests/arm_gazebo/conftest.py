@@ -12,6 +12,7 @@ from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.built_model import BuiltModel
+from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.model_builder import build_model
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.simulated_hardware import SimulatedHardware
@@ -99,9 +100,7 @@ def serial_arm(dof: int, mass_kg: float, reach_m: float, friction: float = 0.0) 
         beyond = masses[index:] @ np.cumsum(lengths[index:])
         inertia = masses[index:] @ np.cumsum(lengths[index:]) ** 2
         effort = max(2 * 9.81 * beyond, 20 * inertia)
-        parts.append(
-            link(f"l{index}", masses[index], lengths[index], f"0 0 {lengths[index] / 2}")
-        )
+        parts.append(link(f"l{index}", masses[index], lengths[index], f"0 0 {lengths[index] / 2}"))
         parts.append(
             joint(
                 f"j{index}",
@@ -122,10 +121,12 @@ def arm(**arguments: str) -> str:
     return expand_xacro(ARM_XACRO, arguments)
 
 
-def build(urdf: str, world: str | Path = "empty", **options: object) -> BuiltModel:
+def build(
+    urdf: str, world: str | Path = "empty", cameras: Sequence[CameraSensor] = (), **options: object
+) -> BuiltModel:
     """Build the model of a URDF with its hardware."""
     return build_model(
-        parse_urdf(urdf), parse_hardware_info(urdf), (), world, BuildOptions(**options)
+        parse_urdf(urdf), parse_hardware_info(urdf), cameras, world, BuildOptions(**options)
     )
 
 

@@ -65,11 +65,14 @@ class World:
 
     def __init__(self) -> None:
         self.now_s = 0.0
+        self.wall_s_per_publish = 0.01
         self.children: list[Child] = []
         self.model = mujoco.MjModel.from_xml_string(MJCF)
         self.data = mujoco.MjData(self.model)
         self.feed = CameraFeed(
-            [CameraSensor("eye", "l", "f", rate_hz=10.0)], make_process=self.make_process
+            [CameraSensor("eye", "l", "f", rate_hz=10.0)],
+            make_process=self.make_process,
+            clock=lambda: self.now_s,
         )
 
     def make_process(self, settings: CameraSettings, arguments: Sequence[str]) -> CameraProcess:
@@ -85,6 +88,7 @@ class World:
 
     def publish(self, *times_s: float) -> None:
         for time_s in times_s:
+            self.now_s += self.wall_s_per_publish
             self.feed.publish_due(time_s, self.data)
 
 
@@ -144,6 +148,13 @@ def test_a_child_that_does_not_read_costs_frames_but_no_time(started):
     started.publish(5000.0)
     _, (state,) = started.child.receive()
     assert state.frames[0].serial == 20000
+
+
+def test_a_simulation_that_races_sends_at_most_500_states_a_second(started):
+    started.wall_s_per_publish = 0.0005
+    started.publish(*(0.1 * k for k in range(100)))
+    _, states = started.child.receive()
+    assert [state.frames[0].serial for state in states] == list(range(0, 100, 4))
 
 
 def test_a_child_that_died_is_replaced_and_gets_the_model(started):

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 STEP = 0.3
-ARMS = [(6, 0.3, 0.28), (6, 1.0, 0.3), (6, 5.0, 0.6), (6, 18.0, 0.9), (7, 18.0, 0.85), (7, 30.0, 1.2)]
+ARMS = [
+    (6, 0.3, 0.28),
+    (6, 1.0, 0.3),
+    (6, 5.0, 0.6),
+    (6, 18.0, 0.9),
+    (7, 18.0, 0.85),
+    (7, 30.0, 1.2),
+]
 DIRECTIONS = [(1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1)]
 POSE = (0.0, 0.6, 0.8, 0.3, 0.5, 0.2, 0.1)
 
@@ -67,16 +74,30 @@ def quintic(times_s, waypoints, duration_s):
     slopes[1:-1] = (waypoints[2:] - waypoints[:-2]) / (2 * span)
     index = np.minimum((times_s / span).astype(int), count - 1)
     u = np.clip((times_s - index * span) / span, 0, 1)[:, None]
-    p, q, v, w = waypoints[index], waypoints[index + 1], slopes[index] * span, slopes[index + 1] * span
+    p, q, v, w = (
+        waypoints[index],
+        waypoints[index + 1],
+        slopes[index] * span,
+        slopes[index + 1] * span,
+    )
     d = q - p
     return (
-        p + v * u + (10 * d - 6 * v - 4 * w) * u**3
-        + (-15 * d + 8 * v + 7 * w) * u**4 + (6 * d - 3 * v - 3 * w) * u**5
+        p
+        + v * u
+        + (10 * d - 6 * v - 4 * w) * u**3
+        + (-15 * d + 8 * v + 7 * w) * u**4
+        + (6 * d - 3 * v - 3 * w) * u**5
     )
 
 
 WAYPOINTS = 0.65 * np.array(
-    [[0, 0, 0, 0], [0.6, 0.4, -0.5, 0.5], [1.2, -0.3, 0.4, -0.6], [0.3, 0.5, 0.6, 0.4], [-0.5, 0.2, -0.3, 0.8]]
+    [
+        [0, 0, 0, 0],
+        [0.6, 0.4, -0.5, 0.5],
+        [1.2, -0.3, 0.4, -0.6],
+        [0.3, 0.5, 0.6, 0.4],
+        [-0.5, 0.2, -0.3, 0.8],
+    ]
 )
 
 
@@ -206,7 +227,13 @@ def test_gripper_follows_its_leader(bench, parts):
         parts.link("right", 0.05, 0.02),
         parts.joint("j", "base", "left", "prismatic", "0 0 1", "0 1 0", finger),
         parts.joint(
-            "follower", "base", "right", "prismatic", "0 0 1", "0 -1 0", finger,
+            "follower",
+            "base",
+            "right",
+            "prismatic",
+            "0 0 1",
+            "0 -1 0",
+            finger,
             '<mimic joint="j" multiplier="0.5" offset="0.01"/>',
         ),
         parts.ros2_control(["j"]),

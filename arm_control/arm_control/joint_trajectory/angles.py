@@ -1,6 +1,5 @@
 """Angles of continuous joints, where a turn more or less is the same place."""
 
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,7 @@ TURN = 2.0 * np.pi
 SINGULARITY = 1e-9
 """Within this of half a turn, both ways round are equally short."""
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 def shortest_way(start: Array, end: Array) -> NDArray[np.float64]:

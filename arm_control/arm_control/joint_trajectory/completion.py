@@ -1,13 +1,12 @@
 """Fills in what a trajectory leaves open: joints that it does not name, quantities to integrate."""
 
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.joint_trajectory.motion import ACCELERATION, POSITION, VELOCITY
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 def hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> NDArray[np.float64]:

@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.joint_trajectory.motion import RESOLUTION_S
 from arm_control.joint_trajectory.plans import Plan
-from arm_control.joint_trajectory.requests import GoalRequest
 from arm_control.joint_trajectory.tolerances import Tolerances
 
 
@@ -30,7 +28,7 @@ class Execution:
     Attributes:
         plan: what to do.
         tolerances: what to check meanwhile.
-        goal: whose plan it is; None where nobody waits for the end.
+        serves_goal: whether a goal ends with it.
         is_stop: whether it only brings the joints to rest: in real time, without a time-out.
         elapsed_s: the plan's time.
         is_first: whether this is its first cycle.
@@ -38,22 +36,26 @@ class Execution:
 
     plan: Plan
     tolerances: Tolerances
-    goal: GoalRequest | None = None
+    serves_goal: bool = False
     is_stop: bool = False
     elapsed_s: float = 0.0
     is_first: bool = True
 
     def advance(self, period_s: float, speed_scaling: float) -> None:
         """Let a period pass."""
-        self.elapsed_s += period_s if self.is_stop else period_s * speed_scaling
+        self.elapsed_s = self.elapsed_after(period_s, speed_scaling)
         self.is_first = False
+
+    def elapsed_after(self, period_s: float, speed_scaling: float) -> float:
+        """Return the plan's time when a period will have passed."""
+        return self.elapsed_s + (period_s if self.is_stop else period_s * speed_scaling)
 
     @property
     def late_s(self) -> float:
         """Time since the end of the plan; negative before it."""
         return self.elapsed_s - self.plan.end_s
 
-    def judge(self, error: NDArray[np.floating[Any]]) -> Verdict:
+    def judge(self, error: NDArray[np.float64]) -> Verdict:
         """Compare errors with the tolerances.
 
         Args:
@@ -73,7 +75,7 @@ class Execution:
         return Verdict.NOT_THERE_YET
 
     def settle(self) -> None:
-        """Stay at the end for good: nobody waits, nothing is checked any more."""
-        self.goal = None
-        self.tolerances = Tolerances.none(self.tolerances.path.values.shape[1])
+        """Stay at the end for good: no goal waits, nothing is checked any more."""
+        self.serves_goal = False
+        self.tolerances = self.tolerances.switched_off()
         self.is_stop = True

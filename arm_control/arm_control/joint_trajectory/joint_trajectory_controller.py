@@ -1,48 +1,22 @@
 """joint_trajectory_controller/JointTrajectoryController: follows trajectories of the joints."""
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from arm_control.controller import Controller, ControllerContext, ReturnType
 from arm_control.errors import ControllerError
 from arm_control.interface_configuration import InterfaceConfiguration
-from arm_control.joint_trajectory.angles import shortest_way
-from arm_control.joint_trajectory.commander import Commander
 from arm_control.joint_trajectory.configuration import Configuration
-from arm_control.joint_trajectory.execution import Execution, Verdict
+from arm_control.joint_trajectory.follower import Follower
 from arm_control.joint_trajectory.inbox import GoalCancel, GoalStart, Inbox, Replacement
-from arm_control.joint_trajectory.motion import POSITION, RESOLUTION_S, ROWS, VELOCITY, at_rest
 from arm_control.joint_trajectory.parameters import JointTrajectoryParameters
-from arm_control.joint_trajectory.plans import BlendedPlan, Plan, StopPlan
 from arm_control.joint_trajectory.requests import GoalRequest, TrajectoryRequest
-from arm_control.joint_trajectory.results import (
-    CANCELED,
-    DEACTIVATED,
-    GOAL_REACHED,
-    NOT_RUNNING,
-    PATH_TOLERANCE_VIOLATED,
-    PREEMPTED,
-    REPLACED,
-    GoalResult,
-    Outcome,
-    Refusal,
-    too_late,
-)
+from arm_control.joint_trajectory.results import NOT_RUNNING, GoalResult, Refusal
 from arm_control.joint_trajectory.speed_scaling import SpeedScaling
-from arm_control.joint_trajectory.state import (
-    MOTION_ROWS,
-    ControllerState,
-    Feedback,
-    QueriedState,
-    StateLayout,
-    TrajectorySink,
-)
-from arm_control.joint_trajectory.tolerances import ToleranceError, Tolerances
+from arm_control.joint_trajectory.state import MOTION_ROWS, QueriedState, TrajectorySink
 from arm_control.joint_trajectory.trajectory import Trajectory
 from arm_control.joint_trajectory.validation import find_fault
 from arm_control.parameters import ParameterSpec
@@ -64,13 +38,6 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
 
     parameters_type: ClassVar[type[Any]] = JointTrajectoryParameters
 
-    _configuration: Configuration
-    _speed_scaling: SpeedScaling
-    _commander: Commander
-    _state: ControllerState
-    _execution: Execution
-    _commanded: NDArray[np.float64]
-
     def __init__(self, context: ControllerContext) -> None:
         """Read the robot description.
 
@@ -81,10 +48,9 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         self.sink: TrajectorySink | None = None
         self._robot = _read_robot(context.robot_description)
         self._inbox = Inbox()
-        self._goal: GoalRequest | None = None
-        self._next: Callable[[], Execution] | None = None
-        self._time_s = -inf
-        self._feedback_wait_s = 0.0
+        self._configuration: Configuration | None = None
+        self._speed_scaling: SpeedScaling | None = None
+        self._follower: Follower | None = None
 
     @classmethod
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -100,15 +66,15 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         """
         return JointTrajectoryParameters.build(values)
 
-    # Requests: any thread
+    # Requests: any thread, once configured
 
     def check_goal(self, trajectory: TrajectoryRequest) -> Refusal | None:
         """Return why a goal with this trajectory is to be rejected, None where it is not."""
-        if not self._inbox.is_open:
-            self.logger.error("%s", NOT_RUNNING.message)
-            return NOT_RUNNING
         prepared = self._prepare(trajectory)
-        return prepared if isinstance(prepared, Refusal) else None
+        if isinstance(prepared, Refusal):
+            self.logger.error("%s", prepared.message)
+            return prepared
+        return None
 
     def submit_goal(self, goal: GoalRequest) -> GoalResult | None:
         """Start a goal that was accepted; it takes the place of the one before.
@@ -117,8 +83,6 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
             None: the sink will hear of the end. A result where the goal has ended already, because
             it has a fault or the controller is not running: the sink will not hear of it.
         """
-        if not self._inbox.is_open:
-            return NOT_RUNNING.as_result()
         prepared = self._prepare(goal.trajectory)
         if isinstance(prepared, Refusal):
             return prepared.as_result()
@@ -130,42 +94,46 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         self._inbox.put(GoalCancel(goal_id))
 
     def submit_trajectory(self, trajectory: TrajectoryRequest) -> Refusal | None:
-        """Follow a trajectory without a goal; dropped in silence while not running.
+        """Follow a trajectory without a goal; while not running it is dropped in silence.
 
         Returns:
-            Why it is not followed, which is in the log, too.
+            Why it is not followed; the log says so, too.
         """
         if not self._inbox.is_open:
             return None
         prepared = self._prepare(trajectory)
         if isinstance(prepared, Refusal):
+            self.logger.error("%s", prepared.message)
             return prepared
         self._inbox.put(Replacement(prepared))
         return None
 
     def request_speed_scaling(self, factor: float) -> bool:
         """Let trajectory time run at a factor; return whether that is possible."""
-        return self._speed_scaling.request(factor)
+        return self._speed_scaling is not None and self._speed_scaling.request(factor)
 
-    # Life cycle: loop thread
+    # Loop thread
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
         """Claim each interface of each command joint."""
+        configuration, scaling = self._configured()
         return InterfaceConfiguration.individual(
-            self._configuration.wiring.command_names + self._speed_scaling.command_names
+            configuration.wiring.command_names + scaling.command_names
         )
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
         """Read each interface of each joint."""
+        configuration, scaling = self._configured()
         return InterfaceConfiguration.individual(
-            self._configuration.wiring.state_names + self._speed_scaling.state_names
+            configuration.wiring.state_names + scaling.state_names
         )
 
     def on_configure(self, parameters: JointTrajectoryParameters) -> None:
         """Take the parameters.
 
         Raises:
-            ControllerError, ParameterError: they cannot be used.
+            ControllerError: they do not go together.
+            ParameterError: one is out of its range.
         """
         if parameters.open_loop_control:
             self.logger.warning(
@@ -175,166 +143,75 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         self._speed_scaling = SpeedScaling(parameters.speed_scaling, self.logger)
 
     def update_parameters(self, parameters: JointTrajectoryParameters) -> None:
-        """Take parameters that changed while configured; read-only ones are as before.
+        """Take parameters that changed since `on_configure`; read-only ones are as before.
 
         Raises:
-            ControllerError, ParameterError: they cannot be used; the old ones stay.
+            ControllerError: they do not go together; the old ones stay.
+            ParameterError: one is out of its range; the old ones stay.
         """
-        before = self._configuration
         self._configuration = Configuration.of(parameters, self._robot, self.logger)
-        if self._inbox.is_open:
-            self._commander.reconfigure(self._configuration)
-            if self._execution.tolerances is before.tolerances:
-                self._execution.tolerances = self._configuration.tolerances
+        if self._follower is not None:
+            self._follower.reconfigure(self._configuration)
 
     def on_activate(self) -> None:
-        """Hold what was commanded last, or else where the joints are."""
-        configuration = self._configuration
-        self._state = ControllerState(StateLayout.of(configuration.wiring))
-        self._commander = Commander(configuration, self.commands)
-        self._time_s = -inf
-        self._next = None
-        self._measure()
-        position = self._state.feedback[POSITION].copy()
-        if configuration.parameters.set_last_command_interface_value_as_state_on_activation:
-            last = self._commander.last_positions()
-            if last is not None:
-                position[configuration.wiring.commanded] = last
-        self._commanded = at_rest(position)
-        self._execution = self._hold(position)
-        if self.sink is not None:
-            self.sink.open(self._state.layout)
+        """Begin to hold still, and to take requests."""
+        configuration, scaling = self._configured()
+        self._follower = Follower(
+            configuration, self.commands, self.states, scaling, self.sink, self.logger
+        )
         self._inbox.open()
 
-    def on_deactivate(self) -> None:
-        """Abort the goal; positions stay commanded, everything else becomes zero."""
-        for request in self._inbox.close():
-            if isinstance(request, GoalStart):
-                self._end_goal(PREEMPTED)
-                self._goal = request.goal
-        self._end_goal(DEACTIVATED)
-        self._commander.let_go()
-
-    # One cycle: loop thread
-
     def update(self, time_s: float, period_s: float) -> ReturnType:
-        """Measure, judge, command and report."""
-        if self._inbox:
+        """Run one cycle."""
+        if self._follower is not None:
             self.serve_requests()
-        state = self._state
-        state.time_s = self._time_s = time_s
-        self._measure()
-        if self._next is not None:
-            self._execution, self._next = self._next(), None
-        else:
-            self._execution.advance(period_s, state.speed_scaling)
-        execution = self._execution
-        wanted = execution.plan.sample(execution.elapsed_s)
-        state.reference[:] = wanted[: len(state.reference)]
-        error = self._compute_error()
-        self._give_feedback(period_s)
-        self._conclude(execution.judge(error), error)
-        self._refresh_speed_scaling()
-        self._command(period_s)
-        if self.sink is not None:
-            self.sink.publish_state(state)
+            self._follower.update(time_s, period_s)
         return ReturnType.OK
 
     def serve_requests(self) -> None:
-        """Take over what clients have asked for; a new motion begins at the next update."""
-        for request in self._inbox.take():
-            match request:
-                case GoalStart(goal, trajectory):
-                    self._end_goal(PREEMPTED)
-                    self._goal = goal
-                    self._feedback_wait_s = 0.0
-                    self._next = partial(self._follow, trajectory, goal)
-                case Replacement(trajectory):
-                    self._end_goal(REPLACED)
-                    self._next = partial(self._follow, trajectory)
-                case GoalCancel(goal_id) if self._goal and self._goal.id == goal_id:
-                    self._end_goal(CANCELED)
-                    self._next = self._stop
-                case GoalCancel():
-                    pass
+        """Take over what clients have asked for; a motion begins at the next update."""
+        if self._inbox and self._follower is not None:
+            self._follower.serve(self._inbox.take())
 
     def query_state(self, time_s: float) -> QueriedState:
         """Return what the present trajectory wants at a time of the controller's clock."""
-        if not self._inbox.is_open:
-            return QueriedState("the controller is not active", np.full((MOTION_ROWS, 0), np.nan))
-        measured = self._measured()[:MOTION_ROWS]
-        plan = self._execution.plan
-        elapsed_s = self._execution.elapsed_s + time_s - self._time_s
-        if self._time_s == -inf:
-            return QueriedState("there is no trajectory yet", measured)
-        if elapsed_s < -RESOLUTION_S:
-            return QueriedState(f"{time_s:f} s is before the start of the trajectory", measured)
-        if elapsed_s > plan.end_s + RESOLUTION_S:
-            return QueriedState(f"{time_s:f} s is after the end of the trajectory", measured)
-        return QueriedState("", plan.sample(max(elapsed_s, 0.0))[:MOTION_ROWS])
+        if self._follower is None:
+            return QueriedState("the controller is not active", np.empty((MOTION_ROWS, 0)))
+        return self._follower.query(time_s)
 
-    def _measure(self) -> None:
-        self._state.feedback[:] = self.states.read()[self._configuration.wiring.state_index]
+    def on_deactivate(self) -> None:
+        """Abort the goal; positions stay commanded, everything else becomes zero."""
+        follower, self._follower = self._follower, None
+        unserved = self._inbox.close()
+        if follower is not None:
+            follower.close(unserved)
 
-    def _measured(self) -> NDArray[np.float64]:
-        feedback = self._state.feedback
-        motion = np.full((ROWS, feedback.shape[1]), np.nan)
-        motion[: len(feedback)] = feedback
-        return motion
+    def on_cleanup(self) -> None:
+        """Forget the parameters."""
+        self._configuration = self._speed_scaling = None
 
-    def _compute_error(self) -> NDArray[np.float64]:
-        """Fill in the errors, and return the rows that count."""
-        state, model = self._state, self._configuration.model
-        error = state.error[: self._configuration.wiring.checked_rows]
-        rows = len(error)
-        np.subtract(state.reference[:rows], state.feedback[:rows], out=error)
-        if model.any_continuous:
-            way = shortest_way(state.feedback[POSITION], state.reference[POSITION])
-            error[POSITION] = np.where(model.continuous, way, error[POSITION])
-        return error
+    def _configured(self) -> tuple[Configuration, SpeedScaling]:
+        if self._configuration is None or self._speed_scaling is None:
+            raise ControllerError(f"controller '{self.name}' is not configured")
+        return self._configuration, self._speed_scaling
 
-    def _refresh_speed_scaling(self) -> None:
-        # What is in force now counts for the period that begins: the command for its end, and
-        # the time that has passed there, agree even in the cycle in which the factor changes.
-        scaling = self._speed_scaling
-        scaling.refresh(float(self.states.read()[-1]) if scaling.state_names else None)
-        self._state.speed_scaling = scaling.factor
+    def _prepare(self, request: TrajectoryRequest) -> Trajectory | Refusal:
+        """Return the trajectory of a request, or why it cannot be followed."""
+        follower, configuration = self._follower, self._configuration
+        if follower is None or configuration is None:
+            return NOT_RUNNING
+        now_s = -inf if follower.time_s is None else follower.time_s
+        fault = find_fault(request, configuration.rules, now_s)
+        if fault is not None:
+            return fault
+        trajectory = Trajectory(request, configuration.rules.joints, configuration.interpolation)
+        return follower.find_excess(trajectory) or trajectory
 
-    def _command(self, period_s: float) -> None:
-        state, execution = self._state, self._execution
-        self._commanded = execution.plan.sample(
-            execution.elapsed_after(period_s, state.speed_scaling)
-        )
-        self._commander.command(state, self._commanded, period_s, self._speed_scaling.requested)
 
-    def _give_feedback(self, period_s: float) -> None:
-        if self._goal is None or self.sink is None:
-            return
-        self._feedback_wait_s -= period_s
-        if self._feedback_wait_s > RESOLUTION_S:
-            return
-        interval_s = 1.0 / self._configuration.parameters.action_monitor_rate
-        self._feedback_wait_s = max(self._feedback_wait_s + interval_s, 0.0)
-        state = self._state
-        self.sink.publish_feedback(
-            self._goal.id,
-            Feedback(
-                state.time_s, state.reference.copy(), state.feedback.copy(), state.error.copy()
-            ),
-        )
-
-    # Motions and goals: loop thread
-
-    def _conclude(self, verdict: Verdict, error: NDArray[np.float64]) -> None:
-        """Draw the consequences of a verdict."""
-        execution = self._execution
-        bounds = execution.tolerances
-        late_s = execution.late_s
-        match verdict:
-            case Verdict.OFF_THE_PATH:
-                self._give_up(PATH_TOLERANCE_VIOLATED, "state tolerance violation", bounds.path, error)
-            case Verdict.TOO_LATE:
-                self._give_up(too_late(late_s), "Exceeded", bounds.goal, error)
-            case Verdict.AT_THE_GOAL if execution.goal is not None:
-                self._end_goal(GOAL_REACHED)
-                execution.settle()
+def _read_robot(robot_description: str) -> Robot | None:
+    if not robot_description:
+        return None
+    try:
+        return parse_urdf(robot_description)
+    except DescriptionError as error:
+        raise ControllerError(f"the robot description cannot be used: {error}") from error

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ SAMPLES_PER_SEGMENT = 8
 SLACK = 1e-6
 """A value counts as outside only by more than this: planners go exactly to the limit."""
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +27,7 @@ class JointModel:
     Attributes:
         joints: their names.
         continuous: which turn without end, shape (n,).
+        turns: whether any of them does.
         lower: least positions, shape (n,); -inf where there is no limit.
         upper: greatest positions, shape (n,).
         velocity: greatest speeds, shape (n,); inf where there is no limit.
@@ -35,6 +35,7 @@ class JointModel:
 
     joints: tuple[str, ...]
     continuous: NDArray[np.bool_]
+    turns: bool
     lower: NDArray[np.float64]
     upper: NDArray[np.float64]
     velocity: NDArray[np.float64]
@@ -45,9 +46,11 @@ class JointModel:
         known = {joint.name: joint for joint in robot.joints} if robot else {}
         joints = [known.get(name) for name in names]
         limits = [joint.limit if joint else None for joint in joints]
+        continuous = [joint is not None and joint.type == "continuous" for joint in joints]
         return cls(
             tuple(names),
-            np.array([joint is not None and joint.type == "continuous" for joint in joints]),
+            np.array(continuous),
+            any(continuous),
             np.array([limit.lower if limit else -np.inf for limit in limits]),
             np.array([limit.upper if limit else np.inf for limit in limits]),
             np.array([limit.velocity if limit and limit.velocity else np.inf for limit in limits]),
@@ -84,7 +87,7 @@ class LimitCheck:
                 return _refusal(
                     f"The trajectory takes joint {model.joints[i]} to {position[row, i]:f}, "
                     f"outside its limits [{model.lower[i]:f}, {model.upper[i]:f}]",
-                    sampled_s[row],
+                    float(sampled_s[row]),
                 )
         if self.velocities:
             speed = np.abs(motions[:, VELOCITY])
@@ -92,7 +95,7 @@ class LimitCheck:
                 return _refusal(
                     f"The trajectory moves joint {model.joints[i]} with {speed[row, i]:f}, "
                     f"above its velocity limit of {model.velocity[i]:f}",
-                    sampled_s[row],
+                    float(sampled_s[row]),
                 )
         return None
 

@@ -163,7 +163,7 @@ class JointTrajectoryParameters(CommonParameters):
             ParameterError: a name is unknown, or a value cannot be used.
         """
         rest = dict(values)
-        joints = tuple(rest.get("joints") or ())
+        joints: list[str] = list(rest.get("joints") or ())
         gains = {joint: _take(JointGains, f"gains.{joint}.", rest) for joint in joints}
         constraints = {
             joint: _take(JointConstraints, f"constraints.{joint}.", rest) for joint in joints

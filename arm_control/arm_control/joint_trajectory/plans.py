@@ -5,7 +5,7 @@ order, changes nothing.
 """
 
 from bisect import bisect_right
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from arm_control.joint_trajectory.motion import (
 )
 from arm_control.joint_trajectory.spline import Spline
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 class Plan(Protocol):

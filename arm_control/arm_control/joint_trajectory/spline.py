@@ -18,7 +18,7 @@ from arm_control.joint_trajectory.motion import (
 TERMS = 6
 """Coefficients of a polynomial of degree five."""
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 class Spline:

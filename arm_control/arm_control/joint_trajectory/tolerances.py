@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ CHECKED_ROWS = 3
 DISABLED = -1.0
 """In a goal: no tolerance, whatever the controller's own is."""
 
-Array = NDArray[np.floating[Any]]
+Array = NDArray[np.float64]
 
 
 class ToleranceError(ArmControlError):
@@ -71,12 +70,6 @@ class Tolerances:
     goal_time_s: float
 
     @classmethod
-    def none(cls, joint_count: int) -> "Tolerances":
-        """Check nothing."""
-        off = Bounds.of(np.zeros((CHECKED_ROWS, joint_count)))
-        return cls(off, off, 0.0)
-
-    @classmethod
     def of(
         cls, path: Array, goal: Array, stopped_velocity: float, goal_time_s: float
     ) -> "Tolerances":
@@ -93,6 +86,11 @@ class Tolerances:
         at_end[POSITION] = goal
         at_end[VELOCITY] = stopped_velocity
         return cls(Bounds.of(on_the_way), Bounds.of(at_end), goal_time_s)
+
+    def switched_off(self) -> "Tolerances":
+        """Return tolerances of the same joints that check nothing."""
+        off = Bounds.of(np.zeros_like(self.path.values))
+        return Tolerances(off, off, 0.0)
 
     def for_goal(self, goal: GoalRequest, joints: Sequence[str]) -> "Tolerances":
         """Return these tolerances with what a goal asks for instead.

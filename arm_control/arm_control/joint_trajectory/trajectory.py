@@ -63,6 +63,10 @@ class Trajectory:
         if interpolation is Interpolation.SPLINES and not self._has_open_positions():
             self._spline = Spline(self.times_s, self.motions)
 
+    def offset_s(self, now_s: float) -> float:
+        """Return how long after a moment it starts: negative where it should have started."""
+        return self.stamp_s - now_s if self.stamp_s else 0.0
+
     def plan(
         self,
         now_s: float,
@@ -79,7 +83,7 @@ class Trajectory:
             continuous: which joints turn without end, shape (n,): they go to the first point the
                 short way.
         """
-        offset_s = self.stamp_s - now_s if self.stamp_s else 0.0
+        offset_s = self.offset_s(now_s)
         motions, spline = self.motions, self._spline
         if self.missing.any():
             motions = hold_joints(motions, self.missing, held_position)

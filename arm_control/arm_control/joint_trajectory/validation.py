@@ -142,7 +142,8 @@ def _number_faults(request: TrajectoryRequest) -> Iterator[str]:
         finite = np.isfinite([values for _, values in given])
         for row, column in np.argwhere(~finite):
             i, values = given[row]
-            yield f"The {field} of joint {request.joint_names[column]} at point #{i} are not finite: {values[column]}."
+            name = request.joint_names[column]
+            yield f"The {field} of joint {name} at point #{i} are not finite: {values[column]}."
 
 
 def _sizes(point: TrajectoryPoint) -> Iterator[tuple[str, int]]:

@@ -120,6 +120,19 @@ class ControlPlane:
             self.on_loop(lambda: self._manager.unload_controller(name))
             self._forget(name)
 
+    def unload_all(self, *, force: bool) -> None:
+        """Unload every controller, to begin anew; active ones only by force."""
+        with self._lock:
+            statuses = self.on_loop(self._manager.list_controllers)
+            active = tuple(s.name for s in statuses if s.state is LifecycleState.ACTIVE)
+            if active and not force:
+                raise ControllerManagerError(
+                    f"controllers are still active: {', '.join(active)}; deactivate them first"
+                )
+            self.switch_controller(SwitchRequest(deactivate=active))
+            for status in statuses:
+                self.unload_controller(status.name)
+
     def switch_controller(
         self, request: SwitchRequest, timeout_s: float = DEFAULT_SWITCH_TIMEOUT_S
     ) -> SwitchResult:
@@ -244,21 +257,10 @@ class ControlPlane:
 
 def _controller_specs(name: str) -> tuple[ParameterSpec, ...]:
     """Return the manager's parameters about one controller."""
-    return (
-        ParameterSpec(
-            f"{name}.fallback_controllers",
-            str,
-            is_list=True,
-            default=(),
-            description="Controllers to activate where an update of this one fails",
-            read_only=False,
-        ),
-        ParameterSpec(
-            f"{name}.node_options_args",
-            str,
-            is_list=True,
-            default=(),
-            description="ROS arguments for the controller's node",
-            read_only=False,
-        ),
+    return tuple(
+        ParameterSpec(f"{name}.{parameter}", str, True, (), description, read_only=False)
+        for parameter, description in (
+            ("fallback_controllers", "Controllers to activate where an update of this one fails"),
+            ("node_options_args", "ROS arguments for the controller's node"),
+        )
     )

@@ -1,6 +1,7 @@
 """The ROS side of a running controller manager: services, topics, nodes of what it manages."""
 
 import logging
+import re
 from collections.abc import Sequence
 
 from controller_manager_msgs.msg import ControllerManagerActivity
@@ -120,7 +121,7 @@ class ControllerManagerServer:
 
     def _make_component_node(self, component: str) -> Node:
         node = Node(
-            component.lower(),
+            re.sub(r"\W", "_", component.lower(), flags=re.ASCII),
             namespace=self._node.get_namespace(),
             cli_args=controller_arguments(self._node.arguments),
             use_global_arguments=False,

@@ -1,7 +1,6 @@
 """The node of one controller: its parameters, its adapter, its transition events."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from lifecycle_msgs.msg import TransitionEvent
@@ -10,7 +9,7 @@ from rclpy.qos import QoSProfile
 from arm_control.controller import Controller
 from arm_control.errors import ParameterError
 from arm_control.lifecycle import LifecycleState, Transition
-from arm_control.parameters import parameter, specs_of
+from arm_control.parameters import ParameterSpec
 from arm_control.registry import load_object
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_control.ros.convert import transition_events
@@ -49,7 +48,7 @@ class ControllerNode(ParameterNode):
         )
         self.controller = controller
         self._specs = controller.parameter_specs(self.given_parameters())
-        general = specs_of(_general_parameters(controller.context.update_rate_hz))
+        general = _general_specs(controller.context.update_rate_hz)
         self.declare_specs((*self._specs, *general))
         self.warn_of_unknown([spec.name for spec in (*self._specs, *general)], type_name)
         self._adapter = self._make_adapter()
@@ -91,13 +90,13 @@ class ControllerNode(ParameterNode):
         return load_object(path)(self.controller, self) if path else None
 
 
-def _general_parameters(update_rate_hz: int) -> type[Any]:
+def _general_specs(update_rate_hz: int) -> tuple[ParameterSpec, ...]:
     """Return the parameters that every controller has; the manager's rate is the default."""
-
-    @dataclass(frozen=True, slots=True)
-    class GeneralParameters:
-        update_rate: int = parameter(update_rate_hz, "Updates per second")
-        is_async: bool = parameter(False, "Known from ros2_control; controllers run in the loop")
-        thread_priority: int = parameter(-100, "Known from ros2_control; without effect")
-
-    return GeneralParameters
+    return tuple(
+        ParameterSpec(name, type(default), False, default, description, read_only=False)
+        for name, default, description in (
+            ("update_rate", update_rate_hz, "Updates per second"),
+            ("is_async", False, "Known from ros2_control; controllers run in the loop"),
+            ("thread_priority", -100, "Known from ros2_control; without effect"),
+        )
+    )

@@ -12,6 +12,7 @@ from controller_manager_msgs.srv import (
     ListHardwareComponents,
     ListHardwareInterfaces,
     LoadController,
+    ReloadControllerLibraries,
     SetHardwareComponentState,
     SwitchController,
     UnloadController,
@@ -63,6 +64,7 @@ class ManagerServices:
             (CleanupController, "cleanup_controller", self._by_name(plane.cleanup_controller)),
             (UnloadController, "unload_controller", self._by_name(plane.unload_controller)),
             (SwitchController, "switch_controller", self._switch_controller),
+            (ReloadControllerLibraries, "reload_controller_libraries", self._reload),
             (ListHardwareInterfaces, "list_hardware_interfaces", self._list_interfaces),
             (ListHardwareComponents, "list_hardware_components", self._list_components),
             (SetHardwareComponentState, "set_hardware_component_state", self._set_component_state),
@@ -117,6 +119,19 @@ class ManagerServices:
             request.timeout.sec + request.timeout.nanosec * 1e-9,
         )
         response.ok, response.message = result.ok, result.message
+        return response
+
+    def _reload(
+        self,
+        request: ReloadControllerLibraries.Request,
+        response: ReloadControllerLibraries.Response,
+    ) -> ReloadControllerLibraries.Response:
+        try:
+            self._plane.unload_all(force=request.force_kill)
+            response.ok = True
+        except ArmControlError as error:
+            logger.error("%s", error)
+            response.ok = False
         return response
 
     def _list_interfaces(

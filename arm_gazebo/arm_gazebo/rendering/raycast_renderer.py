@@ -1,5 +1,7 @@
 """Draws without any OpenGL, by casting rays into the scene with MuJoCo's own collision code."""
 
+import time
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -8,38 +10,46 @@ from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.rendering.adaptive_sampling import fill_picture
 from arm_gazebo.rendering.lighting import Lighting
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
+from arm_gazebo.rendering.sampling_step import LARGEST_STEP, SamplingStep
 from arm_gazebo.rendering.surface_colours import SurfaceColours
 
-FIRST_SAMPLES = 45_000
-"""Most rays of the first pass: they take a third of a 30 Hz frame on one core."""
-MAX_STEP = 8
 HIDDEN_GROUP = len(VISIBLE_GROUPS) - 1
 MAX_HIDDEN_LAYERS = 4
 """How many surfaces nearer than the near clip are looked through along one ray."""
 
 
 class RaycastRenderer:
-    """Draws diffuse surfaces in plain colours: no textures, no highlights, no shadows."""
+    """Draws diffuse surfaces in plain colours: no textures, no highlights, no shadows.
+
+    Where the machine cannot keep the camera's rate, small things may be missed; see
+    `adaptive_sampling` and `SamplingStep`.
+    """
 
     backend = "raycast"
 
     def __init__(self) -> None:
         self._model: mujoco.MjModel | None = None
         self._rays: dict[CameraSensor, NDArray[np.float64]] = {}
+        self._steps: dict[CameraSensor, SamplingStep] = {}
 
     def set_model(self, model: mujoco.MjModel) -> None:
         """Draw this model from now on; see `Renderer.set_model`."""
         self._model = model
         self._colours = SurfaceColours(model)
+        self._steps.clear()
 
     def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]) -> None:
         """Draw one camera's view; see `Renderer.render`."""
         assert self._model is not None
-        step = first_step(sensor)
         if sensor not in self._rays:
-            self._rays[sensor] = _pixel_rays(sensor, step)
+            self._rays[sensor] = _pixel_rays(sensor)
+        if sensor not in self._steps:
+            self._steps[sensor] = SamplingStep(sensor.width, sensor.height, sensor.rate_hz)
+        sampling = self._steps[sensor]
+        start_s = time.perf_counter()
         view = _View(self._model, data, self._colours, sensor, self._rays[sensor])
-        fill_picture(picture, step, view.sample)
+        fill_picture(picture, sampling.step, view.sample)
+        sampling.note(time.perf_counter() - start_s)
 
     def close(self) -> None:
         """Nothing is held."""
@@ -111,20 +121,13 @@ class _View:
         return geoms, depths, normals
 
 
-def first_step(sensor: CameraSensor) -> int:
-    """Return the distance in pixels of the first rays: a power of two that bounds their number."""
-    step = 1
-    while step < MAX_STEP and sensor.width * sensor.height > FIRST_SAMPLES * step * step:
-        step *= 2
-    return step
-
-
-def _pixel_rays(sensor: CameraSensor, margin: int) -> NDArray[np.float64]:
-    """Return the rays through the pixels' centres, (height + margin, width + margin, 3).
+def _pixel_rays(sensor: CameraSensor) -> NDArray[np.float64]:
+    """Return the rays through the pixels' centres, and some beyond the right and lower edges.
 
     In MuJoCo's camera frame (x right, y up, looks along -z), of depth 1: what they are scaled by
     is the depth of the point, as a near clip means it.
     """
+    margin = LARGEST_STEP
     x = (np.arange(sensor.width + margin) + 0.5 - sensor.width / 2) / sensor.focal_length
     y = (np.arange(sensor.height + margin) + 0.5 - sensor.height / 2) / sensor.focal_length
     rays = np.empty((len(y), len(x), 3))

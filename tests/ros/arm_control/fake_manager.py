@@ -3,7 +3,7 @@
     python fake_manager.py [--start NAME ...] [--paused] [--ros-args ...]
 
 Writes "ready" on standard output once the services are there. A line on its standard input acts
-on it: "pause", "resume", "fail read".
+on it: "pause", "resume", "block" and "unblock" (the loop thread), "fail read".
 """
 
 import argparse
@@ -65,6 +65,8 @@ def main(argv: Sequence[str]) -> int:
             manager.read(time_s, period_s)
             manager.publish(time_s, period_s)
 
+        unblocked = threading.Event()
+
         def obey() -> None:
             for line in sys.stdin:
                 match line.split():
@@ -72,6 +74,11 @@ def main(argv: Sequence[str]) -> int:
                         loop.pause().result(10.0)
                     case ["resume"]:
                         loop.resume().result(10.0)
+                    case ["block"]:
+                        unblocked.clear()
+                        loop.call(lambda: unblocked.wait(60.0))
+                    case ["unblock"]:
+                        unblocked.set()
                     case ["fail", "read"]:
                         hardware.read_result = HardwareReturn.ERROR
                 sys.stdout.write(f"{line.strip()} done\n")

@@ -30,6 +30,7 @@ def test_the_services_of_a_real_one_are_there(control: Any, client: Any) -> None
         "list_hardware_components": "ListHardwareComponents",
         "list_hardware_interfaces": "ListHardwareInterfaces",
         "load_controller": "LoadController",
+        "reload_controller_libraries": "ReloadControllerLibraries",
         "set_hardware_component_state": "SetHardwareComponentState",
         "switch_controller": "SwitchController",
         "unload_controller": "UnloadController",
@@ -228,6 +229,43 @@ def test_it_all_works_while_time_stands_still(control: Any, manager: Any) -> Non
         assert control.states() == {"joint_state_broadcaster": "active"}
     finally:
         manager.tell("resume")
+
+
+def test_a_loop_that_is_stuck_lets_a_switch_time_out(control: Any, manager: Any) -> None:
+    from builtin_interfaces.msg import Duration
+
+    control.load("position_controller")
+    control.configure("position_controller")
+    manager.tell("block")
+    try:
+        answer = control.call(
+            "SwitchController",
+            "switch_controller",
+            activate_controllers=["position_controller"],
+            strictness=STRICT,
+            timeout=Duration(nanosec=200_000_000),
+        )
+    finally:
+        manager.tell("unblock")
+    assert (answer.ok, answer.message) == (
+        False,
+        "Switch controller timed out after 0.200000 seconds!",
+    )
+    assert control.states() == {"position_controller": "inactive"}
+
+
+def test_reload_unloads_everything_active_controllers_only_by_force(control: Any) -> None:
+    def reload(force: bool) -> bool:
+        return control.call(
+            "ReloadControllerLibraries", "reload_controller_libraries", force_kill=force
+        ).ok
+
+    control.start("position_controller")
+    control.load("second_controller")
+    assert not reload(False)
+    assert control.states()["position_controller"] == "active"
+    assert reload(True)
+    assert control.states() == {}
 
 
 # The graph

@@ -1,0 +1,244 @@
+"""Launches launch files in processes of their own, and expands them in this one.
+
+Nothing here sleeps: every wait is on a condition, with a generous time-out.
+"""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from launch_py.expansion import expand_description
+from launch_py.launch_description import LaunchDescription
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.plan import Plan
+
+TIMEOUT_S = 30.0
+IMPORTS = """
+import sys
+from launch_py import *
+from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.event_handlers import OnProcessExit, OnProcessStart
+from launch_py.ros import Node, PushRosNamespace
+from launch_py.substitutions import *
+
+
+def python(name, code, **options):
+    return ExecuteProcess(cmd=[sys.executable, "-c", code], name=name, **options)
+
+
+def forever(name, **options):
+    code = "import signal; print('up', flush=True); signal.pause()"
+    return python(name, code, ready=LogLine("^up$"), **options)
+
+
+"""
+
+
+def wait_until(condition: Callable[[], object], what: str, timeout_s: float = TIMEOUT_S) -> None:
+    """Block until the condition is true; fail after the time-out."""
+    deadline_s = time.monotonic() + timeout_s
+    pause = threading.Event()
+    while not condition():
+        if time.monotonic() > deadline_s:
+            pytest.fail(f"{what} did not happen within {timeout_s} s")
+        pause.wait(0.01)
+
+
+class Launched:
+    """A launcher that runs, and everything that it has printed."""
+
+    def __init__(self, command: list[str], environment: dict[str, str]) -> None:
+        self.lines: list[str] = []
+        self._ended = False
+        self._changed = threading.Condition()
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env=environment,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def pid(self) -> int:
+        return self.process.pid
+
+    @property
+    def output(self) -> str:
+        return "\n".join(self.lines)
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            with self._changed:
+                self.lines.append(line.rstrip("\n"))
+                self._changed.notify_all()
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
+    def wait_for(self, pattern: str, count: int = 1) -> str:
+        """Block until `count` lines match; return the last of them."""
+        deadline_s = time.monotonic() + TIMEOUT_S
+        with self._changed:
+            while True:
+                found = [line for line in self.lines if re.search(pattern, line)]
+                if len(found) >= count:
+                    return found[count - 1]
+                left_s = deadline_s - time.monotonic()
+                if self._ended or left_s <= 0:
+                    pytest.fail(f"no line matches {pattern!r}:\n{self.output}")
+                self._changed.wait(left_s)
+
+    def signal(self, number: signal.Signals) -> None:
+        self.process.send_signal(number)
+
+    def wait(self) -> int:
+        """Block until the launcher has ended; return its exit code."""
+        code = self.process.wait(TIMEOUT_S)
+        self._reader.join(TIMEOUT_S)
+        return code
+
+    def close(self) -> None:
+        """End it, whatever state it is in."""
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait(TIMEOUT_S)
+        self._reader.join(TIMEOUT_S)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+def is_running(pid: int) -> bool:
+    """Return whether a process exists and is not a zombie."""
+    try:
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+@pytest.fixture
+def launch_environment(tmp_path):
+    environment = {**os.environ, "ROS_LOG_DIR": str(tmp_path / "log")}
+    environment.pop("NO_COLOR", None)
+    return environment
+
+
+@pytest.fixture
+def write_launch_file(tmp_path):
+    """Write a launch file: either all of it, or the actions of its description."""
+
+    def write(actions: str, name: str = "test.launch.py") -> Path:
+        path = tmp_path / name
+        body = textwrap.dedent(actions)
+        if "def generate_launch_description" not in body:
+            body = (
+                "def generate_launch_description():\n"
+                + textwrap.indent(body, "    ")
+                + "\n    return LaunchDescription(actions)\n"
+            )
+        path.write_text(IMPORTS + body)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def launch(write_launch_file, launch_environment):
+    """Launch the actions in a process of its own; ends it after the test."""
+    launched: list[Launched] = []
+
+    def start(actions: str, *arguments: str, **environment: str) -> Launched:
+        path = write_launch_file(actions)
+        command = [sys.executable, "-m", "launch_py", str(path), *arguments]
+        launched.append(Launched(command, {**launch_environment, **environment}))
+        return launched[-1]
+
+    yield start
+    for one in launched:
+        one.close()
+
+
+@pytest.fixture
+def run_launch_py(launch_environment, tmp_path):
+    """Run the launcher to its end and return what it printed."""
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "launch_py", *arguments],
+            capture_output=True,
+            text=True,
+            env=launch_environment,
+            cwd=tmp_path,
+            timeout=TIMEOUT_S,
+            check=False,
+        )
+
+    return run
+
+
+@pytest.fixture
+def expand():
+    """Expand actions, or a whole description, into a plan."""
+
+    def expand_actions(actions, environ=None, **arguments: str) -> Plan:
+        description = LaunchDescription(actions)
+        return expand_description(description, arguments, environ or dict(os.environ))
+
+    return expand_actions
+
+
+@pytest.fixture
+def expand_file():
+    """Expand a launch file into a plan."""
+
+    def expand_path(path: Path, **arguments: str) -> Plan:
+        return expand_description(read_launch_file(path), arguments, dict(os.environ), path)
+
+    return expand_path
+
+
+@pytest.fixture
+def package_prefix(tmp_path, monkeypatch):
+    """Make a prefix with packages in it; returns a function that adds one."""
+    prefix = tmp_path / "prefix"
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+
+    def add(name: str, *executables: str) -> Path:
+        marker = prefix / "share" / "ament_index" / "resource_index" / "packages" / name
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+        share = prefix / "share" / name
+        (share / "launch").mkdir(parents=True)
+        for executable in executables:
+            path = prefix / "lib" / name / executable
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("#!/bin/sh\nexit 0\n")
+            path.chmod(0o755)
+        return share
+
+    return add
+
+
+@pytest.fixture
+def waiting():
+    """Give the tests `wait_until` and `is_running`: test modules cannot import a conftest."""
+
+    class Waiting:
+        until = staticmethod(wait_until)
+        running = staticmethod(is_running)
+
+    return Waiting

@@ -1,0 +1,196 @@
+"""What actions add to the plan and to the scope of what follows."""
+
+import os
+
+import pytest
+
+from launch_py import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    EmitEvent,
+    ExecuteProcess,
+    GroupAction,
+    LaunchDescription,
+    LogInfo,
+    OpaqueFunction,
+    ReadyPanel,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+    UnsetEnvironmentVariable,
+)
+from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.errors import LaunchFileError, NotFoundError, SubstitutionError, UsageError
+from launch_py.events import Shutdown as ShutdownEvent
+from launch_py.plan import MessageStep, ShutdownStep, StopDelays
+from launch_py.substitutions import LaunchConfiguration
+
+
+def sh(name="sh", **options):
+    return ExecuteProcess(cmd=["sh", "-c", "true"], name=name, **options)
+
+
+def texts(plan):
+    return [step.text for step in plan.steps if isinstance(step, MessageStep)]
+
+
+def test_a_default_stands_where_no_value_is_given(expand):
+    actions = [
+        DeclareLaunchArgument("world", default_value="empty"),
+        LogInfo(msg=LaunchConfiguration("world")),
+    ]
+    assert texts(expand(actions)) == ["empty"]
+    assert texts(expand(actions, world="objects")) == ["objects"]
+
+
+def test_a_required_argument_is_asked_for(expand):
+    with pytest.raises(UsageError, match=r"'model' \(a URDF\) has no default: give model:=VALUE"):
+        expand([DeclareLaunchArgument("model", description="a URDF")])
+
+
+def test_a_value_outside_the_choices_names_the_near_one_and_all(expand):
+    argument = DeclareLaunchArgument("camera", default_value="front", choices=["front", "side"])
+    with pytest.raises(UsageError, match="cannot be 'frnt'; did you mean 'front'.*front, side"):
+        expand([argument], camera="frnt")
+
+
+def test_an_unknown_argument_names_the_near_one(expand):
+    with pytest.raises(UsageError, match="no launch argument 'wrld'; did you mean 'world'"):
+        expand([DeclareLaunchArgument("world", default_value="empty")], wrld="x")
+
+
+def test_conditions_switch_actions(expand):
+    actions = [
+        DeclareLaunchArgument("headless", default_value="true"),
+        LogInfo(msg="if", condition=IfCondition(LaunchConfiguration("headless"))),
+        LogInfo(msg="unless", condition=UnlessCondition(LaunchConfiguration("headless"))),
+    ]
+    assert texts(expand(actions)) == ["if"]
+    assert texts(expand(actions, headless="0")) == ["unless"]
+
+
+def test_a_condition_on_something_else_is_refused(expand):
+    with pytest.raises(SubstitutionError, match="needs true or false, not 'perhaps'"):
+        expand([LogInfo(msg="x", condition=IfCondition("perhaps"))])
+
+
+def test_a_group_keeps_what_it_sets(expand):
+    actions = [
+        SetLaunchConfiguration("a", "outside"),
+        GroupAction(
+            [SetLaunchConfiguration("a", "inside"), LogInfo(msg=LaunchConfiguration("a"))],
+        ),
+        LogInfo(msg=LaunchConfiguration("a")),
+    ]
+    assert texts(expand(actions)) == ["inside", "outside"]
+
+
+def test_a_group_without_scope_does_not(expand):
+    actions = [
+        GroupAction([SetLaunchConfiguration("a", "inside")], scoped=False),
+        LogInfo(msg=LaunchConfiguration("a")),
+    ]
+    assert texts(expand(actions)) == ["inside"]
+
+
+def test_the_environment_is_that_of_the_scope(expand):
+    environ = {**os.environ, "LIST": "b", "GONE": "1"}
+    plan = expand(
+        [
+            sh("before"),
+            SetEnvironmentVariable("NEW", "1"),
+            UnsetEnvironmentVariable("GONE"),
+            AppendEnvironmentVariable("LIST", "c", separator=":"),
+            AppendEnvironmentVariable("LIST", "a", prepend=True, separator=":"),
+            GroupAction([SetEnvironmentVariable("NEW", "2")]),
+            sh("after", additional_env={"OWN": "x"}),
+        ],
+        environ=environ,
+    )
+    before, after = plan.processes
+    assert before.environment == {}
+    assert after.environment == {"NEW": "1", "GONE": None, "LIST": "a:b:c", "OWN": "x"}
+
+
+def test_env_replaces_everything(expand):
+    (step,) = expand([SetEnvironmentVariable("A", "1"), sh(env={"B": "2"})]).processes
+    assert step.replace_environment
+    assert step.environment == {"B": "2"}
+
+
+def test_an_opaque_function_adds_actions(expand):
+    def decide(context, word):
+        return [LogInfo(msg=word + context.launch_configurations["a"])]
+
+    actions = [SetLaunchConfiguration("a", "1"), OpaqueFunction(function=decide, args=["x"])]
+    assert texts(expand(actions)) == ["x1"]
+
+
+def test_an_opaque_function_may_return_nothing(expand):
+    assert expand([OpaqueFunction(function=lambda _: None)]).steps == ()
+
+
+def test_a_timer_delays_and_adds_up(expand):
+    plan = expand([TimerAction(period=1.5, actions=[TimerAction(period="2", actions=[sh()])])])
+    assert plan.processes[0].delay_s == 3.5
+
+
+def test_shutdown_and_its_event_mean_the_same(expand):
+    plan = expand([Shutdown(reason="a"), EmitEvent(event=ShutdownEvent(reason="b"))])
+    assert [s.reason for s in plan.steps if isinstance(s, ShutdownStep)] == ["a", "b"]
+
+
+def test_a_ready_panel_is_performed(expand):
+    plan = expand(
+        [
+            SetLaunchConfiguration("t", "/joint_states"),
+            ReadyPanel(title="arm", topics=[(LaunchConfiguration("t"), "states")]),
+            ReadyPanel(commands={"move": "arm topic pub"}),
+        ]
+    )
+    first, second = plan.panels
+    assert (first.title, first.topics) == ("arm", (("/joint_states", "states"),))
+    assert second.commands == (("move", "arm topic pub"),)
+
+
+def test_something_else_than_an_action_is_refused():
+    with pytest.raises(LaunchFileError, match="takes actions, not 'x' of type str"):
+        LaunchDescription(["x"])  # pyright: ignore[reportArgumentType]
+
+
+def test_a_missing_program_names_near_ones_before_anything_starts(expand):
+    with pytest.raises(NotFoundError, match="no program 'slep' on PATH.*did you mean 'sleep'"):
+        expand([ExecuteProcess(cmd=["slep", "1"])])
+
+
+def test_a_shell_line_is_left_to_the_shell(expand):
+    (step,) = expand([ExecuteProcess(cmd=["echo a |", "cat"], shell=True)]).processes
+    assert step.command == ("/bin/sh", "-c", "echo a | cat")
+
+
+def test_a_prefix_is_put_before_the_command(expand):
+    (step,) = expand([sh(prefix="env -i")]).processes
+    assert [os.path.basename(str(word)) for word in step.command[:3]] == ["env", "-i", "sh"]
+
+
+def test_names_are_made_unique(expand):
+    plan = expand([sh("a"), sh("a"), ExecuteProcess(cmd=["true"])])
+    assert [step.name for step in plan.processes] == ["a", "a-2", "true"]
+
+
+def test_respawn_is_a_restart_policy(expand):
+    (step,) = expand([sh(respawn=True, respawn_delay=2.0, respawn_max_retries=3)]).processes
+    policy = step.restart
+    assert (policy.when, policy.first_delay_s, policy.factor) == ("always", 2.0, 1.0)
+    assert policy.max_restarts == 3
+
+
+def test_stop_delays_may_be_substitutions(expand):
+    (step,) = expand([sh(sigterm_timeout="1.5", sigkill_timeout=2)]).processes
+    assert step.stop_delays == StopDelays(1.5, 2.0)
+
+
+def test_unknown_output_is_refused(expand):
+    with pytest.raises(LaunchFileError, match="output='scren' of sh; did you mean 'screen'"):
+        expand([sh(output="scren")])

@@ -1,0 +1,122 @@
+"""Included launch files: their scope, their arguments, what is refused."""
+
+import pytest
+
+from launch_py.errors import LaunchFileError, NotFoundError, UsageError
+from launch_py.expansion import survey_description
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.plan import MessageStep
+
+CHILD = """
+actions = [
+    DeclareLaunchArgument("world", default_value="empty", description="what to load"),
+    DeclareLaunchArgument("rate", default_value="100"),
+    SetLaunchConfiguration("mine", "child"),
+    LogInfo(msg=["child ", LaunchConfiguration("world"), " ", LaunchConfiguration("rate")]),
+]
+"""
+INCLUDE = 'IncludeLaunchDescription([ThisLaunchFileDir(), "/child.launch.py"]'
+
+
+def texts(plan):
+    return [step.text for step in plan.steps if isinstance(step, MessageStep)]
+
+
+@pytest.fixture
+def parent(write_launch_file):
+    write_launch_file(CHILD, "child.launch.py")
+
+    def write(arguments: str = "", before: str = "", after: str = ""):
+        return write_launch_file(f"actions = [{before}{INCLUDE}{arguments}),{after}]")
+
+    return write
+
+
+def test_arguments_are_passed(parent, expand_file):
+    path = parent(', launch_arguments={"world": "objects"}.items()')
+    assert texts(expand_file(path)) == ["child objects 100"]
+
+
+def test_the_command_line_reaches_an_argument_that_only_the_included_file_declares(
+    parent, expand_file
+):
+    assert texts(expand_file(parent(), rate="500")) == ["child empty 500"]
+
+
+def test_an_argument_that_the_include_fixes_is_not_for_the_command_line(parent, expand_file):
+    path = parent(', launch_arguments={"world": "objects"}')
+    with pytest.raises(UsageError, match="no launch argument 'world'; its arguments are rate"):
+        expand_file(path, world="empty")
+
+
+def test_an_included_file_sees_the_outer_configurations(parent, expand_file):
+    path = parent(before='SetLaunchConfiguration("world", "outer"), ')
+    assert texts(expand_file(path)) == ["child outer 100"]
+
+
+def test_nothing_leaks_out(parent, expand_file):
+    path = parent(after=' LogInfo(msg=LaunchConfiguration("mine", default="clean")),')
+    assert texts(expand_file(path)) == ["child empty 100", "clean"]
+
+
+def test_an_argument_that_it_does_not_declare_is_refused(parent, expand_file):
+    path = parent(', launch_arguments={"wrld": "objects"}')
+    with pytest.raises(UsageError, match=r"'wrld', which .*child.*declare; did you mean 'world'"):
+        expand_file(path)
+
+
+def test_the_survey_lists_the_included_arguments_with_their_file(parent):
+    path = parent(before='DeclareLaunchArgument("top", default_value="1"), ')
+    arguments = survey_description(read_launch_file(path), {}, path).arguments
+    assert list(arguments) == ["top", "world", "rate"]
+    assert arguments["world"].description == "what to load"
+    assert arguments["world"].launch_file is not None
+    assert arguments["world"].launch_file.name == "child.launch.py"
+
+
+def test_a_conditional_include_is_surveyed_but_not_expanded(parent, expand_file):
+    path = parent(', condition=IfCondition("false")')
+    assert texts(expand_file(path, world="objects")) == []
+
+
+def test_a_circle_of_includes_ends_with_a_sentence(write_launch_file, expand_file):
+    path = write_launch_file("actions = [IncludeLaunchDescription(ThisLaunchFile())]")
+    with pytest.raises(LaunchFileError, match="include each other without end"):
+        expand_file(path)
+
+
+def test_a_missing_file_names_its_neighbours(parent, write_launch_file, expand_file):
+    parent()
+    path = write_launch_file(f"actions = [{INCLUDE.replace('child', 'chld')})]")
+    with pytest.raises(NotFoundError, match=r"no launch file .*did you mean 'child.launch.py'"):
+        expand_file(path)
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("x = ", "line 1: SyntaxError"),
+        ("1 / 0", "line 1: ZeroDivisionError: division by zero"),
+        ("x = 1", r"does not define generate_launch_description\(\)"),
+        ("def generate_launch_description():\n    return 3", "returns int, not LaunchDescription"),
+        ("def generate_launch_description():\n    return 1 / 0", "line 2: ZeroDivisionError"),
+    ],
+)
+def test_a_broken_launch_file_is_a_sentence_with_its_line(tmp_path, body, message):
+    path = tmp_path / "broken.launch.py"
+    path.write_text(body)
+    with pytest.raises(LaunchFileError, match=message):
+        read_launch_file(path)
+
+
+def test_other_kinds_of_launch_files_are_refused(tmp_path):
+    path = tmp_path / "a.launch.xml"
+    path.touch()
+    with pytest.raises(LaunchFileError, match="XML and YAML launch files are not supported"):
+        read_launch_file(path)
+
+
+def test_reading_leaves_no_cache_folder(write_launch_file):
+    path = write_launch_file("actions = []")
+    read_launch_file(path)
+    assert [p.name for p in path.parent.iterdir() if p.name != "log"] == [path.name]

@@ -1,0 +1,142 @@
+"""The command line of a Node: program, names, namespaces, remappings, parameters."""
+
+import pytest
+import yaml
+
+from launch_py import GroupAction, SetLaunchConfiguration, TopicPublished
+from launch_py.errors import NotFoundError, ParameterError
+from launch_py.plan import GeneratedFile
+from launch_py.ros import (
+    FindPackagePrefix,
+    FindPackageShare,
+    Node,
+    PushRosNamespace,
+    SetParameter,
+    SetRemap,
+)
+from launch_py.substitution import perform_text
+from launch_py.substitutions import LaunchConfiguration
+
+
+@pytest.fixture(autouse=True)
+def demo_package(package_prefix):
+    return package_prefix("demo", "talker", "listener")
+
+
+def node(**options):
+    return Node(package="demo", executable="talker", **options)
+
+
+def words(plan, index=0):
+    return plan.processes[index].command
+
+
+def parameters(plan, index=0):
+    files = [word for word in words(plan, index) if isinstance(word, GeneratedFile)]
+    return [yaml.safe_load(file.text) for file in files]
+
+
+def test_a_bare_node_is_its_program(expand, demo_package):
+    plan = expand([node()])
+    assert words(plan) == (str(demo_package.parents[1] / "lib" / "demo" / "talker"),)
+    assert plan.processes[0].name == "talker"
+
+
+def test_arguments_come_before_the_ros_arguments(expand):
+    plan = expand([node(arguments=["-v"], ros_arguments=["--log-level", "debug"])])
+    assert words(plan)[1:] == ("-v", "--ros-args", "--log-level", "debug")
+
+
+def test_name_namespace_and_remappings(expand):
+    plan = expand(
+        [
+            PushRosNamespace("left"),
+            SetRemap("/clock", "/sim/clock"),
+            node(name="chatter", namespace="arm", remappings=[("chat", "talk")]),
+        ]
+    )
+    assert words(plan)[1:] == (
+        "--ros-args",
+        *("-r", "__node:=chatter"),
+        *("-r", "__ns:=/left/arm"),
+        *("-r", "/clock:=/sim/clock"),
+        *("-r", "chat:=talk"),
+    )
+    assert plan.processes[0].name == "chatter"
+
+
+def test_an_absolute_namespace_stands_alone(expand):
+    plan = expand([PushRosNamespace("left"), node(namespace="/right")])
+    assert "__ns:=/right" in words(plan)
+
+
+def test_namespaces_are_those_of_the_group(expand):
+    plan = expand([GroupAction([PushRosNamespace("left"), node()]), node()])
+    assert "__ns:=/left" in words(plan, 0)
+    assert len(words(plan, 1)) == 1
+
+
+def test_parameters_go_to_every_node_of_the_process(expand):
+    plan = expand([node(parameters=[{"rate": 100}])])
+    assert parameters(plan) == [{"/**": {"ros__parameters": {"rate": 100}}}]
+
+
+def test_parameters_of_a_named_node_go_to_it_alone(expand):
+    plan = expand([node(name="n", namespace="a", parameters=[{"rate": 100}])])
+    assert list(parameters(plan)[0]) == ["/a/n"]
+
+
+def test_parameters_may_be_meant_for_one_node_of_several(expand):
+    plan = expand([node(parameters_node="arm_gazebo", parameters=[{"rate": 100}])])
+    assert list(parameters(plan)[0]) == ["/arm_gazebo"]
+    assert not any("__node" in str(word) for word in words(plan))
+
+
+def test_set_parameter_comes_first_so_that_own_values_win(expand):
+    plan = expand([SetParameter("use_sim_time", True), node(parameters=[{"rate": 1}])])
+    values = [next(iter(file.values()))["ros__parameters"] for file in parameters(plan)]
+    assert values == [{"use_sim_time": True}, {"rate": 1}]
+
+
+def test_a_parameter_file_is_passed_as_it_is(expand, tmp_path):
+    path = tmp_path / "params.yaml"
+    path.touch()
+    plan = expand(
+        [SetLaunchConfiguration("f", str(path)), node(parameters=[LaunchConfiguration("f")])]
+    )
+    assert words(plan)[1:] == ("--ros-args", "--params-file", str(path))
+
+
+def test_a_missing_parameter_file_names_its_neighbours(expand, tmp_path):
+    (tmp_path / "params.yaml").touch()
+    with pytest.raises(ParameterError, match=r"talker: no parameter file .*mean 'params.yaml'"):
+        expand([node(parameters=[tmp_path / "parms.yaml"])])
+
+
+def test_a_bad_parameter_names_node_and_parameter(expand):
+    with pytest.raises(ParameterError, match="talker: parameter 'a': .*cannot be a parameter"):
+        expand([node(parameters=[{"a": object()}])])
+
+
+def test_an_unknown_executable_names_the_near_one(expand):
+    with pytest.raises(NotFoundError, match="'demo' has no executable 'takler'.*mean 'talker'"):
+        expand([Node(package="demo", executable="takler")])
+
+
+def test_relative_topics_of_a_condition_are_in_the_namespace_of_the_node(expand):
+    plan = expand([node(namespace="left", ready=[TopicPublished("chat"), TopicPublished("/abs")])])
+    assert [condition.topic for condition in plan.processes[0].ready] == ["/left/chat", "/abs"]
+
+
+def test_exec_name_names_the_process_only(expand):
+    plan = expand([node(exec_name="sim", parameters=[{"a": 1}])])
+    assert plan.processes[0].name == "sim"
+    assert not any("__node" in str(word) for word in words(plan))
+
+
+def test_find_package(demo_package):
+    from launch_py import LaunchContext
+
+    assert perform_text(LaunchContext(), FindPackageShare("demo")) == str(demo_package)
+    prefix = demo_package.parents[1]
+    assert perform_text(LaunchContext(), FindPackagePrefix("demo")) == str(prefix)

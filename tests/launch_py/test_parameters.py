@@ -1,0 +1,116 @@
+"""Parameter values: types, substitutions, and the file that the node reads."""
+
+import math
+
+import pytest
+import yaml
+
+from launch_py import LaunchContext
+from launch_py.errors import ParameterError
+from launch_py.parameters import ParameterValue, evaluate_parameters, parameter_file_text
+from launch_py.substitutions import LaunchConfiguration
+
+URDF = '<?xml version="1.0"?>\n<robot name="a:b">\n  <link name="Ärm \'1\'" # {x}/>\n\t</robot>\n'
+
+
+@pytest.fixture
+def context():
+    names = {"flag": "true", "rate": "100", "gain": "1e-2", "text": "3.x", "list": "[1, 2.5]"}
+    return LaunchContext(launch_configurations={**names, "urdf": URDF})
+
+
+def evaluated(context, value):
+    return evaluate_parameters(context, {"p": value})["p"]
+
+
+def round_trip(values):
+    return yaml.safe_load(parameter_file_text("/a/b", values))["/a/b"]["ros__parameters"]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        True,
+        3,
+        -2.5,
+        1e-7,
+        1e300,
+        "text",
+        "yes",
+        "1.0",
+        "",
+        URDF,
+        "a\u2028b\x7fc\x00",
+        "\U0001f600",
+        [1, 2],
+        [True, False],
+        ["a", "1"],
+        [0.5, 1.0],
+    ],
+)
+def test_values_survive_the_file(context, value):
+    result = round_trip({"p": evaluated(context, value)})["p"]
+    assert result == value
+    assert type(result) is type(value)
+
+
+def test_infinities_and_nan_survive_the_file():
+    result = round_trip({"a": math.inf, "b": -math.inf, "c": math.nan})
+    assert (result["a"], result["b"]) == (math.inf, -math.inf)
+    assert math.isnan(result["c"])
+
+
+def test_nested_parameters_survive_the_file(context):
+    values = evaluate_parameters(context, {"limits": {"j0": {"max": 1.5}}, "n": 1})
+    assert round_trip(values) == {"limits": {"j0": {"max": 1.5}}, "n": 1}
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("flag", True), ("rate", 100), ("gain", 0.01), ("text", "3.x"), ("list", [1.0, 2.5])],
+)
+def test_the_text_of_a_substitution_is_read_as_yaml(context, name, expected):
+    assert evaluated(context, LaunchConfiguration(name)) == expected
+
+
+def test_a_robot_description_stays_text(context):
+    assert evaluated(context, LaunchConfiguration("urdf")) == URDF
+
+
+def test_value_type_decides(context):
+    rate = LaunchConfiguration("rate")
+    assert evaluated(context, ParameterValue(rate, value_type=str)) == "100"
+    assert evaluated(context, ParameterValue(rate, value_type=float)) == 100.0
+    values = ParameterValue(LaunchConfiguration("list"), value_type=list[float])
+    assert evaluated(context, values) == [1.0, 2.5]
+
+
+def test_a_list_with_substitutions_is_one_text(context):
+    assert evaluated(context, ["/", LaunchConfiguration("text")]) == "/3.x"
+
+
+def test_integers_among_floats_become_floats(context):
+    assert evaluated(context, [1, 2.5]) == [1.0, 2.5]
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (object(), "cannot be a parameter"),
+        (None, "cannot be a parameter"),
+        (["a", 1], "mixes types"),
+        ([[1]], "mixes types"),
+        (ParameterValue("x", value_type=int), "'x' is not an integer"),
+        (ParameterValue("x", value_type=bool), "neither true nor false"),
+        (ParameterValue("x", value_type=dict), "value_type"),
+    ],
+)
+def test_what_cannot_be_a_parameter_is_named(context, value, message):
+    with pytest.raises(ParameterError, match=f"parameter 'p': .*{message}"):
+        evaluated(context, value)
+
+
+def test_a_malformed_list_is_named(context):
+    context.launch_configurations["bad"] = "[1, 2"
+    with pytest.raises(ParameterError, match="is not YAML"):
+        evaluated(context, LaunchConfiguration("bad"))

@@ -1,0 +1,162 @@
+"""What each substitution stands for, and what it says when it stands for nothing."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from launch_py import LaunchContext
+from launch_py.errors import LaunchFileError, NotFoundError, SubstitutionError
+from launch_py.substitution import perform_text
+from launch_py.substitutions import (
+    AndSubstitution,
+    Call,
+    Command,
+    EnvironmentVariable,
+    EqualsSubstitution,
+    FindExecutable,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    PathJoinSubstitution,
+    PythonExpression,
+    TextSubstitution,
+    ThisLaunchFileDir,
+)
+
+
+@pytest.fixture
+def context():
+    return LaunchContext(launch_configurations={"world": "objects", "yes": "true", "no": "false"})
+
+
+def test_a_text_may_be_joined_from_parts(context):
+    value = ["a ", TextSubstitution(text="b "), LaunchConfiguration("world"), Path("/c")]
+    assert perform_text(context, value) == "a b objects/c"
+
+
+def test_something_else_than_text_is_refused(context):
+    with pytest.raises(LaunchFileError, match="not 3 of type int"):
+        perform_text(context, 3)  # pyright: ignore[reportArgumentType]
+
+
+def test_launch_configuration_names_the_near_ones(context):
+    with pytest.raises(SubstitutionError, match="'wrld'.*did you mean 'world'"):
+        LaunchConfiguration("wrld").perform(context)
+
+
+def test_launch_configuration_takes_its_default(context):
+    assert LaunchConfiguration("other", default="x").perform(context) == "x"
+
+
+def test_environment_variable_sees_what_the_launch_file_set():
+    context = LaunchContext(base_environment={"A": "1", "B": "2"})
+    context.set_environment_variable("A", "3")
+    context.set_environment_variable("B", None)
+    assert EnvironmentVariable("A").perform(context) == "3"
+    with pytest.raises(SubstitutionError, match="B is not set"):
+        EnvironmentVariable("B").perform(context)
+    assert EnvironmentVariable("B", default_value="d").perform(context) == "d"
+
+
+def test_path_join(context):
+    parts = ["/share", [LaunchConfiguration("world"), ".xml"]]
+    assert PathJoinSubstitution(parts).perform(context) == "/share/objects.xml"
+
+
+def test_this_launch_file_dir(context):
+    context.launch_file = Path("/a/b/x.launch.py")
+    assert ThisLaunchFileDir().perform(context) == "/a/b"
+
+
+def test_command_returns_the_output(context):
+    command = [sys.executable, " -c 'print(1 + 1)'"]
+    assert Command(command).perform(context) == "2"
+
+
+def test_command_that_fails_says_what_it_said(context):
+    command = Command([sys.executable, " -c 'import sys; sys.exit(\"no such file\")'"])
+    with pytest.raises(SubstitutionError, match="exit code 1: no such file"):
+        command.perform(context)
+
+
+def test_command_that_complains_fails_unless_told_otherwise(context):
+    text = [sys.executable, " -c 'import sys; sys.stderr.write(\"hm\"); print(5)'"]
+    with pytest.raises(SubstitutionError, match="complained: hm"):
+        Command(text).perform(context)
+    assert Command(text, on_stderr="ignore").perform(context) == "5"
+
+
+def test_command_finds_programs_beside_this_python(context):
+    context.base_environment = {"PATH": "/nowhere"}
+    found = FindExecutable(name=Path(sys.executable).name).perform(context)
+    assert found == sys.executable
+
+
+def test_find_executable_names_near_programs(tmp_path):
+    (tmp_path / "xacro").touch(mode=0o755)
+    context = LaunchContext(base_environment={"PATH": str(tmp_path)})
+    with pytest.raises(NotFoundError, match="no program 'xacr'.*did you mean 'xacro'"):
+        FindExecutable(name="xacr").perform(context)
+
+
+def test_call_gets_performed_texts(context):
+    def expand(path: str, **arguments: str) -> str:
+        return f"{path} {arguments}"
+
+    call = Call(expand, ["/a/", LaunchConfiguration("world")], base=LaunchConfiguration("yes"))
+    assert call.perform(context) == "/a/objects {'base': 'true'}"
+
+
+@pytest.mark.parametrize(
+    ("substitution", "expected"),
+    [
+        (EqualsSubstitution(LaunchConfiguration("world"), "objects"), "true"),
+        (EqualsSubstitution("1", "1.0"), "true"),
+        (EqualsSubstitution("True", "true"), "true"),
+        (NotEqualsSubstitution("a", "b"), "true"),
+        (AndSubstitution("true", LaunchConfiguration("no")), "false"),
+        (OrSubstitution("true", LaunchConfiguration("no")), "true"),
+        (NotSubstitution(LaunchConfiguration("no")), "true"),
+        (IfElseSubstitution(LaunchConfiguration("yes"), "a", "b"), "a"),
+        (IfElseSubstitution("false", "a", "b"), "b"),
+    ],
+)
+def test_logic(context, substitution, expected):
+    assert substitution.perform(context) == expected
+
+
+def test_logic_on_something_else_is_refused(context):
+    with pytest.raises(SubstitutionError, match="'maybe', neither true nor false"):
+        NotSubstitution("maybe").perform(context)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("1 + 2 * 3", "7"),
+        ("'a' == 'a' and not false", "True"),
+        ("'x' if 2 > 1 else 'y'", "x"),
+        ("'b' in ['a', 'b']", "True"),
+        ("1 < 2 < 3", "True"),
+        ("-4 // 3", "-2"),
+    ],
+)
+def test_python_expression(context, expression, expected):
+    assert PythonExpression(expression).perform(context) == expected
+
+
+@pytest.mark.parametrize(
+    "expression", ["__import__('os')", "().__class__", "[x for x in 'a']", "open", "lambda: 1"]
+)
+def test_python_expression_refuses_what_could_do_something(context, expression):
+    with pytest.raises(SubstitutionError, match="not allowed"):
+        PythonExpression(expression).perform(context)
+
+
+@pytest.mark.parametrize("expression", ["1 +", "1 / 0", "'a' - 1"])
+def test_python_expression_without_value_is_a_sentence(context, expression):
+    with pytest.raises(SubstitutionError, match="expression"):
+        PythonExpression(expression).perform(context)
