@@ -142,14 +142,14 @@ def _add_extent(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_timeouts(parser: argparse.ArgumentParser) -> None:
-    for flag, default, meaning in (
-        ("--controller-manager-timeout", 0.0, "for the controller manager; 0 for ever"),
-        ("--switch-timeout", 5.0, "for a switch; 0 for the controller manager's default"),
-        ("--service-call-timeout", 10.0, "for an answer, before asking again"),
+    for flag, read, default, meaning in (
+        ("--controller-manager-timeout", _seconds, 0.0, "for the controller manager; 0 for ever"),
+        ("--switch-timeout", _seconds, 5.0, "for a switch; 0 for the manager's own default"),
+        ("--service-call-timeout", _positive_seconds, 10.0, "for an answer, before asking again"),
     ):
         parser.add_argument(
             flag,
-            type=_seconds,
+            type=read,
             default=default,
             metavar="SECONDS",
             help=f"how long to wait {meaning} (default: %(default)s)",
@@ -157,8 +157,16 @@ def _add_timeouts(parser: argparse.ArgumentParser) -> None:
 
 
 def _seconds(text: str) -> float:
-    """Read a time-out."""
+    """Read a time-out that may be 0."""
     seconds = float(text)
     if not 0.0 <= seconds < float("inf"):
         raise argparse.ArgumentTypeError(f"must be 0 or positive, not {text}")
+    return seconds
+
+
+def _positive_seconds(text: str) -> float:
+    """Read a time-out that may not."""
+    seconds = _seconds(text)
+    if seconds == 0.0:
+        raise argparse.ArgumentTypeError("must be positive, not 0")
     return seconds

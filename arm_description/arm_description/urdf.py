@@ -8,7 +8,7 @@ from arm_description.errors import UrdfError
 from arm_description.robot import Robot
 from arm_description.urdf_element import UrdfElement
 from arm_description.urdf_joint import read_joint
-from arm_description.urdf_link import defined_materials, read_link
+from arm_description.urdf_link import read_link, read_material, resolve_materials
 from arm_description.xml_document import parse_xml
 
 
@@ -33,9 +33,10 @@ def parse_urdf(text: str, source: str = "robot_description") -> Robot:
 def _read_robot(root: UrdfElement) -> Robot:
     if root.tag != "robot":
         raise root.error("is not a robot; a URDF's outermost element is <robot>")
-    materials = defined_materials(root)
+    name = root.needed_text("name")
+    links = [read_link(link) for link in root.children("link")]
     return Robot(
-        name=root.needed_text("name"),
-        links=tuple(read_link(link, materials) for link in root.children("link")),
+        name=name,
+        links=resolve_materials(links, map(read_material, root.children("material"))),
         joints=tuple(read_joint(joint) for joint in root.children("joint")),
     )

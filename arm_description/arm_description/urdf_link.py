@@ -1,6 +1,7 @@
 """URDF's <link>: inertia, shapes and materials."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from arm_description.robot import (
     Box,
@@ -17,12 +18,9 @@ from arm_description.robot import (
 )
 from arm_description.urdf_element import UrdfElement
 
-Materials = Mapping[str, Material]
-"""Materials that are defined, so have a colour or a texture, by name."""
 
-
-def read_link(element: UrdfElement, materials: Materials) -> Link:
-    """Read a <link>; a visual that only names a material gets it from `materials`.
+def read_link(element: UrdfElement) -> Link:
+    """Read a <link>; a visual that only names a material has only its name.
 
     Raises:
         UrdfError: naming element and line.
@@ -33,7 +31,7 @@ def read_link(element: UrdfElement, materials: Materials) -> Link:
     return Link(
         name=name,
         inertial=None if inertial is None else _read_inertial(inertial),
-        visuals=tuple(_read_visual(visual, materials) for visual in element.children("visual")),
+        visuals=tuple(_read_visual(visual) for visual in element.children("visual")),
         collisions=tuple(_read_collision(shape) for shape in element.children("collision")),
         line=element.line,
     )
@@ -61,18 +59,34 @@ def read_material(element: UrdfElement) -> Material:
     )
 
 
-def defined_materials(robot: UrdfElement) -> dict[str, Material]:
-    """Return the named materials that a <robot> defines, the global ones before the links'."""
-    elements = list(robot.children("material"))
-    for link in robot.children("link"):
-        for visual in link.named(link.needed_text("name")).children("visual"):
-            elements.extend(visual.children("material"))
+def resolve_materials(links: Sequence[Link], materials: Iterable[Material]) -> tuple[Link, ...]:
+    """Give the visuals that only name a material what is defined under this name.
+
+    Args:
+        links: as read.
+        materials: those of the whole robot; they go before what a link's visual defines, and
+            among those the first goes before the others.
+    """
+    used = (visual.material for link in links for visual in link.visuals)
     defined: dict[str, Material] = {}
-    for element in elements:
-        material = read_material(element)
-        if material.name and (material.rgba is not None or material.texture is not None):
+    for material in [*materials, *used]:
+        # A name of nothing stands for nothing: no colour is carried over to the next visual.
+        if material is not None and material.name and _is_defined(material):
             defined.setdefault(material.name, material)
-    return defined
+    return tuple(
+        replace(link, visuals=tuple(_resolve(visual, defined) for visual in link.visuals))
+        for link in links
+    )
+
+
+def _is_defined(material: Material) -> bool:
+    return material.rgba is not None or material.texture is not None
+
+
+def _resolve(visual: Visual, defined: Mapping[str, Material]) -> Visual:
+    if visual.material is None or _is_defined(visual.material):
+        return visual
+    return replace(visual, material=defined.get(visual.material.name, visual.material))
 
 
 def _read_inertial(element: UrdfElement) -> Inertial:
@@ -91,20 +105,14 @@ def _read_inertial(element: UrdfElement) -> Inertial:
     )
 
 
-def _read_visual(element: UrdfElement, materials: Materials) -> Visual:
+def _read_visual(element: UrdfElement) -> Visual:
     material = element.child("material")
     return Visual(
         name=element.text("name", ""),
         origin=element.origin(),
         geometry=_read_geometry(element),
-        material=None if material is None else _resolve(read_material(material), materials),
+        material=None if material is None else read_material(material),
     )
-
-
-def _resolve(material: Material, materials: Materials) -> Material:
-    if material.rgba is not None or material.texture is not None:
-        return material
-    return materials.get(material.name, material)
 
 
 def _read_collision(element: UrdfElement) -> Collision:

@@ -110,10 +110,12 @@ class BodyTree:
             for remark in inertia.remarks:
                 self._report.warn(f"link '{link.name}'", remark, link.line)
         elif moves and not self._carries_mass(link.name):
-            inertia = missing_inertia(self._geometry.bounds(link))
+            box = self._geometry.bounds(link)
+            inertia = missing_inertia(box)
+            reason = "it has no shape to go by" if box is None else "going by its size"
             self._report.warn(
                 f"link '{link.name}'",
-                f"it moves but has no mass; {inertia.mass:.3g} kg is used, going by its size",
+                f"it moves but has no mass; {inertia.mass:.3g} kg is used, {reason}",
                 link.line,
             )
         else:

@@ -22,8 +22,6 @@ from arm_gazebo.rendering.renderer import camera_id
 MODEL_FILE_NAME = "camera-model"
 FRAMING_BYTES = 4096
 """What a snapshot has beside positions, generously."""
-
-
 LEAST_INTERVAL_S = 0.002
 """Wall time between two states for one camera. A simulation that runs as fast as possible would
 keep the camera process busy with more than anybody can look at."""

@@ -1,6 +1,7 @@
 """The child process that renders, seen from the simulation: start, watch, start again, end."""
 
 import logging
+import math
 import os
 import signal
 import subprocess
@@ -60,7 +61,7 @@ class CameraProcess:
         self._backend: str | None = None
         self._delay_s = FIRST_DELAY_S
         self._started_s = 0.0
-        self._start_again_s = 0.0
+        self._start_again_s = math.inf
 
     @property
     def pid(self) -> int | None:
@@ -86,14 +87,17 @@ class CameraProcess:
         ]
         self._backend = None
         self._started_s = self._clock()
-        self._process = self._spawn(
-            command,
-            env=camera_environment(self._environ),
-            pass_fds=(socket_fd,),
-            stdin=subprocess.DEVNULL,
-            # Out of the reach of Ctrl-C: it ends with the simulation, and not before.
-            process_group=0,
-        )
+        try:
+            self._process = self._spawn(
+                command,
+                env=camera_environment(self._environ),
+                pass_fds=(socket_fd,),
+                stdin=subprocess.DEVNULL,
+                # Out of the reach of Ctrl-C: it ends with the simulation, and not before.
+                process_group=0,
+            )
+        except OSError as error:
+            self._try_later(f"the camera process cannot be started ({error})")
 
     def start_again_due(self, backends_tried: Sequence[str]) -> bool:
         """Return whether the process has died and is to be started again now.
@@ -133,7 +137,7 @@ class CameraProcess:
         now = self._clock()
         if now - self._started_s >= HEALTHY_AFTER_S:
             self._delay_s = FIRST_DELAY_S
-        how = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"
+        how = f"({signal.strsignal(-code)})" if code < 0 else f"with exit code {code}"
         if self._backend_failed(code):
             failed = str(self._backend)
             self._settings = replace(self._settings, excluded=(*self._settings.excluded, failed))
@@ -143,8 +147,11 @@ class CameraProcess:
                 *(how, failed, failed),
             )
             return
-        self._start_again_s = now + self._delay_s
-        logger.warning("the camera process ended %s; it starts again in %g s", how, self._delay_s)
+        self._try_later(f"the camera process ended {how}")
+
+    def _try_later(self, what: str) -> None:
+        self._start_again_s = self._clock() + self._delay_s
+        logger.warning("%s; it starts again in %g s", what, self._delay_s)
         self._delay_s = min(2 * self._delay_s, LONGEST_DELAY_S)
 
     def _backend_failed(self, code: int) -> bool:

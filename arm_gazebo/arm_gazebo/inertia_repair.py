@@ -117,7 +117,8 @@ def _physical(moments: Array, remarks: list[str]) -> Array:
     if moments.min() < -floor:
         remarks.append(f"its inertia has a principal moment below 0 ({moments.min():.3g} kg m2)")
     moments = np.maximum(moments, floor)
-    missing = 2 * largest - moments.sum()
+    # The margin keeps rounding from failing MuJoCo's own check.
+    missing = (2 + 1e-9) * largest - moments.sum()
     if missing > ROUNDING * largest:
         remarks.append(
             f"its inertia is impossible: {largest:.4g} kg m2 about one principal axis is more "

@@ -61,6 +61,7 @@ class LinkGeometry:
         self._masks = masks
         self._strict = strict
         self._report = report
+        self._reported: set[str] = set()
 
     def add(self, body: mujoco.MjsBody, link: Link) -> None:
         """Add the visuals and collisions of a link to its body.
@@ -124,7 +125,7 @@ class LinkGeometry:
         try:
             assets = self._meshes.assets(geometry)
         except MeshError as error:
-            yield self._stand_in(error, link)
+            yield self._stand_in(geometry, error, link)
             return
         for asset in assets:
             yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name, rgba=asset.rgba)
@@ -137,7 +138,7 @@ class LinkGeometry:
         try:
             parts = self._meshes.parts(geometry)
         except MeshError as error:
-            yield self._stand_in(error, link)
+            yield self._stand_in(geometry, error, link)
             return
         for part, asset in zip(parts, self._meshes.assets(geometry), strict=True):
             if part.is_flat():
@@ -165,11 +166,13 @@ class LinkGeometry:
         geom.mass = 0.0
         return geom
 
-    def _stand_in(self, error: MeshError, link: Link) -> _Shape:
+    def _stand_in(self, mesh: Mesh, error: MeshError, link: Link) -> _Shape:
         element = f"link '{link.name}'"
         if self._strict:
             raise MeshError(f"{element} (line {link.line}): {error}") from error
-        self._report.warn(element, f"{error}\na box of 5 cm takes its place", link.line)
+        if mesh.uri not in self._reported:
+            self._reported.add(mesh.uri)
+            self._report.warn(element, f"{error}\na box of 5 cm takes its place", link.line)
         half = STAND_IN_SIDE_M / 2
         return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=STAND_IN_COLOR)
 

@@ -57,18 +57,10 @@ def build_model(
     report = BuildReport()
     spec = load_world(world)
     _check_names(spec, robot, world)
+    free = options.base == "free" and robot.root != WORLD_LINK
     # Values of what is not set: the world file's own defaults are meant for the world.
     plain = mujoco.MjSpec()
-    free = options.base == "free" and robot.root != WORLD_LINK
-    geometry = LinkGeometry(
-        MeshLibrary(spec, options.package_path),
-        plain.default,
-        masks_for(options.self_collide),
-        options.strict,
-        report,
-    )
-    tree = TreeOptions(options.step_s, plain.default, free, options.spawn or Pose())
-    bodies = BodyTree(spec, robot, geometry, tree, report).add()
+    bodies = _add_links(spec, plain.default, robot, free, options, report)
     follow = followings(robot, report)
     add_equalities(spec, robot, follow, options.step_s, report)
     driven = drives(robot, hardware, follow, report)
@@ -94,6 +86,26 @@ def build_model(
         qpos=qpos,
         report=report,
     )
+
+
+def _add_links(
+    spec: mujoco.MjSpec,
+    default: mujoco.MjsDefault,
+    robot: Robot,
+    free: bool,
+    options: BuildOptions,
+    report: BuildReport,
+) -> dict[str, mujoco.MjsBody]:
+    """Add links, joints and shapes of a robot to a world; return the bodies by link name."""
+    geometry = LinkGeometry(
+        MeshLibrary(spec, options.package_path),
+        default,
+        masks_for(options.self_collide),
+        options.strict,
+        report,
+    )
+    tree = TreeOptions(options.step_s, default, free, options.spawn or Pose())
+    return BodyTree(spec, robot, geometry, tree, report).add()
 
 
 def _check_names(spec: mujoco.MjSpec, robot: Robot, world: str | Path) -> None:

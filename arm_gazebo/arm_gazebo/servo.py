@@ -58,8 +58,8 @@ class Servo:
         self._data = data
         self._tuning = tuning
         self._period_s = timing.period_s
-        # A set-point's position is exact at the end of a period, the integrator's half a step
-        # behind its velocity.
+        # The force sees the position at the start of a step and the set-point of its end: at
+        # constant speed they lie one step apart.
         self._lead_s = TIME_CONSTANT_S - timing.step_s
         self._joints = tuple(
             DrivenJoint(joint, tuning.bounds(index), timing.period_s)
@@ -226,16 +226,17 @@ class Servo:
         self._ctrl[:] = rates
 
     def _set_gains(self, index: int, mode: DriveMode) -> None:
-        actuator = self._actuators[index]
-        stiffness, damping, gain = 0.0, 0.0, 0.0
+        tuning, model, actuator = self._tuning, self._model, self._actuators[index]
+        gain, stiffness, damping = 0.0, 0.0, 0.0
+        rotor = tuning.limp_armature[index]
         if mode in SERVOED:
-            stiffness = float(self._tuning.stiffness[index])
-            damping = float(self._tuning.damping[index])
-            gain = stiffness
+            gain = stiffness = tuning.stiffness[index]
+            damping, rotor = tuning.damping[index], tuning.armature[index]
         elif mode is DriveMode.EFFORT:
             gain = 1.0
-        self._model.actuator_gainprm[actuator, 0] = gain
-        self._model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
+        model.actuator_gainprm[actuator, 0] = gain
+        model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
+        model.dof_armature[self._joints[index].joint.dof_address] = rotor
 
 
 def as_slice(indices: NDArray[np.intp]) -> slice | NDArray[np.intp]:

@@ -6,7 +6,8 @@ torque of gravity. From those follow:
 * armature: the rotor that a geared motor adds, a tenth of the largest inertia or more: enough
   that the drive is stiff for its effort, which at 20 mrad of error is all in use. (Real geared
   joints reach 100 to 300 rad/s2 at full effort against their rotor alone, these 1000.) It also
-  keeps the inertia matrix away from singular, M >= diag(armature).
+  keeps the inertia matrix away from singular, M >= diag(armature). A drive that is limp, or
+  commanded by effort, has the tenth only: it shall fall and swing as the links do.
 * damping gain: 2 armature / step. A drive at its effort limit acts explicitly, whatever the
   integrator, and energy then falls in each step as long as step x diag(damping) <= 2 M. So no
   saturated drive can chatter, in any pose, however the joints couple.
@@ -31,13 +32,15 @@ ARMATURE_SHARE = 0.1
 TIME_CONSTANT_S = 0.02
 FULL_EFFORT_ERROR = 0.02
 """Error in rad or m at which a drive uses all of its effort, at the latest."""
+USUAL_EFFORT = 10.0
+"""N m or N, taken for the size of a drive whose effort has no limit."""
 POSES = 200
 POSE_SEED = 20240
 EFFORT_SHARE = 0.5
 LEAST_EFFORT_SHARE = 0.1
 """Of the effort limit, for a joint that can hardly hold the arm: it shall move all the same."""
-STEPS_TO_FULL_SPEED = 2
-"""Bound on acceleration where effort is plenty: a jerk in one step shakes the other joints."""
+PERIODS_TO_FULL_SPEED = 2
+"""Bound on acceleration where effort is plenty: what changes within a period is not planned."""
 ENDLESS_RANGE = (-math.pi, math.pi)
 
 
@@ -63,6 +66,8 @@ class ServoTuning:
     Attributes:
         stiffness: N m/rad or N/m.
         damping: N m s/rad or N s/m.
+        armature: inertia of the rotors of drives that follow a set-point, kg m2 or kg.
+        limp_armature: the same of drives that do not; those need no stiffness.
         efforts: limits, N m or N; inf for none.
         braking: accelerations that all joints can have at once anywhere, rad/s2 or m/s2.
         jerkless: highest accelerations at all, rad/s2 or m/s2.
@@ -74,6 +79,8 @@ class ServoTuning:
 
     stiffness: Array
     damping: Array
+    armature: Array
+    limp_armature: Array
     efforts: Array
     braking: Array
     jerkless: Array
@@ -90,31 +97,38 @@ class ServoTuning:
         )
 
 
-def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> ServoTuning:
-    """Return the tuning of the driven joints, and put their armature into the model.
+def tune(
+    model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array, period_s: float
+) -> ServoTuning:
+    """Return the tuning of the driven joints, and give them the rotors of limp drives.
 
     Args:
-        model: gets `dof_armature`, and gains that stay 0 until a servo sets them.
+        model: gets `dof_armature`, and what MuJoCo derives of it.
         joints: the driven joints.
         qpos: a pose for all that is not driven, shape (nq,).
+        period_s: control period.
     """
     coupling = _coupling(model, joints)
+    dofs = [joint.dof_address for joint in joints]
+    model.dof_armature[dofs] = 0.0
     inertias, own, gravities = _sample(model, joints, coupling, qpos)
     largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0)
     efforts = np.array([joint.effort for joint in joints])
-    armature = np.maximum(ARMATURE_SHARE * largest, _rotor(efforts, model.opt.timestep))
-    for joint, value in zip(joints, armature, strict=True):
-        model.dof_armature[joint.dof_address] += value
+    limp_armature = ARMATURE_SHARE * largest
+    armature = np.maximum(limp_armature, _rotor(efforts, model.opt.timestep))
+    model.dof_armature[dofs] = limp_armature
     mujoco.mj_setConst(model, mujoco.MjData(model))
     gravity = gravities.max(axis=0)
     damping = 2.0 * armature / model.opt.timestep
     speeds = np.array([joint.velocity for joint in joints])
-    jerkless = speeds / (STEPS_TO_FULL_SPEED * model.opt.timestep)
+    jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
     worst = np.abs(inertias).max(axis=0) + np.diag(armature)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
+        armature=armature,
+        limp_armature=limp_armature,
         efforts=efforts,
         braking=_shared_accelerations(worst, spare, jerkless),
         jerkless=jerkless,
@@ -126,7 +140,7 @@ def tune(model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array) -> Se
 
 def _rotor(efforts: Array, step_s: float) -> Array:
     """Return the armature, shape (n,), whose stiffness needs FULL_EFFORT_ERROR for all effort."""
-    bounded = np.where(np.isfinite(efforts), efforts, 0.0)
+    bounded = np.where(np.isfinite(efforts), efforts, USUAL_EFFORT)
     return bounded / FULL_EFFORT_ERROR * TIME_CONSTANT_S * step_s / 2.0
 
 

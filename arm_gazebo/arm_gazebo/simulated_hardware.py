@@ -78,7 +78,8 @@ class SimulatedHardware:
         self._claimed: set[str] = set()
         self._active: tuple[_CommandInterface, ...] = ()
         self._beyond: set[str] = set()
-        self._warnings: list[str] = []
+        # One for each interface: a command that trembles about its limit shall not fill the log.
+        self._warnings: dict[str, str] = {}
         self.bind(np.empty(len(self._states)), np.empty(len(self._interfaces)))
 
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
@@ -172,13 +173,13 @@ class SimulatedHardware:
 
     def take_warnings(self) -> list[str]:
         """Return what users should hear about their commands since the last call."""
-        warnings, self._warnings = self._warnings, []
-        return warnings
+        warnings, self._warnings = self._warnings, {}
+        return list(warnings.values())
 
     def _clamped(self, interface: _CommandInterface, value: float) -> float:
         if interface.name not in self._beyond:
             self._beyond.add(interface.name)
-            self._warnings.append(interface.warning(value))
+            self._warnings[interface.name] = interface.warning(value)
         return min(max(value, interface.lower), interface.upper)
 
     def _neutral(self, interface: _CommandInterface) -> float:

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from arm_gazebo.built_model import BuiltModel
+from arm_gazebo.contact_gate import ContactGate
 from arm_gazebo.drive_mode import DriveMode
 from arm_gazebo.errors import TimingError
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
@@ -41,10 +42,11 @@ class Simulation:
         self.timing = timing
         self.model = built.model
         self.data = mujoco.MjData(built.model)
+        self._saved_qpos = self.data.qpos.copy()
         self.idle_mode = DriveMode.HOLD if hold_joints else DriveMode.LIMP
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
-        tuning = tune(self.model, driven, built.qpos)
+        tuning = tune(self.model, driven, built.qpos, timing.period_s)
         for joint, gravity in zip(driven, tuning.gravity.tolist(), strict=True):
             if gravity > joint.effort:
                 logger.warning(
@@ -55,13 +57,13 @@ class Simulation:
                     gravity,
                 )
         self.servo = Servo(self.model, self.data, driven, tuning, timing)
+        self._restart(built.qpos, 0.0)
+        self._gate = ContactGate(self.model, self.data, timing.period_s)
         self._failures: list[str] = []
         self._ticks_to_save = 0
         self._save_ticks = max(1, round(SAVE_EVERY_S / timing.period_s))
-        self._saved_qpos = self.data.qpos.copy()
         # Without a handler MuJoCo writes a log file into whatever folder this process runs in.
         mujoco.set_mju_user_warning(_log_warning)
-        self._restart(built.qpos, 0.0)
         for index in range(len(driven)):
             self.servo.set_mode(index, self.idle_mode)
 
@@ -75,6 +77,7 @@ class Simulation:
         data = self.data
         before_s = data.time
         self.servo.update()
+        self._gate.update()
         mujoco.mj_step(self.model, data, self.timing.steps)
         if data.time <= before_s:
             # MuJoCo starts over by itself where a number is no longer finite.

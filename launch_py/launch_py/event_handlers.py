@@ -42,8 +42,9 @@ class ProcessEventHandler:
         inner.after = (*context.after, Trigger(self.kind, self.target_action))
         if self.function is not None:
             inner.plan.add(inner.deferred(self.function))
-        for action in self.actions:
-            action.visit(inner)
+        with inner.plan.detached():
+            for action in self.actions:
+                action.visit(inner)
 
 
 class OnProcessStart(ProcessEventHandler):

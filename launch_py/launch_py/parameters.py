@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, get_args, get_origin
@@ -13,6 +14,9 @@ from launch_py.truth import parse_truth
 
 if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
+
+UNPRINTABLE = re.compile("[\x7f-\x9f\ufffe\uffff]")
+"""What JSON writes as it is and YAML does not allow bare."""
 
 Value = bool | int | float | str | list[Any] | dict[str, Any]
 
@@ -130,8 +134,7 @@ def _dump(value: Value | Mapping[str, Any]) -> str:
         case float():
             return _dump_float(value)
         case str():
-            # Unicode stays as it is: YAML has no surrogate pairs. DEL is not allowed bare.
-            return json.dumps(value, ensure_ascii=False).replace("\\x7f", "\\\\x7f")
+            return UNPRINTABLE.sub(_escape, json.dumps(value, ensure_ascii=False))
     return str(value)
 
 
@@ -140,7 +143,13 @@ def _dump_float(value: float) -> str:
         return ".nan"
     if value in (float("inf"), float("-inf")):
         return ".inf" if value > 0 else "-.inf"
-    return repr(value)
+    mantissa, exponent, power = repr(value).partition("e")
+    # YAML wants the point: 1e-07 would be a string.
+    return f"{mantissa}.0e{power}" if exponent and "." not in mantissa else repr(value)
+
+
+def _escape(match: re.Match[str]) -> str:
+    return f"\\u{ord(match[0]):04x}"
 
 
 def _one_type(items: list[Any]) -> list[Any]:

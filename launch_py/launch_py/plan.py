@@ -178,6 +178,19 @@ class PlanBuilder:
         finally:
             self._expanding.pop()
 
+    @contextmanager
+    def detached(self) -> Iterator[None]:
+        """Attribute the processes added inside to none of the actions around.
+
+        What an event handler starts may never start: whoever waits for a group, an include or a
+        process must not wait for its handlers.
+        """
+        around, self._expanding = self._expanding, []
+        try:
+            yield
+        finally:
+            self._expanding = around
+
     def add(self, step: Step) -> None:
         """Add a step."""
         if isinstance(step, ProcessStep):

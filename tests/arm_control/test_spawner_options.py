@@ -35,7 +35,13 @@ def test_the_manager_and_time_outs_can_be_chosen() -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["a", "--nonsense"], ["a", "--switch-timeout", "-1"], ["a", "--switch-timeout", "soon"]],
+    [
+        [],
+        ["a", "--nonsense"],
+        ["a", "--switch-timeout", "-1"],
+        ["a", "--switch-timeout", "soon"],
+        ["a", "--service-call-timeout", "0"],
+    ],
 )
 def test_a_wrong_command_line_ends_with_code_2(
     arguments: list[str], capsys: pytest.CaptureFixture[str]

@@ -34,7 +34,7 @@ def test_names_and_lines_are_kept_in_the_documents_order():
 
 def test_what_belongs_to_others_and_what_is_unknown_is_passed_over():
     robot = parse_urdf(
-        """<robot name='r' xmlns:x='http://www.ros.org/wiki/xacro' version='1.0'>
+        """<robot name='r' xmlns:x='http://www.ros.org/wiki/xacro' xmlns:y='y' version='1.0'>
              text
              <gazebo reference='nowhere'><sensor type='camera'/></gazebo>
              <ros2_control name='x'><joint name='j9'/></ros2_control>

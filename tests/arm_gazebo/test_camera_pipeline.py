@@ -201,7 +201,9 @@ def test_a_state_that_does_not_fit_its_model_is_refused(process):
         process.pipeline.handle([model_message(mjcf=other), process.state(0.0)])
 
 
-def test_a_file_that_holds_no_model_is_refused(process):
+def test_a_file_that_holds_no_model_is_refused(process, tmp_path, monkeypatch):
+    # MuJoCo writes a log file into the working folder.
+    monkeypatch.chdir(tmp_path)
     file = os.memfd_create("garbage")
     os.write(file, b"garbage" * 100)
     with pytest.raises(CameraError, match="cannot load the compiled model"):

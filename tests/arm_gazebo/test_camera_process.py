@@ -99,6 +99,25 @@ def test_a_child_that_died_starts_again_after_a_growing_delay(world):
     assert delays == [1, 2, 4, 8, 16, 30, 30]
 
 
+def test_what_cannot_be_started_is_tried_again(caplog):
+    def no_memory(*_arguments: object, **_options: object) -> None:
+        raise OSError("Cannot allocate memory")
+
+    now_s = 0.0
+    settings = CameraSettings((CameraSensor("c", "l", "f"),))
+    process = CameraProcess(settings, environ={}, clock=lambda: now_s, spawn=no_memory)
+    process.start(7)
+    assert "cannot be started (Cannot allocate memory)" in caplog.text
+    assert not process.start_again_due([])
+    now_s = 1.0
+    assert process.start_again_due([])
+
+
+def test_what_was_never_started_is_not_started_again():
+    process = CameraProcess(CameraSettings(()), environ={})
+    assert not process.start_again_due([])
+
+
 def test_a_long_life_starts_the_delays_anew(world):
     world.die(1)
     world.now_s += 1.0

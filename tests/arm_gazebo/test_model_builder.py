@@ -298,7 +298,7 @@ def test_buffer_takes_the_largest_camera(parts):
 
 def test_camera_on_a_link_that_does_not_exist_is_refused(parts):
     sensor = CameraSensor("eye", "head", "head")
-    with pytest.raises(ModelError, match="camera 'eye' is on link 'head', .* the robot has base"):
+    with pytest.raises(ModelError, match=r"camera 'eye' is on link 'head', .* the robot has base"):
         parts.build(parts.robot(shaped("base")), cameras=[sensor])
 
 

@@ -266,3 +266,12 @@ def test_joint_too_weak_for_its_load_sinks_and_stays_finite(bench, parts, caplog
     assert weak.state("position")[0] > 0.5
     assert math.isfinite(weak.state("velocity")[0])
     assert "joint 'j': its effort limit of 2 is below the 4.905" in caplog.text
+
+
+def test_limp_arm_falls_as_its_links_do_however_strong_its_drives(bench, parts):
+    falls = []
+    for effort in ("5", "300"):
+        arm = bench(parts.arm(effort_limit=effort, j1_pos="0.5"), hold_joints=False)
+        falls.append(arm.run(0.4)[-1])
+    assert falls[0] == pytest.approx(falls[1], abs=1e-9)
+    assert falls[0][1] > 1.0

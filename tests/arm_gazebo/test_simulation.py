@@ -82,3 +82,10 @@ def test_arm_pushes_a_thing_that_lies_still(bench, parts):
     arm.command(-1.0, 1.9, 0.3, 0.5)
     arm.run(2.0)
     assert abs(data.qpos[address] - 0.03) > 0.02
+
+
+def test_robot_that_cannot_move_is_simulated(parts):
+    built = parts.build(parts.robot(parts.link("base", 1.0)))
+    simulation = Simulation(built, physics_timing(100))
+    simulation.advance()
+    assert simulation.time_s == pytest.approx(0.01)

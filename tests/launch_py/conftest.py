@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import psutil
 import pytest
@@ -23,8 +24,10 @@ from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan import Plan
 
 TIMEOUT_S = 30.0
+T = TypeVar("T")
 IMPORTS = """
 import sys
+from textwrap import dedent
 from launch_py import *
 from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.event_handlers import OnProcessExit, OnProcessStart
@@ -33,7 +36,7 @@ from launch_py.substitutions import *
 
 
 def python(name, code, **options):
-    return ExecuteProcess(cmd=[sys.executable, "-c", code], name=name, **options)
+    return ExecuteProcess(cmd=[sys.executable, "-c", dedent(code)], name=name, **options)
 
 
 def forever(name, **options):
@@ -44,14 +47,15 @@ def forever(name, **options):
 """
 
 
-def wait_until(condition: Callable[[], object], what: str, timeout_s: float = TIMEOUT_S) -> None:
-    """Block until the condition is true; fail after the time-out."""
+def wait_until(condition: Callable[[], T], what: str, timeout_s: float = TIMEOUT_S) -> T:
+    """Block until the condition is true, and return what it returned; fail after the time-out."""
     deadline_s = time.monotonic() + timeout_s
     pause = threading.Event()
-    while not condition():
+    while not (result := condition()):
         if time.monotonic() > deadline_s:
             pytest.fail(f"{what} did not happen within {timeout_s} s")
         pause.wait(0.01)
+    return result
 
 
 class Launched:
@@ -162,8 +166,7 @@ def launch(write_launch_file, launch_environment):
     launched: list[Launched] = []
 
     def start(actions: str, *arguments: str, **environment: str) -> Launched:
-        path = write_launch_file(actions)
-        command = [sys.executable, "-m", "launch_py", str(path), *arguments]
+        command = [sys.executable, "-m", "launch_py", str(write_launch_file(actions)), *arguments]
         launched.append(Launched(command, {**launch_environment, **environment}))
         return launched[-1]
 
@@ -235,7 +238,7 @@ def package_prefix(tmp_path, monkeypatch):
 
 @pytest.fixture
 def waiting():
-    """Give the tests `wait_until` and `is_running`: test modules cannot import a conftest."""
+    """Give the tests what they wait with: test modules cannot import a conftest."""
 
     class Waiting:
         until = staticmethod(wait_until)

@@ -51,7 +51,7 @@ def test_a_required_argument_is_asked_for(expand):
 
 def test_a_value_outside_the_choices_names_the_near_one_and_all(expand):
     argument = DeclareLaunchArgument("camera", default_value="front", choices=["front", "side"])
-    with pytest.raises(UsageError, match="cannot be 'frnt'; did you mean 'front'.*front, side"):
+    with pytest.raises(UsageError, match=r"cannot be 'frnt'; did you mean 'front'.*front, side"):
         expand([argument], camera="frnt")
 
 
@@ -160,7 +160,7 @@ def test_something_else_than_an_action_is_refused():
 
 
 def test_a_missing_program_names_near_ones_before_anything_starts(expand):
-    with pytest.raises(NotFoundError, match="no program 'slep' on PATH.*did you mean 'sleep'"):
+    with pytest.raises(NotFoundError, match=r"no program 'slep' on PATH.*did you mean 'sleep'"):
         expand([ExecuteProcess(cmd=["slep", "1"])])
 
 

@@ -114,12 +114,12 @@ def test_a_missing_parameter_file_names_its_neighbours(expand, tmp_path):
 
 
 def test_a_bad_parameter_names_node_and_parameter(expand):
-    with pytest.raises(ParameterError, match="talker: parameter 'a': .*cannot be a parameter"):
+    with pytest.raises(ParameterError, match=r"talker: parameter 'a': .*cannot be a parameter"):
         expand([node(parameters=[{"a": object()}])])
 
 
 def test_an_unknown_executable_names_the_near_one(expand):
-    with pytest.raises(NotFoundError, match="'demo' has no executable 'takler'.*mean 'talker'"):
+    with pytest.raises(NotFoundError, match=r"'demo' has no executable 'takler'.*mean 'talker'"):
         expand([Node(package="demo", executable="takler")])
 
 

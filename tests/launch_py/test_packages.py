@@ -44,7 +44,7 @@ def test_a_program_of_a_prefix(packages, package_prefix):
 
 
 def test_an_unknown_package_names_the_near_one(packages):
-    with pytest.raises(NotFoundError, match="no package 'dmo'.*did you mean 'demo'"):
+    with pytest.raises(NotFoundError, match=r"no package 'dmo'.*did you mean 'demo'"):
         packages.executable("dmo", "talker")
 
 

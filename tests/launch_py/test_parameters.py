@@ -1,6 +1,9 @@
 """Parameter values: types, substitutions, and the file that the node reads."""
 
+import json
 import math
+import subprocess
+import sys
 
 import pytest
 import yaml
@@ -106,7 +109,7 @@ def test_integers_among_floats_become_floats(context):
     ],
 )
 def test_what_cannot_be_a_parameter_is_named(context, value, message):
-    with pytest.raises(ParameterError, match=f"parameter 'p': .*{message}"):
+    with pytest.raises(ParameterError, match=rf"parameter 'p': .*{message}"):
         evaluated(context, value)
 
 
@@ -114,3 +117,54 @@ def test_a_malformed_list_is_named(context):
     context.launch_configurations["bad"] = "[1, 2"
     with pytest.raises(ParameterError, match="is not YAML"):
         evaluated(context, LaunchConfiguration("bad"))
+
+
+PRINT_PARAMETERS = """
+import json, sys
+import rclpy
+from rclpy.node import Node
+rclpy.init()
+node = Node(
+    "n", namespace="a", allow_undeclared_parameters=True,
+    automatically_declare_parameters_from_overrides=True,
+)
+values = {name: p.value for name, p in node._parameters.items() if "start_type" not in name}
+values = {n: list(v) if hasattr(v, "typecode") else v for n, v in values.items()}
+print(json.dumps(values))
+node.destroy_node()
+rclpy.shutdown()
+"""
+
+
+@pytest.mark.ros
+def test_a_real_node_reads_the_file(tmp_path, context):
+    values = evaluate_parameters(
+        context,
+        {
+            "flag": LaunchConfiguration("flag"),
+            "count": 3,
+            "rate": 100.0,
+            "tiny": 1e-7,
+            "endless": math.inf,
+            "word": "yes",
+            "number": "1.0",
+            "description": ParameterValue(LaunchConfiguration("urdf"), value_type=str),
+            "joints": ["j0", "j1"],
+            "pose": [0.0, 1.5],
+            "limits": {"j0": {"max": 2.0}},
+        },
+    )
+    path = tmp_path / "params.yaml"
+    path.write_text(parameter_file_text("/a/n", values), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", PRINT_PARAMETERS, "--ros-args", "--params-file", str(path)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    read = json.loads(done.stdout)
+    assert read.pop("limits.j0.max") == values.pop("limits")["j0"]["max"]
+    assert {name: read[name] for name in values} == values
+    assert {name: type(read[name]) for name in values} == {n: type(v) for n, v in values.items()}

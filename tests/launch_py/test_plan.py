@@ -47,12 +47,12 @@ def test_depends_on_all_processes_of_a_group_or_an_include(expand):
 
 
 def test_an_unknown_name_names_the_near_one(expand):
-    with pytest.raises(LaunchFileError, match="b waits for unknown process 'sim1'.*mean 'sim'"):
+    with pytest.raises(LaunchFileError, match=r"b waits for unknown process 'sim1'.*mean 'sim'"):
         expand([sh("sim"), sh("b", depends_on="sim1")])
 
 
 def test_an_action_that_is_not_in_the_description_is_refused(expand):
-    with pytest.raises(LaunchFileError, match="b waits for .* not part of the launch description"):
+    with pytest.raises(LaunchFileError, match=r"b waits for .* not part of the launch description"):
         expand([sh("b", depends_on=sh("a"))])
 
 

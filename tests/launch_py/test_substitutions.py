@@ -43,7 +43,7 @@ def test_something_else_than_text_is_refused(context):
 
 
 def test_launch_configuration_names_the_near_ones(context):
-    with pytest.raises(SubstitutionError, match="'wrld'.*did you mean 'world'"):
+    with pytest.raises(SubstitutionError, match=r"'wrld'.*did you mean 'world'"):
         LaunchConfiguration("wrld").perform(context)
 
 
@@ -98,7 +98,7 @@ def test_command_finds_programs_beside_this_python(context):
 def test_find_executable_names_near_programs(tmp_path):
     (tmp_path / "xacro").touch(mode=0o755)
     context = LaunchContext(base_environment={"PATH": str(tmp_path)})
-    with pytest.raises(NotFoundError, match="no program 'xacr'.*did you mean 'xacro'"):
+    with pytest.raises(NotFoundError, match=r"no program 'xacr'.*did you mean 'xacro'"):
         FindExecutable(name="xacr").perform(context)
 
 

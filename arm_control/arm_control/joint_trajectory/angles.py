@@ -1,6 +1,5 @@
 """Angles of continuous joints, where a turn more or less is the same place."""
 
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,6 +1,5 @@
 """Fills in what a trajectory leaves open: joints that it does not name, quantities to integrate."""
 
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,7 +37,8 @@ def integrate(times_s: Array, motions: Array, start: Array) -> NDArray[np.float6
         start: motion before the first one, shape (4, n); its position is known.
     """
     chain = np.concatenate([start[None], motions])
-    halves = np.diff(np.maximum(times_s, 0.0), prepend=0.0)[:, None] / 2.0
+    # There is no way from the start to a first point in the past.
+    halves = np.diff(times_s, prepend=min(0.0, times_s[0]))[:, None] / 2.0
     position, velocity, acceleration = (chain[:, row] for row in (POSITION, VELOCITY, ACCELERATION))
     open_position = np.isnan(position)
     open_velocity = open_position & np.isnan(velocity)

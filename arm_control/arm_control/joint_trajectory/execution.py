@@ -70,7 +70,7 @@ class Execution:
             return Verdict.UNDER_WAY
         if self.tolerances.goal.hold(error):
             return Verdict.AT_THE_GOAL
-        if 0.0 < self.tolerances.goal_time_s < late_s:
+        if 0.0 < self.tolerances.goal_time_s < late_s - RESOLUTION_S:
             return Verdict.TOO_LATE
         return Verdict.NOT_THERE_YET
 

@@ -20,7 +20,7 @@ from arm_control.joint_trajectory.motion import (
     VELOCITY,
     at_rest,
 )
-from arm_control.joint_trajectory.plans import BlendedPlan, Plan, StopPlan
+from arm_control.joint_trajectory.plans import Plan, StopPlan
 from arm_control.joint_trajectory.requests import GoalRequest
 from arm_control.joint_trajectory.results import (
     CANCELED,
@@ -41,7 +41,7 @@ from arm_control.joint_trajectory.state import (
     StateLayout,
     TrajectorySink,
 )
-from arm_control.joint_trajectory.tolerances import Bounds, ToleranceError
+from arm_control.joint_trajectory.tolerances import Bounds, ToleranceError, Tolerances
 from arm_control.joint_trajectory.trajectory import Trajectory
 from arm_control.loaned_interfaces import LoanedInterfaces
 
@@ -94,10 +94,12 @@ class Follower:
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Go on with other parameters."""
-        if self._execution.tolerances is self._configuration.tolerances:
-            self._execution.tolerances = configuration.tolerances
         self._configuration = configuration
         self._commander.reconfigure(configuration)
+        execution = self._execution
+        if not execution.is_stop:
+            goal = self._goals.goal if execution.serves_goal else None
+            execution.tolerances = self._tolerances(goal)
 
     # Cycles
 
@@ -208,13 +210,18 @@ class Follower:
         self._next = begin
 
     def _follow(self, trajectory: Trajectory, goal: GoalRequest | None = None) -> Execution:
-        tolerances = self._configuration.tolerances
-        if goal is not None:
-            try:
-                tolerances = tolerances.for_goal(goal, self._configuration.wiring.joints)
-            except ToleranceError as error:
-                self._logger.error("%s; the default tolerances are used", error)
+        tolerances = self._tolerances(goal)
         return Execution(self._plan(trajectory), tolerances, serves_goal=goal is not None)
+
+    def _tolerances(self, goal: GoalRequest | None) -> Tolerances:
+        tolerances = self._configuration.tolerances
+        if goal is None:
+            return tolerances
+        try:
+            return tolerances.for_goal(goal, self._configuration.wiring.joints)
+        except ToleranceError as error:
+            self._logger.error("%s; the default tolerances are used", error)
+            return tolerances
 
     def _plan(self, trajectory: Trajectory) -> Plan:
         configuration = self._configuration
@@ -225,9 +232,8 @@ class Follower:
             commanded = configuration.wiring.commanded
             held[commanded] = self._commanded[POSITION, commanded]
         start = self._commanded if configuration.starts_from_command else measured
-        plan = trajectory.plan(self.time_s or 0.0, start, held, continuous)
-        blend_s = configuration.parameters.smooth_replacement_time
-        return BlendedPlan(plan, self._commanded, continuous, blend_s) if blend_s else plan
+        join_s = configuration.parameters.smooth_replacement_time
+        return trajectory.plan(self.time_s or 0.0, start, held, continuous, join_s)
 
     def _stop(self) -> Execution:
         """Brake where that is configured, else hold at once."""
@@ -261,7 +267,7 @@ class Follower:
         elif verdict is Verdict.AT_THE_GOAL and execution.serves_goal:
             self._goals.end(GOAL_REACHED)
             execution.settle()
-        elif not execution.is_stop and 0.0 < timeout_s < late_s:
+        elif not execution.is_stop and 0.0 < timeout_s < late_s - RESOLUTION_S:
             self._logger.warning("Aborted due to command timeout")
             self._execution = self._hold(self._state.feedback[POSITION])
 

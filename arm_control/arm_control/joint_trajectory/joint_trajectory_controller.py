@@ -7,11 +7,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from arm_control.controller import Controller, ControllerContext, ReturnType
-from arm_control.errors import ControllerError
+from arm_control.errors import ControllerError, ParameterError
 from arm_control.interface_configuration import InterfaceConfiguration
 from arm_control.joint_trajectory.configuration import Configuration
 from arm_control.joint_trajectory.follower import Follower
 from arm_control.joint_trajectory.inbox import GoalCancel, GoalStart, Inbox, Replacement
+from arm_control.joint_trajectory.motion import POSITION
 from arm_control.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.joint_trajectory.requests import GoalRequest, TrajectoryRequest
 from arm_control.joint_trajectory.results import NOT_RUNNING, GoalResult, Refusal
@@ -108,6 +109,12 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         self._inbox.put(Replacement(prepared))
         return None
 
+    @property
+    def takes_speed_scaling(self) -> bool:
+        """Whether clients may scale the speed: where nothing but positions is commanded."""
+        configuration = self._configuration
+        return configuration is not None and configuration.wiring.command_rows == (POSITION,)
+
     def request_speed_scaling(self, factor: float) -> bool:
         """Let trajectory time run at a factor; return whether that is possible."""
         return self._speed_scaling is not None and self._speed_scaling.request(factor)
@@ -132,14 +139,16 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         """Take the parameters.
 
         Raises:
-            ControllerError: they do not go together.
-            ParameterError: one is out of its range.
+            ControllerError: they cannot be used.
         """
         if parameters.open_loop_control:
             self.logger.warning(
                 "parameter 'open_loop_control' is deprecated: use 'interpolate_from_desired_state'"
             )
-        self._configuration = Configuration.of(parameters, self._robot, self.logger)
+        try:
+            self._configuration = Configuration.of(parameters, self._robot, self.logger)
+        except ParameterError as error:
+            raise ControllerError(str(error)) from error
         self._speed_scaling = SpeedScaling(parameters.speed_scaling, self.logger)
 
     def update_parameters(self, parameters: JointTrajectoryParameters) -> None:

@@ -69,14 +69,11 @@ class Pid:
         legacy = _uses(gains, AntiWindup.LEGACY)
         self._i_max = np.where(legacy, _column(gains, "i_max"), np.inf)
         self._i_min = np.where(legacy, _column(gains, "i_min"), -np.inf)
-        self._legacy = legacy
         self._conditional = _uses(gains, AntiWindup.CONDITIONAL_INTEGRATION)
         self._back = np.array([_back_gain(gain) for gain in gains])
+        self._grows_first = legacy
+        self._all_grow_first = bool(legacy.all())
         self._integrates = bool(self._i.any())
-
-    def reset(self) -> None:
-        """Forget the integral."""
-        self._integral[:] = 0.0
 
     def update(self, error: Array, rate: Array, period_s: float) -> NDArray[np.float64]:
         """Return the outputs.
@@ -88,17 +85,21 @@ class Pid:
         """
         output = self._p * error + self._d * rate
         if not self._integrates:
-            return np.clip(output, self._u_min, self._u_max)
-        growth = np.where(np.abs(error) > self._deadband, self._i * period_s * error, 0.0)
-        # A broken sensor must not spoil the integral for good.
-        growth[~np.isfinite(growth)] = 0.0
-        self._integral += np.where(self._legacy, growth, 0.0)
-        wanted = output + np.clip(self._integral, self._i_min, self._i_max)
-        output = np.clip(wanted, self._u_min, self._u_max)
-        held = self._legacy | (self._conditional & (wanted != output) & (error * wanted > 0.0))
-        pull = self._back * period_s * np.where(growth, output - wanted, 0.0)
-        self._integral += np.where(held, 0.0, growth + pull)
+            return self._saturated(output)
+        # An error that is NaN does not count: a broken sensor must not spoil the integral for good.
+        counts = np.abs(error) > self._deadband
+        growth = np.where(counts, self._i * period_s * error, 0.0)
+        self._integral += growth * self._grows_first
+        wanted = output + np.minimum(np.maximum(self._integral, self._i_min), self._i_max)
+        output = self._saturated(wanted)
+        if not self._all_grow_first:
+            held = self._conditional & (wanted != output) & (error * wanted > 0.0)
+            pull = self._back * period_s * np.where(counts, output - wanted, 0.0)
+            self._integral += np.where(self._grows_first | held, 0.0, growth + pull)
         return output
+
+    def _saturated(self, output: Array) -> NDArray[np.float64]:
+        return np.minimum(np.maximum(output, self._u_min), self._u_max)
 
 
 def _column(gains: Sequence[PidGains], name: str) -> NDArray[np.float64]:

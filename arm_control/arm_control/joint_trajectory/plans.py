@@ -10,10 +10,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.joint_trajectory.angles import shortest_way
+from arm_control.joint_trajectory.angles import nearest_turn
 from arm_control.joint_trajectory.motion import (
     ACCELERATION,
-    EFFORT,
     POSITION,
     RESOLUTION_S,
     ROWS,
@@ -47,15 +46,15 @@ class SplinePlan:
     __slots__ = ("_lead_end_s", "_lead_in", "_offset_s", "_spline", "end_s")
 
     def __init__(
-        self, start: Array, first: Array, first_s: float, spline: Spline, offset_s: float
+        self, start: Array, first: Array, spline: Spline, first_s: float, offset_s: float
     ) -> None:
         """Lead into a spline.
 
         Args:
             start: motion at time 0, shape (4, n).
             first: motion at the spline's first point, shape (4, n).
-            first_s: time of that point in the spline's time.
             spline: through all way points.
+            first_s: time of the first point in the spline's time.
             offset_s: this plan's time when the spline's is 0.
         """
         self._spline = spline
@@ -134,39 +133,60 @@ class StopPlan:
         return motion
 
 
-class BlendedPlan:
-    """A plan joined without a step in position, velocity or acceleration.
+class JoinedPlan:
+    """A spline joined without a step in position, velocity or acceleration.
 
-    What the joints are commanded to do differs from what the plan wants of them at its start.
-    That difference is added to the plan, and fades to nothing along a quintic. So the shape of
-    the plan does not matter, nor whether it begins with a jump.
+    What the joints are commanded to do differs from what the spline wants of them, be it that the
+    spline is elsewhere, or that its first point is still to come: then it is prolonged backwards
+    with that point's velocity. The difference is added to the spline, and fades to nothing along
+    a quintic until the first point is due, or more slowly where there is little time for that.
     """
 
-    __slots__ = ("_difference", "_plan", "end_s")
+    __slots__ = ("_difference", "_first", "_lead_end_s", "_offset_s", "_spline", "end_s")
 
     def __init__(
-        self, plan: Plan, commanded: Array, continuous: NDArray[np.bool_], duration_s: float
+        self,
+        commanded: Array,
+        spline: Spline,
+        first_s: float,
+        offset_s: float,
+        least_s: float,
+        continuous: NDArray[np.bool_],
     ) -> None:
-        """Join a plan.
+        """Join a spline.
 
         Args:
-            plan: what to join.
             commanded: motion at time 0, shape (4, n).
+            spline: through all way points.
+            first_s: time of the first point in the spline's time.
+            offset_s: this plan's time when the spline's is 0.
+            least_s: time that the difference takes at least to fade; the plan ends no sooner.
             continuous: which joints turn without end, shape (n,): they join the short way.
-            duration_s: time in which the difference fades; the plan ends no sooner than that.
         """
-        wanted = plan.sample(0.0)
-        difference = commanded - wanted
-        difference[POSITION] = np.where(
-            continuous, shortest_way(wanted[POSITION], commanded[POSITION]), difference[POSITION]
-        )
-        difference[EFFORT] = 0.0
-        self._plan = plan
+        self._spline = spline
+        self._offset_s = offset_s
+        self._lead_end_s = offset_s + first_s
+        self._first = spline.sample(first_s)
+        self._first[ACCELERATION] = 0.0
+        ahead = spline.sample(max(first_s, -offset_s))
+        start = commanded.copy()
+        start[POSITION] = nearest_turn(start[POSITION], ahead[POSITION], continuous)
+        difference = start - self._wanted(0.0)
+        fade_s = max(least_s, self._lead_end_s)
         self._difference = Spline(
-            np.array([0.0, duration_s]), np.stack([difference, np.zeros_like(difference)])
+            np.array([0.0, fade_s]), np.stack([difference, np.zeros_like(difference)])
         )
-        self.end_s = max(plan.end_s, duration_s) if difference.any() else plan.end_s
+        end_s = offset_s + spline.end_s
+        self.end_s = max(end_s, fade_s) if difference.any() else end_s
 
     def sample(self, time_s: float) -> NDArray[np.float64]:
         """Return the motion at a time."""
-        return self._plan.sample(time_s) + self._difference.sample(time_s)
+        return self._wanted(time_s) + self._difference.sample(time_s)
+
+    def _wanted(self, time_s: float) -> NDArray[np.float64]:
+        lead_s = self._lead_end_s - time_s
+        if lead_s <= RESOLUTION_S:
+            return self._spline.sample(time_s - self._offset_s)
+        motion = self._first.copy()
+        motion[POSITION] -= lead_s * motion[VELOCITY]
+        return motion

@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+FIELDS = ("positions", "velocities", "accelerations", "effort")
+"""The sequences of a way point, in the order of the rows of a motion."""
+
 
 @dataclass(frozen=True, slots=True)
 class TrajectoryPoint:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from arm_control.joint_trajectory.angles import nearest_turn
 from arm_control.joint_trajectory.completion import hold_joints, integrate
 from arm_control.joint_trajectory.motion import POSITION, ROWS
-from arm_control.joint_trajectory.plans import Plan, SplinePlan, StepPlan
-from arm_control.joint_trajectory.requests import TrajectoryPoint, TrajectoryRequest
+from arm_control.joint_trajectory.plans import JoinedPlan, Plan, SplinePlan, StepPlan
+from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest
 from arm_control.joint_trajectory.spline import Spline
 
 
@@ -52,10 +52,12 @@ class Trajectory:
         self.stamp_s = request.stamp_s
         self.times_s = np.array([point.time_from_start_s for point in request.points])
         self.motions = np.full((len(request.points), ROWS, len(joints)), np.nan)
-        for i, point in enumerate(request.points):
-            for row, values in enumerate(_rows(point)):
-                if len(values):
-                    self.motions[i, row, columns] = values
+        for row, field in enumerate(FIELDS):
+            given = [(i, getattr(point, field)) for i, point in enumerate(request.points)]
+            given = [(i, values) for i, values in given if len(values)]
+            if given:
+                where = np.ix_([i for i, _ in given], columns)
+                self.motions[:, row][where] = [values for _, values in given]
         self.missing = np.ones(len(joints), dtype=np.bool_)
         self.missing[columns] = False
         self._interpolation = interpolation
@@ -73,6 +75,7 @@ class Trajectory:
         start: NDArray[np.float64],
         held_position: NDArray[np.float64],
         continuous: NDArray[np.bool_],
+        join_s: float = 0.0,
     ) -> Plan:
         """Return what to do from now on.
 
@@ -82,24 +85,24 @@ class Trajectory:
             held_position: where joints stay that the trajectory does not name, shape (n,).
             continuous: which joints turn without end, shape (n,): they go to the first point the
                 short way.
+            join_s: time in which to join the splines with no step from `start`, which is wholly
+                known then; 0 to lead from it to the first point as upstream does.
         """
         offset_s = self.offset_s(now_s)
-        motions, spline = self.motions, self._spline
+        motions, spline, first_s = self.motions, self._spline, float(self.times_s[0])
         if self.missing.any():
             motions = hold_joints(motions, self.missing, held_position)
         if np.isnan(motions[:, POSITION]).any():
             motions = integrate(self.times_s + offset_s, motions, start)
-        start = start.copy()
-        start[POSITION] = nearest_turn(start[POSITION], motions[0, POSITION], continuous)
+        moved = start.copy()
+        moved[POSITION] = nearest_turn(start[POSITION], motions[0, POSITION], continuous)
         if self._interpolation is Interpolation.NONE:
-            return StepPlan(start, motions, self.times_s + offset_s)
+            return StepPlan(moved, motions, self.times_s + offset_s)
         if spline is None:
             spline = Spline(self.times_s, motions)
-        return SplinePlan(start, motions[0], float(self.times_s[0]), spline, offset_s)
+        if join_s > 0.0:
+            return JoinedPlan(start, spline, first_s, offset_s, join_s, continuous)
+        return SplinePlan(moved, motions[0], spline, first_s, offset_s)
 
     def _has_open_positions(self) -> bool:
         return bool(np.isnan(self.motions[:, POSITION]).any())
-
-
-def _rows(point: TrajectoryPoint) -> tuple[Sequence[float], ...]:
-    return point.positions, point.velocities, point.accelerations, point.effort

@@ -7,13 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from arm_control.joint_trajectory.requests import TrajectoryPoint, TrajectoryRequest
+from arm_control.joint_trajectory.motion import EFFORT
+from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest
 from arm_control.joint_trajectory.results import ErrorCode, Refusal
 
 STANDSTILL = float(np.finfo(np.float32).eps)
 """A velocity that counts as none."""
-
-_FIELDS = ("positions", "velocities", "accelerations", "effort")
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,16 +117,17 @@ def _time_faults(request: TrajectoryRequest) -> Iterator[str]:
 def _size_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator[str]:
     joints = len(request.joint_names)
     for i, point in enumerate(request.points):
-        for field, size in _sizes(point):
-            missing_positions = field == "positions" and not rules.allow_integration
-            if size != joints and (size or missing_positions):
+        sizes = [len(getattr(point, field)) for field in FIELDS]
+        for field, size in zip(FIELDS, sizes, strict=True):
+            is_mandatory = field == "positions" and not rules.allow_integration
+            if size != joints and (size or is_mandatory):
                 yield (
                     f"Mismatch between joint_names size ({joints}) and {field} ({size}) "
                     f"at point #{i}."
                 )
-        if not (len(point.positions) or len(point.velocities) or len(point.accelerations)):
+        if not any(sizes[:EFFORT]):
             yield "The given trajectory has no position, velocity, or acceleration points."
-        if len(point.effort) and not rules.takes_effort:
+        if sizes[EFFORT] and not rules.takes_effort:
             yield (
                 "Trajectories with effort fields are only supported for controllers using the "
                 "'effort' command interface."
@@ -135,7 +135,7 @@ def _size_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator
 
 
 def _number_faults(request: TrajectoryRequest) -> Iterator[str]:
-    for field in _FIELDS:
+    for field in FIELDS:
         given = [(i, getattr(point, field)) for i, point in enumerate(request.points)]
         given = [(i, values) for i, values in given if len(values)]
         # One look at all numbers: a trajectory without fault may have thousands of points.
@@ -144,8 +144,3 @@ def _number_faults(request: TrajectoryRequest) -> Iterator[str]:
             i, values = given[row]
             name = request.joint_names[column]
             yield f"The {field} of joint {name} at point #{i} are not finite: {values[column]}."
-
-
-def _sizes(point: TrajectoryPoint) -> Iterator[tuple[str, int]]:
-    for field in _FIELDS:
-        yield field, len(getattr(point, field))

@@ -146,11 +146,15 @@ def _check_kinds(parameters: JointTrajectoryParameters) -> None:
                 f"parameter '{name}' is [{', '.join(kinds)}]; it may be "
                 + " or ".join(f"[{_listed(kinds)}]" for kinds in legal)
             )
-    if ("effort" in commands or commands == ("velocity",)) and "velocity" not in states:
-        raise ControllerError(
-            f"'{commands[-1]}' command interface can only be used "
-            f"if 'velocity' and 'position' state interfaces are present"
-        )
+    for kind, is_used in (
+        ("velocity", commands == ("velocity",)),
+        ("effort", "effort" in commands),
+    ):
+        if is_used and "velocity" not in states:
+            raise ControllerError(
+                f"'{kind}' command interface can only be used like this if 'velocity' and "
+                "'position' state interfaces are present"
+            )
 
 
 def _listed(kinds: set[str]) -> str:

@@ -1,6 +1,7 @@
 """A client of a controller manager's services, ours or a real one's."""
 
 import logging
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -29,6 +30,16 @@ POLL_S = 0.02
 PATIENCE_S = 1.0
 REPORT_INTERVAL_S = 10.0
 ATTEMPTS = 3
+QUERY_AGAIN_S = 2.0
+
+_SERVICES = {
+    "configure_controller": ConfigureController,
+    "list_controllers": ListControllers,
+    "load_controller": LoadController,
+    "set_parameters": SetParameters,
+    "switch_controller": SwitchController,
+    "unload_controller": UnloadController,
+}
 
 
 class ManagerUnreachableError(ArmControlError):
@@ -64,19 +75,22 @@ class ManagerClient:
             timeout_s: how long to wait for an answer before asking again.
             interrupted: says whether to give up waiting.
         """
-        self._node = node
         self._manager = manager
         self._interrupted = interrupted
         self._timeout_s = timeout_s
-        self._clients: dict[str, Client] = {}
+        # All at once and early: an answer is lost while the server does not know its client yet.
+        self._clients: dict[str, Client] = {
+            service: node.create_client(type_, f"{manager}/{service}")
+            for service, type_ in _SERVICES.items()
+        }
 
     def wait_for_manager(self, timeout_s: float) -> None:
         """Wait until the manager offers its services; 0 for ever."""
-        self._wait_for_service(self._client(ListControllers, "list_controllers"), timeout_s)
+        self._wait_for_service(self._clients["list_controllers"], timeout_s)
 
     def states(self) -> Mapping[str, str]:
         """Return the state of each loaded controller."""
-        answer = self._call(ListControllers, "list_controllers", ListControllers.Request())
+        answer = self._query("list_controllers", ListControllers.Request())
         return {controller.name: controller.state for controller in answer.controller}
 
     def set_parameters(self, parameters: Mapping[str, str | Sequence[str]]) -> str:
@@ -89,28 +103,25 @@ class ManagerClient:
                 for name, value in parameters.items()
             ]
         )
-        answer = self._call(SetParameters, "set_parameters", request)
+        answer = self._query("set_parameters", request)
         return "; ".join(result.reason for result in answer.results if not result.successful)
 
     def load(self, name: str) -> bool:
         """Load a controller; return whether it is."""
         request = LoadController.Request(name=name)
-        return self._change(LoadController, "load_controller", request, lambda s: name in s)
+        return self._change("load_controller", request, lambda s: name in s)
 
     def configure(self, name: str) -> bool:
         """Configure a controller; return whether it is."""
         request = ConfigureController.Request(name=name)
         return self._change(
-            ConfigureController,
-            "configure_controller",
-            request,
-            lambda states: states.get(name) == "inactive",
+            "configure_controller", request, lambda states: states.get(name) == "inactive"
         )
 
     def unload(self, name: str) -> bool:
         """Unload a controller; return whether it is gone."""
         request = UnloadController.Request(name=name)
-        return self._change(UnloadController, "unload_controller", request, lambda s: name not in s)
+        return self._change("unload_controller", request, lambda s: name not in s)
 
     def activate(self, names: Sequence[str], timeout_s: float, *, asap: bool = True) -> bool:
         """Activate all of these in one strict switch; return whether they are."""
@@ -137,18 +148,17 @@ class ManagerClient:
         request.strictness = SwitchController.Request.STRICT
         seconds = int(timeout_s)
         request.timeout = Duration(sec=seconds, nanosec=round((timeout_s - seconds) * 1e9))
-        return self._change(SwitchController, "switch_controller", request, is_done)
+        return self._change("switch_controller", request, is_done)
 
     def _change(
         self,
-        type_: Any,
         service: str,
         request: Any,
         is_done: Callable[[Mapping[str, str]], bool],
     ) -> bool:
         """Ask for a change; return whether it was made."""
         for _ in range(ATTEMPTS):
-            answer = self._try_call(type_, service, request)
+            answer = self._try_call(service, request, self._timeout_s)
             if answer is not None:
                 message = getattr(answer, "message", "")
                 if not answer.ok and message:
@@ -158,28 +168,29 @@ class ManagerClient:
                 return True
         raise self._no_answer(service)
 
-    def _call(self, type_: Any, service: str, request: Any) -> Any:
-        """Ask something that may be asked twice; return the answer."""
-        for _ in range(ATTEMPTS):
-            answer = self._try_call(type_, service, request)
+    def _query(self, service: str, request: Any) -> Any:
+        """Ask something that may be asked twice, so sooner again; return the answer."""
+        again_s = min(self._timeout_s, QUERY_AGAIN_S)
+        for _ in range(math.ceil(ATTEMPTS * self._timeout_s / again_s)):
+            answer = self._try_call(service, request, again_s)
             if answer is not None:
                 return answer
         raise self._no_answer(service)
 
-    def _try_call(self, type_: Any, service: str, request: Any) -> Any:
+    def _try_call(self, service: str, request: Any, timeout_s: float) -> Any:
         """Ask once; return the answer, None where it did not come in time."""
-        client = self._client(type_, service)
+        client = self._clients[service]
         self._wait_for_service(client, self._timeout_s)
         answered = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: answered.set())
         clock = MonotonicClock()
-        deadline_s = clock.now_s() + self._timeout_s
+        deadline_s = clock.now_s() + timeout_s
         while not answered.wait(POLL_S):
             self._check_interrupted()
             if clock.now_s() >= deadline_s:
                 client.remove_pending_request(future)
-                logger.warning("no answer from %s within %g s", client.srv_name, self._timeout_s)
+                logger.warning("no answer from %s within %g s", client.srv_name, timeout_s)
                 return None
         return future.result()
 
@@ -203,11 +214,6 @@ class ManagerClient:
     def _check_interrupted(self) -> None:
         if self._interrupted():
             raise InterruptedCallError("interrupted")
-
-    def _client(self, type_: Any, service: str) -> Client:
-        if service not in self._clients:
-            self._clients[service] = self._node.create_client(type_, f"{self._manager}/{service}")
-        return self._clients[service]
 
     def _no_answer(self, service: str) -> ManagerUnreachableError:
         return ManagerUnreachableError(

@@ -21,7 +21,7 @@ LONGEST_WAIT_S = 0.1
 @contextmanager
 def spinning(node: Node) -> Iterator[None]:
     """Run the node's callbacks in a thread of its own; at the end join it, destroy the node."""
-    executor = EventsExecutor()
+    executor = EventsExecutor(context=node.context)
     executor.add_node(node)
     ended = threading.Event()
     thread = threading.Thread(target=_spin, args=(executor, ended), name="events", daemon=True)

@@ -83,8 +83,9 @@ class TerminalScreen:
             table.add_row(Text(label, "dim"), Text(text))
         title = Text(f" {summary.title}: ready in {elapsed_s:.2f} s ", style="bold green")
         self._write("", keep_status=False)
+        colours = "standard" if self._colours else None
         console = Console(
-            file=self._stream, force_terminal=True, no_color=not self._colours, highlight=False
+            file=self._stream, force_terminal=True, color_system=colours, highlight=False
         )
         console.print(Panel(table, title=title, title_align="left", border_style="green"))
         for label, text in summary.commands:

@@ -102,11 +102,12 @@ class EventLoop:
         previous_fd = signal.set_wakeup_fd(writable, warn_on_full_buffer=False)
         previous = {number: signal.signal(number, lambda *_: None) for number in callbacks}
         self.add_reader(readable, deliver)
-        # Whoever started us may have held them back until now.
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, callbacks)
+        # Whoever started us may have blocked them until now, and again from then on.
+        previous_mask = signal.pthread_sigmask(signal.SIG_UNBLOCK, callbacks)
         try:
             yield
         finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
             self.remove_reader(readable)
             for number, handler in previous.items():
                 signal.signal(number, handler)

@@ -17,6 +17,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 
 from launch_py.supervision import linux
 
@@ -30,21 +31,30 @@ def supervise_in_fork(supervise: Callable[[int], int]) -> int:
     """Run `supervise` in a fork of this process and return its exit code.
 
     Args:
-        supervise: gets the process id of the front; must handle the signals of `PASSED_ON`.
+        supervise: gets the process id of the front; must unblock and handle `stop_signals`.
     """
     sys.stdout.flush()
     sys.stderr.flush()
     linux.become_subreaper()
     front_pid = os.getpid()
-    # Held back until both sides have their handlers: a signal must neither be lost nor kill.
-    signal.pthread_sigmask(signal.SIG_BLOCK, PASSED_ON)
+    # Blocked for good: the front takes them one by one with sigwait. A handler would run inside
+    # itself under a flood of signals, and they must not kill on the way in or out either.
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # Ignored, no child could be waited for.
+    awaited = {*stop_signals(), signal.SIGCHLD}
+    signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
     supervisor_pid = os.fork()
     if supervisor_pid == 0:
         _run_supervisor(supervise, front_pid)
-    for number in stop_signals():
-        signal.signal(number, lambda n, _: _pass_on(n, supervisor_pid))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, PASSED_ON)
-    return _wait_for(supervisor_pid)
+    while True:
+        number = signal.sigwait(awaited)
+        if number != signal.SIGCHLD:
+            linux.signal_process(supervisor_pid, signal.Signals(number))
+            continue
+        status = _reap(supervisor_pid)
+        if status is not None:
+            _kill_orphans()
+            code = os.waitstatus_to_exitcode(status)
+            return code if code >= 0 else 128 - code
 
 
 def stop_signals() -> list[signal.Signals]:
@@ -75,19 +85,14 @@ def _run_supervisor(supervise: Callable[[int], int], front_pid: int) -> None:
         os._exit(code)
 
 
-def _pass_on(number: int, supervisor_pid: int) -> None:
-    linux.signal_process(supervisor_pid, signal.Signals(number))
-
-
-def _wait_for(supervisor_pid: int) -> int:
-    """Wait for the supervisor, reaping adopted orphans; end what it left behind."""
-    while True:
-        pid, status = os.waitpid(-1, 0)
-        if pid == supervisor_pid:
-            break
-    _kill_orphans()
-    code = os.waitstatus_to_exitcode(status)
-    return code if code >= 0 else 128 - code
+def _reap(supervisor_pid: int) -> int | None:
+    """Take the status of all ended children; return the supervisor's, if it is among them."""
+    found = None
+    with suppress(ChildProcessError):
+        while (ended := os.waitpid(-1, os.WNOHANG))[0]:
+            if ended[0] == supervisor_pid:
+                found = ended[1]
+    return found
 
 
 def _kill_orphans() -> None:

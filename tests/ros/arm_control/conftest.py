@@ -168,13 +168,30 @@ class Control:
     def __init__(self, client: Any, namespace: str = "") -> None:
         self._client = client
         self._prefix = f"{namespace}/controller_manager"
+        self._services: dict[str, Any] = {}
 
     def call(self, type_name: str, service: str, **fields: Any) -> Any:
-        """Call one of its services."""
+        """Call one of its services; a list is asked for again where no answer comes."""
         import controller_manager_msgs.srv
 
         type_ = getattr(controller_manager_msgs.srv, type_name)
-        return self._client.call(type_, f"{self._prefix}/{service}", type_.Request(**fields))
+        if service not in self._services:
+            self._services[service] = self._connect(type_, service)
+        attempts = 6 if service.startswith("list_") else 1
+        for _ in range(attempts):
+            answered = threading.Event()
+            future = self._services[service].call_async(type_.Request(**fields))
+            future.add_done_callback(lambda _, answered=answered: answered.set())
+            if answered.wait(TIMEOUT_S / attempts):
+                return future.result()
+        pytest.fail(f"no answer from {self._prefix}/{service}")
+
+    def _connect(self, type_: Any, service: str) -> Any:
+        client = self._client.node.create_client(type_, f"{self._prefix}/{service}")
+        self._client.wait_until(client.service_is_ready, f"{self._prefix}/{service}")
+        # The server may not know of this client yet, and its answer would be lost.
+        threading.Event().wait(0.2)
+        return client
 
     def load(self, name: str) -> bool:
         return self.call("LoadController", "load_controller", name=name).ok
@@ -233,3 +250,18 @@ def control(client: Any, manager: Program) -> Iterator[Control]:
 def control_of(client: Any) -> Callable[[str], Control]:
     """Return a function that makes a client of the manager in a namespace."""
     return lambda namespace: Control(client, namespace)
+
+
+@pytest.fixture
+def set_parameter(client: Any) -> Callable[..., Any]:
+    """Return a function that sets a parameter of a node and returns the result."""
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+
+    def set_(node: str, name: str, value: Any) -> Any:
+        kind = Parameter.Type.STRING_ARRAY if value == [] else None
+        message = Parameter(name, kind, value).to_parameter_msg()
+        request = SetParameters.Request(parameters=[message])
+        return client.call(SetParameters, f"{node}/set_parameters", request).results[0]
+
+    return set_

@@ -7,7 +7,6 @@ on it: "pause", "resume", "block" and "unblock" (the loop thread), "fail read".
 """
 
 import argparse
-import logging
 import sys
 import threading
 from collections.abc import Iterator, Sequence
@@ -89,12 +88,11 @@ def main(argv: Sequence[str]) -> int:
         server = ControllerManagerServer(
             node, manager, loop, process.executor, robot_description=URDF
         )
-        server.start_controllers(options.start)
-        threading.Thread(target=obey, daemon=True).start()
-        sys.stdout.write("ready\n")
-        sys.stdout.flush()
-        logging.getLogger("fake_manager").info("ready")
         try:
+            server.start_controllers(options.start)
+            threading.Thread(target=obey, daemon=True).start()
+            sys.stdout.write("ready\n")
+            sys.stdout.flush()
             yield
         finally:
             server.shutdown()

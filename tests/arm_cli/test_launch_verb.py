@@ -1,0 +1,79 @@
+"""`arm launch`: its default file, its refusals, and what it leaves unimported."""
+
+import subprocess
+import sys
+
+import pytest
+
+from arm_cli import launch_verb
+from arm_cli.main import main
+from arm_node import environment
+
+LAUNCH_FILE = """
+import sys
+from launch_py import ExecuteProcess, LaunchDescription
+
+
+def generate_launch_description():
+    heavy = {"rclpy", "rich", "yaml", "numpy", "asyncio", "importlib.metadata", "mujoco"}
+    print("imported:", *sorted(heavy & sys.modules.keys()))
+    return LaunchDescription([ExecuteProcess(cmd=["true"])])
+"""
+
+
+@pytest.fixture
+def launch_file(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    path = tmp_path / "test.launch.py"
+    path.write_text(LAUNCH_FILE)
+    return path
+
+
+def test_without_words_it_takes_the_main_job(monkeypatch):
+    taken = {}
+
+    def run(argv, **options):
+        taken.update(options, argv=argv)
+        return 0
+
+    monkeypatch.setattr(launch_verb, "run_launch", run)
+    assert main(["launch", "world:=objects"]) == 0
+    assert taken["default_file"] == ("arm_gazebo", "arm_gazebo.launch.py")
+    assert taken["argv"] == ["world:=objects"]
+    assert taken["program"] == "arm launch"
+
+
+def test_without_the_interfaces_it_says_the_fix_and_starts_nothing(
+    launch_file, monkeypatch, capsys
+):
+    monkeypatch.setattr(environment, "INTERFACE_PACKAGES", ("no_such_interfaces",))
+    assert main(["launch", str(launch_file)]) == 2
+    (sentence,) = capsys.readouterr().err.splitlines()
+    assert "no_such_interfaces is not installed" in sentence
+    assert "pip install ./arm_interfaces" in sentence
+
+
+def test_without_the_interfaces_it_still_lists_arguments(launch_file, monkeypatch, capsys):
+    monkeypatch.setattr(environment, "INTERFACE_PACKAGES", ("no_such_interfaces",))
+    assert main(["launch", str(launch_file), "--show-args"]) == 0
+    assert "test.launch.py has no arguments." in capsys.readouterr().out
+
+
+def test_the_launcher_imports_nothing_heavy(launch_file):
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_cli", "launch", str(launch_file)],
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[0].strip() == "imported:"
+
+
+def test_its_help_explains_the_words(capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["launch", "--help"])
+    text = capsys.readouterr().out
+    assert "usage: arm launch" in text
+    assert "arm_gazebo arm_gazebo.launch.py" in text

@@ -1,0 +1,67 @@
+"""The `arm` command: its help, its verbs, what it refuses."""
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from arm_cli.main import main
+from arm_cli.verbs import VERBS
+
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+
+
+@pytest.mark.parametrize("words", [["--help"], ["-h"], ["help"]])
+def test_help_lists_the_verbs(capsys, words):
+    assert main(words) == 0
+    text = capsys.readouterr().out
+    for verb in VERBS:
+        assert f"  {verb.name}  {verb.help}" in text
+
+
+def test_without_a_verb_there_is_help_and_exit_code_2(capsys):
+    assert main([]) == 2
+    assert "verbs:" in capsys.readouterr().out
+
+
+def test_version_is_that_of_the_distribution(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"arm {PROJECT['version']}\n"
+
+
+@pytest.mark.parametrize(
+    ("word", "sentence"),
+    [
+        ("lanch", "arm: no verb 'lanch'; did you mean 'launch'?\n"),
+        ("--hlep", "arm: no option '--hlep'; did you mean '--help'?\n"),
+    ],
+)
+def test_an_unknown_word_names_the_near_one(capsys, word, sentence):
+    assert main([word]) == 2
+    captured = capsys.readouterr()
+    assert (captured.out, captured.err) == ("", sentence)
+
+
+def test_help_imports_no_verb():
+    code = (
+        "import sys; from arm_cli.main import main; main(['--help']); "
+        "heavy = {'launch_py', 'rclpy', 'rich', 'yaml', 'numpy', 'asyncio'}; "
+        "sys.exit(', '.join(heavy & sys.modules.keys()) or 0)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_python_m_arm_cli_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_cli", "--version"],
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert done.stdout.startswith("arm ")

@@ -1,0 +1,407 @@
+"""When the controller gives up, times out, brakes or stands still."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from arm_control.joint_trajectory.requests import JointTolerance
+from arm_control.joint_trajectory.results import Outcome
+
+MakeRig = Callable[..., Any]
+
+MOVE = [(1.0, [1.0, 2.0, 3.0])]
+BRAKES = {
+    f"constraints__j{i}__max_deceleration_on_cancel": value
+    for i, value in enumerate((1.0, 2.0, 4.0))
+}
+
+
+class TestTopicTrajectories:
+    def test_state_tolerances_fail(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+        rig = make_rig(constraints__j1__trajectory=0.0001)
+        rig.moves = False
+        rig.trajectory(MOVE)
+        rig.run(0.1)
+
+        assert "Holding position due to state tolerance violation" in caplog.text
+        assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
+
+    def test_goal_tolerances_fail(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+        rig = make_rig(constraints__j1__goal=0.1, constraints__goal_time=0.1)
+        rig.moves = False
+        rig.trajectory(MOVE)
+        rig.run(1.1)
+        assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
+
+        rig.run(0.1)
+        assert "Exceeded goal_time_tolerance: holding position..." in caplog.text
+        assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
+
+    def test_a_hold_checks_nothing(self, make_rig: MakeRig):
+        rig = make_rig(constraints__j1__trajectory=0.0001)
+        rig.moves = False
+        rig.trajectory(MOVE)
+        rig.run(0.1)
+        rig.place([-3.3, 0.0, 0.0])
+        rig.run(1.0)
+
+        assert rig.commanded().tolist() == [0.0, 0.0, 0.0], "still the old place"
+
+
+class TestTimeout:
+    def test_accept_correct_cmd_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+        make_rig(cmd_timeout=3.0, constraints__goal_time=2.0)
+
+        assert "cmd_timeout" not in caplog.text
+
+    def test_decline_false_cmd_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+        rig = make_rig(cmd_timeout=1.0, constraints__goal_time=2.0)
+        rig.trajectory(MOVE)
+        rig.run(5.0)
+
+        assert "must be greater than constraints.goal_time" in caplog.text
+        assert "Aborted due to command timeout" not in caplog.text
+
+    def test_no_timeout(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.trajectory(MOVE)
+        rig.run(1.1)
+        rig.moves = False
+        rig.place([0.0, 0.0, 0.0])
+        rig.run(60.0)
+
+        assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
+
+    def test_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+        rig = make_rig(cmd_timeout=0.1)
+        rig.trajectory(MOVE)
+        rig.run(1.1)
+        rig.moves = False
+        rig.place([0.9, 1.9, 2.9])
+        assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
+
+        rig.tick(2)
+        assert "Aborted due to command timeout" in caplog.text
+        assert rig.commanded().tolist() == [0.9, 1.9, 2.9]
+
+    def test_a_goal_that_succeeded_has_no_timeout(self, make_rig: MakeRig):
+        rig = make_rig(cmd_timeout=0.1)
+        rig.goal(MOVE)
+        rig.run(1.1)
+        rig.moves = False
+        rig.place([0.9, 1.9, 2.9])
+        rig.run(1.0)
+
+        assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
+
+    def test_a_goal_that_waits_is_not_ended_but_can_be_cancelled(self, make_rig: MakeRig):
+        rig = make_rig(cmd_timeout=0.1, constraints__j0__goal=0.01)
+        rig.moves = False
+        rig.goal(MOVE)
+        rig.run(2.0)
+        assert rig.result is None
+        assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
+
+        rig.controller.cancel_goal("goal")
+        rig.tick()
+        assert rig.result.outcome is Outcome.CANCELED
+
+
+class TestDeceleration:
+    def test_cancel_decelerate_to_hold_position(
+        self, make_rig: MakeRig, robot_description: Callable[..., str]
+    ):
+        rig = make_rig(
+            constraints__decelerate_on_cancel=True,
+            robot_description=robot_description(),
+            **BRAKES,
+        )
+        rig.goal(MOVE)
+        rig.run(0.5)
+        rig.place([1.0, 2.0, 3.0], "velocity")
+        start = rig.measured()
+        rig.controller.cancel_goal("goal")
+        rig.tick()
+        assert rig.result.outcome is Outcome.CANCELED
+
+        rig.place([0.0, 0.0, 0.0], "velocity")
+        rig.run(2.0)
+        # v² / 2a
+        assert rig.commanded() == pytest.approx(start + np.array([0.5, 1.0, 1.125]))
+
+    def test_each_joint_stops_in_its_own_time(
+        self, make_rig: MakeRig, robot_description: Callable[..., str]
+    ):
+        rig = make_rig(
+            commands=("position", "velocity"),
+            constraints__decelerate_on_cancel=True,
+            robot_description=robot_description(),
+            **BRAKES,
+        )
+        rig.goal(MOVE)
+        rig.run(0.5)
+        rig.moves = False
+        rig.place([1.0, -2.0, 2.0], "velocity")
+        rig.controller.cancel_goal("goal")
+        rig.tick()
+        rig.run(0.49)
+
+        assert rig.commanded("velocity") == pytest.approx([0.5, -1.0, 0.0])
+
+    def test_a_trajectory_interrupts_it(
+        self, make_rig: MakeRig, robot_description: Callable[..., str]
+    ):
+        rig = make_rig(
+            constraints__decelerate_on_cancel=True,
+            robot_description=robot_description(),
+            **BRAKES,
+        )
+        rig.goal(MOVE)
+        rig.run(0.5)
+        rig.place([1.0, 2.0, 3.0], "velocity")
+        rig.controller.cancel_goal("goal")
+        rig.run(0.1)
+        rig.place([0.0, 0.0, 0.0], "velocity")
+        rig.trajectory([(0.5, [0.0, 0.0, 0.0])])
+        rig.run(0.6)
+
+        assert rig.measured().tolist() == [0.0, 0.0, 0.0]
+
+    @pytest.mark.parametrize(
+        ("options", "lack"),
+        [
+            ({"constraints__j1__max_deceleration_on_cancel": 0.0}, "j1.max_deceleration_on_cancel"),
+            ({"states": ("position",)}, "'velocity' state interface"),
+            ({"robot_description": ""}, "velocity limit of joint j0"),
+        ],
+    )
+    def test_fallback(
+        self,
+        make_rig: MakeRig,
+        robot_description: Callable[..., str],
+        options: dict[str, Any],
+        lack: str,
+        caplog: pytest.LogCaptureFixture,
+    ):
+        rig = make_rig(
+            **{
+                "constraints__decelerate_on_cancel": True,
+                "robot_description": robot_description(),
+                **BRAKES,
+                **options,
+            }
+        )
+        rig.goal(MOVE)
+        rig.run(0.5)
+        where = rig.measured()
+        rig.controller.cancel_goal("goal")
+        rig.run(1.0)
+
+        assert lack in caplog.text
+        assert rig.commanded().tolist() == where.tolist()
+
+
+class TestSpeedScaling:
+    def test_setting_scaling_factor_works_correctly(self, make_rig: MakeRig):
+        rig = make_rig()
+
+        assert rig.controller.request_speed_scaling(0.5)
+        rig.tick()
+        assert rig.sink.state.speed_scaling == 0.5
+        assert rig.controller.request_speed_scaling(2.0)
+        rig.tick()
+        assert rig.sink.state.speed_scaling == 2.0
+
+    @pytest.mark.parametrize("factor", [-0.1, np.nan, np.inf])
+    def test_what_is_no_factor_is_ignored(
+        self, make_rig: MakeRig, factor: float, caplog: pytest.LogCaptureFixture
+    ):
+        rig = make_rig()
+
+        assert not rig.controller.request_speed_scaling(factor)
+        rig.tick()
+        assert rig.sink.state.speed_scaling == 1.0
+        assert "Ignoring input!" in caplog.text
+
+    def test_zero_stands_still_where_it_is(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.trajectory(MOVE)
+        rig.run(0.5)
+        rig.controller.request_speed_scaling(0.0)
+        rig.tick()
+        paused = rig.commanded()
+        rig.run(5.0)
+        assert rig.commanded().tolist() == paused.tolist()
+
+        rig.controller.request_speed_scaling(1.0)
+        rig.run(0.52)
+        assert rig.measured().tolist() == [1.0, 2.0, 3.0]
+
+    def test_a_change_makes_no_step(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.trajectory([(1.0, [1.0, 1.0, 1.0])])
+        commanded = []
+        for factor in (1.0, 0.5, 0.0, 2.0, 0.1, 1.0):
+            rig.controller.request_speed_scaling(factor)
+            rig.tick()
+            commanded.append(rig.commanded()[0])
+
+        assert np.diff(commanded) == pytest.approx([0.005, 0.0, 0.02, 0.001, 0.01])
+
+    def test_a_goal_that_stands_still_is_not_too_late(self, make_rig: MakeRig):
+        rig = make_rig(constraints__j0__goal=0.1, constraints__goal_time=0.1)
+        rig.goal(MOVE)
+        rig.run(0.5)
+        rig.controller.request_speed_scaling(0.0)
+        rig.run(10.0)
+
+        assert rig.result is None
+
+    def test_braking_is_not_scaled(self, make_rig: MakeRig, robot_description: Callable[..., str]):
+        rig = make_rig(
+            constraints__decelerate_on_cancel=True,
+            robot_description=robot_description(),
+            speed_scaling__initial_scaling_factor=0.5,
+            **BRAKES,
+        )
+        rig.goal([(10.0, [1.0, 2.0, 3.0])])
+        rig.run(0.5)
+        rig.place([1.0, 0.0, 0.0], "velocity")
+        start = rig.measured()
+        rig.controller.cancel_goal("goal")
+        rig.tick()
+        rig.run(1.0)
+
+        assert rig.commanded() == pytest.approx(start + np.array([0.5, 0.0, 0.0]))
+
+    def test_hardware_can_tell_the_factor(self, make_rig: MakeRig):
+        rig = make_rig(speed_scaling__state_interface="speed/factor")
+        rig.moves = False
+        rig.set_state("speed/factor", 0.25)
+        rig.tick()
+        assert rig.sink.state.speed_scaling == 0.25
+
+        rig.set_state("speed/factor", np.nan)
+        rig.tick()
+        assert rig.sink.state.speed_scaling == 0.25, "hardware that is starting says nothing"
+
+    def test_hardware_can_be_asked_for_a_factor(self, make_rig: MakeRig):
+        rig = make_rig(speed_scaling__command_interface="speed/factor")
+        rig.controller.request_speed_scaling(0.25)
+        rig.tick()
+
+        assert rig.command("speed/factor") == 0.25
+        assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
+
+    def test_a_wish_that_hardware_will_overwrite_is_warned_of(
+        self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture
+    ):
+        rig = make_rig(speed_scaling__state_interface="speed/factor")
+        rig.controller.request_speed_scaling(0.25)
+
+        assert "speed_scaling.command_interface" in caplog.text
+
+    def test_deactivation_leaves_the_hardwares_factor(self, make_rig: MakeRig):
+        rig = make_rig(
+            commands=("position", "velocity"), speed_scaling__command_interface="speed/factor"
+        )
+        rig.tick()
+        rig.deactivate()
+
+        assert rig.command("speed/factor") == 1.0
+
+    @pytest.mark.parametrize(
+        ("commands", "takes"), [(("position",), True), (("position", "velocity"), False)]
+    )
+    def test_is_for_positions_only(self, make_rig: MakeRig, commands: tuple[str, ...], takes: bool):
+        assert make_rig(commands=commands).controller.takes_speed_scaling is takes
+
+
+class TestQuery:
+    def test_a_time_of_the_trajectory(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
+        rig.tick()
+        start_s = rig.time_s
+        rig.run(0.5)
+        answer = rig.controller.query_state(start_s + 0.25)
+
+        assert answer.success
+        assert answer.motion == pytest.approx(
+            np.array([[0.25, 0.5, 0.75], [1.0, 2.0, 3.0], [0.0, 0.0, 0.0]])
+        )
+
+    def test_moves_nothing(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.goal([(0.5, [1.0] * 3), (1.0, [2.0] * 3)])
+        rig.run(0.3)
+        rig.controller.query_state(rig.time_s + 0.7)
+        rig.tick()
+
+        assert rig.sink.state.reference[0, 0] == pytest.approx(0.6)
+        assert rig.result is None
+
+    @pytest.mark.parametrize(("offset_s", "words"), [(-0.6, "before"), (0.6, "after")])
+    def test_a_time_outside(self, make_rig: MakeRig, offset_s: float, words: str):
+        rig = make_rig()
+        rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
+        rig.tick()
+        rig.run(0.5)
+        answer = rig.controller.query_state(rig.time_s + offset_s)
+
+        assert not answer.success
+        assert words in answer.message
+        assert answer.motion[0] == pytest.approx([0.5, 1.0, 1.5])
+
+    def test_before_the_first_cycle(self, make_rig: MakeRig):
+        assert "no trajectory" in make_rig().controller.query_state(0.0).message
+
+    def test_while_not_active(self, make_rig: MakeRig):
+        answer = make_rig(activate=False).controller.query_state(0.0)
+
+        assert not answer.success
+        assert answer.message == "the controller is not active"
+
+
+class TestParametersThatChange:
+    def test_update_dynamic_parameters(self, make_rig: MakeRig):
+        rig = make_rig(commands=("effort",))
+        rig.moves = False
+        rig.trajectory([(0.0, [1.0, 1.0, 1.0])])
+        rig.tick()
+        assert rig.commanded("effort").tolist() == [0.0, 0.0, 0.0]
+
+        rig.set(gains__j1__p=2.0)
+        rig.tick()
+        assert rig.commanded("effort").tolist() == [0.0, 2.0, 0.0]
+
+    def test_update_dynamic_tolerances(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.moves = False
+        rig.goal(MOVE)
+        rig.run(0.5)
+        assert rig.result is None
+
+        rig.set(constraints__j0__trajectory=0.1)
+        rig.tick()
+        assert rig.result is not None
+
+    def test_a_goals_own_tolerances_stay(self, make_rig: MakeRig):
+        rig = make_rig()
+        rig.moves = False
+        rig.goal(MOVE, path_tolerance=[JointTolerance("j0", 0.9)])
+        rig.run(0.5)
+        rig.set(constraints__j0__trajectory=0.1)
+        rig.tick()
+
+        assert rig.result is None
+
+    def test_rules(self, make_rig: MakeRig, make_request: Callable[..., Any]):
+        rig = make_rig()
+        partial = make_request([(1.0, [1.0])], ["j1"])
+        assert rig.controller.check_goal(partial) is not None
+
+        rig.set(allow_partial_joints_goal=True)
+        assert rig.controller.check_goal(partial) is None

@@ -1,0 +1,102 @@
+"""The opt-in checks against the limits of the robot description."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+MakeRig = Callable[..., Any]
+MakeRequest = Callable[..., Any]
+
+LIMIT = '<limit lower="-1.0" upper="2.0" effort="9" velocity="1.5"/>'
+
+
+@pytest.fixture
+def fault(
+    make_rig: MakeRig, make_request: MakeRequest, robot_description: Callable[..., str]
+) -> Callable[..., str]:
+    """Say why a trajectory is refused with these checks; empty where it is not."""
+
+    def find(
+        points: list[Any],
+        checks: tuple[str, ...] = ("position", "velocity"),
+        joint_type: str = "revolute",
+        **options: Any,
+    ) -> str:
+        joints = options.pop("joints", ("j0", "j1", "j2"))
+        rig = make_rig(
+            robot_description=robot_description(joint_type, LIMIT),
+            **{f"check_{check}_limits": True for check in checks},
+            **options,
+        )
+        refusal = rig.controller.check_goal(make_request(points, joints))
+        return refusal.message if refusal else ""
+
+    return find
+
+
+def test_without_checks_anything_goes(fault: Callable[..., str]):
+    assert fault([(0.1, [9.0, 9.0, 9.0])], checks=()) == ""
+
+
+def test_a_point_outside_the_position_limits(fault: Callable[..., str]):
+    message = fault([(10.0, [0.0, 2.1, 0.0])])
+
+    assert message.startswith("The trajectory takes joint j1 to 2.")
+    assert "outside its limits [-1.000000, 2.000000]" in message
+    assert message.endswith("s after its start.")
+
+
+def test_a_point_at_the_limit_is_inside(fault: Callable[..., str]):
+    assert fault([(10.0, [2.0, -1.0, 0.0])]) == ""
+
+
+def test_a_spline_that_overshoots_between_the_points(fault: Callable[..., str]):
+    points = [(5.0, [0.0, 1.9, 0.0], [0.0, 1.0, 0.0]), (6.0, [0.0, 1.9, 0.0], [0.0, -1.0, 0.0])]
+
+    assert "joint j1" in fault([*points, (12.0, [0.0] * 3, [0.0] * 3)])
+
+
+def test_a_first_point_too_far_for_its_time(fault: Callable[..., str]):
+    message = fault([(1.0, [0.0, 0.0, 1.6])])
+
+    assert message.startswith("The trajectory moves joint j2 with 1.600000, above its velocity")
+
+
+def test_a_velocity_above_the_limit(fault: Callable[..., str]):
+    points = [(5.0, [0.0, 0.0, 0.0], [1.6, 0.0, 0.0]), (10.0, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0])]
+
+    assert "joint j0" in fault(points)
+
+
+def test_each_check_is_asked_for_by_itself(fault: Callable[..., str]):
+    too_fast, too_far = [(0.1, [1.0, 0.0, 0.0])], [(10.0, [3.0, 0.0, 0.0])]
+
+    assert fault(too_fast, ("position",)) == ""
+    assert fault(too_far, ("velocity",)) == ""
+
+
+def test_positions_that_are_integrated_count(fault: Callable[..., str]):
+    there, stop = [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    message = fault(
+        [(1.0, [], there), (3.0, [], stop), (5.0, [], there), (6.0, [], stop)],
+        allow_integration_in_goal_trajectories=True,
+    )
+
+    assert "joint j0 to" in message
+
+
+def test_joints_not_named_count_where_they_are(fault: Callable[..., str]):
+    assert fault([(10.0, [1.0])], joints=("j1",), allow_partial_joints_goal=True) == ""
+
+
+def test_continuous_joints_have_no_position_limits(fault: Callable[..., str]):
+    assert fault([(10.0, [6.0, 6.0, 6.0])], joint_type="continuous") == ""
+
+
+def test_without_a_robot_description_there_are_no_limits(
+    make_rig: MakeRig, make_request: MakeRequest
+):
+    rig = make_rig(check_position_limits=True, check_velocity_limits=True)
+
+    assert rig.controller.check_goal(make_request([(0.1, [9.0, 9.0, 9.0])])) is None

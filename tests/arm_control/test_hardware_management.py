@@ -1,0 +1,141 @@
+"""Components in the manager's care: start, states, failures."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
+from arm_control.hardware import HardwareReturn
+from arm_control.testing import fake_hardware
+
+ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
+
+
+def test_bring_up_activates_all_and_reads_once() -> None:
+    hardware = fake_hardware(initial_positions={"j2": 0.7})
+    manager = ControllerManager([hardware], 100)
+    assert np.isnan(manager.resources.states).all()
+    manager.bring_up()
+    assert hardware.events == ["on_configure", "on_activate"]
+    assert manager.resources.states.reshape(4, 3)[:, 0].tolist() == [0.0, 0.0, 0.7, 0.0]
+
+
+def test_bring_up_leaves_components_where_told() -> None:
+    names = ("A", "B", "C")
+    hardware = [fake_hardware((f"{name}1",), name=name) for name in names]
+    manager = ControllerManager(hardware, 100)
+    manager.bring_up(unconfigured=["A"], inactive=["B"])
+    assert [c.state.label for c in manager.list_hardware_components()] == [
+        "unconfigured",
+        "inactive",
+        "active",
+    ]
+
+
+def test_bring_up_names_the_component_that_does_not_exist(bench: Any) -> None:
+    with pytest.raises(ControllerManagerError, match="no hardware component 'X'; there is FakeSys"):
+        bench.manager.bring_up(inactive=["X"])
+
+
+def test_bring_up_says_which_step_failed() -> None:
+    hardware = fake_hardware()
+    hardware.refused.add("on_activate")
+    with pytest.raises(ControllerManagerError, match="on_activate of hardware component 'FakeSys"):
+        ControllerManager([hardware], 100).bring_up()
+
+
+def test_the_update_rate_must_be_positive() -> None:
+    with pytest.raises(ControllerManagerError, match="update_rate must be positive, not 0"):
+        ControllerManager([], 0)
+
+
+@pytest.mark.parametrize("result", ["read_result", "write_result"])
+def test_hardware_that_fails_goes_down_with_its_users_only(
+    result: str, caplog: pytest.LogCaptureFixture, bench: Any
+) -> None:
+    other = fake_hardware(("k0",), name="Other")
+    bench.manager = ControllerManager([bench.hardware, other], 100)
+    bench.manager.bring_up()
+    bench.configure("user", commands=("j0/position",))
+    bench.configure("watcher", states=("j1/velocity",))
+    bench.configure("bystander", commands=("k0/position",))
+    bench.manager.switch_controller(SwitchRequest(("user", "watcher", "bystander")))
+    setattr(bench.hardware, result, HardwareReturn.ERROR)
+    bench.tick()
+    assert bench.states() == {"bystander": "active", "watcher": "inactive", "user": "inactive"}
+    assert [c.state.label for c in bench.manager.list_hardware_components()] == [
+        "unconfigured",
+        "active",
+    ]
+    assert "resulted in an error: [ FakeSystem ]" in caplog.text
+
+
+def test_hardware_that_raises_counts_as_failed(bench: Any, caplog: Any) -> None:
+    def broken(time_s: float, period_s: float) -> HardwareReturn:
+        raise OSError("cable out")
+
+    bench.hardware.read = broken
+    bench.tick()
+    (component,) = bench.manager.list_hardware_components()
+    assert component.state is LifecycleState.UNCONFIGURED
+    assert "cable out" in caplog.text
+
+
+def test_hardware_that_failed_comes_back_with_its_interfaces(bench: Any) -> None:
+    bench.configure("a", commands=ALL)
+    bench.manager.switch_controller(SwitchRequest(("a",)))
+    bench.hardware.read_result = HardwareReturn.ERROR
+    bench.tick()
+    refused = bench.manager.switch_controller(SwitchRequest(("a",)))
+    bench.hardware.read_result = HardwareReturn.OK
+    bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.ACTIVE)
+    accepted = bench.manager.switch_controller(SwitchRequest(("a",)))
+    assert "'j0/position' is not available" in refused.message
+    assert accepted.ok
+
+
+def test_hardware_that_deactivates_itself_stops_only_who_commands_it(bench: Any) -> None:
+    bench.configure("user", commands=ALL)
+    bench.configure("watcher", states=("j1/velocity",))
+    bench.manager.switch_controller(SwitchRequest(("user", "watcher")))
+    bench.hardware.write_result = HardwareReturn.DEACTIVATE
+    bench.tick()
+    assert bench.states() == {"watcher": "active", "user": "inactive"}
+    (component,) = bench.manager.list_hardware_components()
+    assert component.state is LifecycleState.INACTIVE
+
+
+def test_inactive_hardware_is_read_but_not_written(bench: Any) -> None:
+    bench.configure("a", commands=ALL)
+    bench.manager.switch_controller(SwitchRequest(("a",)))
+    bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.INACTIVE)
+    bench.manager.resources.commands[:] = 1.0
+    bench.tick()
+    assert bench.states() == {"a": "active"}
+    assert bench.manager.resources.states.reshape(4, 3)[:, 0].tolist() == [0.0] * 4
+
+
+def test_cleaning_hardware_up_stops_its_users(bench: Any) -> None:
+    bench.configure("a", commands=ALL)
+    bench.manager.switch_controller(SwitchRequest(("a",)))
+    bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.UNCONFIGURED)
+    assert bench.states() == {"a": "inactive"}
+    commands, states = bench.manager.list_hardware_interfaces()
+    assert not any(i.is_available for i in (*commands, *states))
+
+
+def test_finalized_hardware_stays_so(bench: Any) -> None:
+    bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.FINALIZED)
+    with pytest.raises(ControllerManagerError, match="is finalized"):
+        bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.ACTIVE)
+
+
+def test_two_components_of_one_name_are_refused() -> None:
+    with pytest.raises(ControllerManagerError, match="two hardware components are named 'Fake"):
+        ControllerManager([fake_hardware(), fake_hardware(("k0",))], 100)
+
+
+def test_two_components_with_the_same_interface_are_refused() -> None:
+    with pytest.raises(ControllerManagerError, match=r"'j0/position' belongs to .*'FakeSystem'"):
+        ControllerManager([fake_hardware(), fake_hardware(("j0",), name="B")], 100)

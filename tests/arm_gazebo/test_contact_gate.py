@@ -1,0 +1,55 @@
+import mujoco
+import numpy as np
+import pytest
+
+FLOOR = '<geom type="plane" size="0 0 1"/>'
+FAR_AWAY = '<geom type="box" size="0.1 0.1 0.1" pos="50 0 0.1"/>'
+
+
+@pytest.fixture
+def world(tmp_path):
+    def make(*things):
+        file = tmp_path / "world.xml"
+        file.write_text(f"<mujoco><worldbody>{''.join(things)}</worldbody></mujoco>")
+        return file
+
+    return make
+
+
+def detects_contacts(bench):
+    bench.tick()
+    return not bench.simulation.model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+
+
+def test_arm_in_the_air_over_a_bare_floor_needs_no_contacts(bench, parts, world):
+    assert not detects_contacts(bench(parts.arm(), world=world(FLOOR)))
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        FAR_AWAY,
+        '<body pos="9 9 9"><freejoint/><geom size="0.1"/></body>',
+        '<geom type="plane" size="0 0 1" euler="0 10 0"/>',
+        '<body mocap="true" pos="9 9 9"><geom size="0.1"/></body>',
+    ],
+)
+def test_anything_else_to_touch_keeps_them_on(bench, parts, world, thing):
+    assert detects_contacts(bench(parts.arm(), world=world(FLOOR, thing)))
+
+
+def test_self_collision_keeps_them_on(bench, parts, world):
+    assert detects_contacts(bench(parts.arm(), world=world(FLOOR), self_collide=True))
+
+
+def test_robot_that_stands_on_the_floor_keeps_them_on(bench, parts, world):
+    assert detects_contacts(bench(parts.arm(base="free"), world=world(FLOOR), base="free"))
+
+
+@pytest.mark.parametrize("rate_hz", [30, 100, 500])
+def test_falling_arm_hits_the_floor_as_if_they_were_always_on(bench, parts, world, rate_hz):
+    runs = []
+    for things in ((FLOOR,), (FLOOR, FAR_AWAY)):
+        arm = bench(parts.arm(j1_pos="0.5"), rate_hz, world(*things), hold_joints=False)
+        runs.append(arm.run(2.0))
+    assert np.array_equal(*runs)

@@ -1,0 +1,192 @@
+"""Mesh files of every format, as links of a model."""
+
+import struct
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+from arm_gazebo.errors import MeshError
+
+SIZE = (0.1, 0.2, 0.3)
+RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0)
+
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 100 0 0 0 200 0 0 0 300</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 2 1 0 1 3 1 2 3 0 3 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+TWO_COLOURS = """mtllib two.mtl
+v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 0\nv 3 0 0\nv 2 1 0\nv 2 0 1
+usemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3
+usemtl green\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7
+"""
+
+
+def shape(uri, scale="1 1 1", tag="visual", colour=""):
+    return f'<{tag}><geometry><mesh filename="{uri}" scale="{scale}"/></geometry>{colour}</{tag}>'
+
+
+def robot_with(*shapes):
+    return (
+        '<robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" '
+        f'izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{"".join(shapes)}</link></robot>'
+    )
+
+
+def extent(model, geom=-1):
+    """Return the size in m of the box around a mesh geom."""
+    mesh = model.geom_dataid[geom]
+    first = model.mesh_vertadr[mesh]
+    vertices = model.mesh_vert[first : first + model.mesh_vertnum[mesh]]
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
+    return np.ptp(vertices @ rotation.reshape(3, 3).T, axis=0)
+
+
+@pytest.fixture
+def box():
+    return trimesh.creation.box(SIZE)
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "off"])
+def test_formats(parts, tmp_path, box, suffix):
+    file = tmp_path / f"box.{suffix}"
+    box.export(file)
+    model = parts.build(robot_with(shape(file))).model
+    assert extent(model) == pytest.approx(SIZE, abs=1e-6)
+
+
+def test_text_stl(parts, tmp_path, box):
+    file = tmp_path / "box.stl"
+    box.export(file, file_type="stl_ascii")
+    assert extent(parts.build(robot_with(shape(file))).model) == pytest.approx(SIZE, abs=1e-6)
+
+
+def test_binary_stl_that_starts_like_text(parts, tmp_path, box):
+    data = bytearray(box.export(file_type="stl"))
+    data[:6] = b"solid "
+    (tmp_path / "box.stl").write_bytes(data)
+    model = parts.build(robot_with(shape(tmp_path / "box.stl"))).model
+    assert extent(model) == pytest.approx(SIZE, abs=1e-6)
+
+
+def test_unit_of_a_collada_file_counts(parts, tmp_path):
+    (tmp_path / "part.dae").write_text(COLLADA)
+    model = parts.build(robot_with(shape(tmp_path / "part.dae"))).model
+    assert extent(model) == pytest.approx(SIZE, abs=1e-6)
+
+
+def test_materials_of_an_obj_are_separate_colours(parts, tmp_path):
+    (tmp_path / "two.obj").write_text(TWO_COLOURS)
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n")
+    model = parts.build(robot_with(shape(tmp_path / "two.obj"))).model
+    colours = {tuple(np.round(rgba, 2)) for rgba in model.geom_rgba[-2:]}
+    assert colours == {RED, GREEN}
+
+
+def test_colour_of_the_urdf_beats_the_one_colour_of_a_file(parts, tmp_path):
+    (tmp_path / "one.obj").write_text(TWO_COLOURS.partition("usemtl green")[0])
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    green = '<material name="g"><color rgba="0 1 0 1"/></material>'
+    model = parts.build(robot_with(shape(tmp_path / "one.obj", colour=green))).model
+    assert model.geom_rgba[-1] == pytest.approx(GREEN)
+
+
+def test_scale(parts, tmp_path, box):
+    box.export(tmp_path / "box.stl")
+    model = parts.build(robot_with(shape(tmp_path / "box.stl", "10 1 0.5"))).model
+    assert extent(model) == pytest.approx([1.0, 0.2, 0.15], abs=1e-6)
+
+
+def test_mirrored_mesh_keeps_its_outside_outside(parts, tmp_path):
+    wedge = trimesh.creation.cone(0.1, 0.3)
+    wedge.export(tmp_path / "cone.stl")
+    model = parts.build(robot_with(shape(tmp_path / "cone.stl", "1 1 -1"))).model
+    mesh = model.geom_dataid[-1]
+    vertices = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
+    faces = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
+    assert trimesh.Trimesh(vertices, faces, process=False).volume > 0
+
+
+def test_one_file_is_one_asset_however_often_it_is_used(parts, tmp_path, box):
+    box.export(tmp_path / "box.stl")
+    use = shape(tmp_path / "box.stl")
+    model = parts.build(robot_with(use, use, shape(tmp_path / "box.stl", tag="collision"))).model
+    assert model.nmesh == 1
+
+
+def test_files_of_the_same_name_in_two_folders_are_two_meshes(parts, tmp_path):
+    for folder, size in (("a", 0.1), ("b", 0.2)):
+        (tmp_path / folder).mkdir()
+        trimesh.creation.box([size] * 3).export(tmp_path / folder / "part.stl")
+    uses = [shape(tmp_path / folder / "part.stl") for folder in "ab"]
+    model = parts.build(robot_with(*uses)).model
+    assert extent(model, -2) == pytest.approx([0.1] * 3, abs=1e-6)
+    assert extent(model, -1) == pytest.approx([0.2] * 3, abs=1e-6)
+
+
+def test_package_path_is_searched(parts, tmp_path, box):
+    (tmp_path / "my_robot" / "meshes").mkdir(parents=True)
+    box.export(tmp_path / "my_robot" / "meshes" / "box.stl")
+    urdf = robot_with(shape("package://my_robot/meshes/box.stl"))
+    assert parts.build(urdf, package_path=(tmp_path,)).report.findings == ()
+
+
+def test_missing_mesh_is_a_box_and_a_warning_that_says_where_it_was_sought(parts, tmp_path):
+    urdf = robot_with(shape("package://my_robot/box.stl"))
+    built = parts.build(urdf, package_path=(tmp_path,))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert "link 'base' (line 1): no file for 'package://my_robot/box.stl'" in warning
+    assert str(tmp_path / "my_robot" / "box.stl") in warning
+    assert built.model.geom_size[-1] == pytest.approx([0.025] * 3)
+
+
+def test_missing_mesh_is_an_error_when_strict(parts):
+    with pytest.raises(MeshError, match=r"link 'base' \(line 1\): no file for 'gone.stl'"):
+        parts.build(robot_with(shape("gone.stl")), strict=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("a.stl", b"", "neither a text STL nor a complete binary one"),
+        ("a.stl", b"\0" * 80 + struct.pack("<I", 100) + b"\0" * 20, "nor a complete binary one"),
+        ("a.stl", b"solid x\nvertex 1 2 3\nendsolid", "1 vertices"),
+        ("a.stl", b"solid x\nvertex 1 2 x\nvertex 1 2 3\nvertex 1 2 3\n", "no number"),
+        ("a.obj", b"v 1 2 3\n", ""),
+        ("a.dae", b"<COLLADA", ""),
+        ("a.step", b"ISO-10303", "'.step' is not one of .stl, .obj"),
+    ],
+)
+def test_unreadable_mesh_is_named_with_the_reason(parts, tmp_path, name, content, reason):
+    (tmp_path / name).write_bytes(content)
+    built = parts.build(robot_with(shape(tmp_path / name)))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert f"cannot use the mesh {tmp_path / name}: " in warning
+    assert reason in warning
+
+
+def test_flat_visual_is_drawn(parts, tmp_path):
+    sheet = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    sheet.export(tmp_path / "sheet.stl")
+    built = parts.build(robot_with(shape(tmp_path / "sheet.stl")))
+    assert built.report.findings == ()
+
+
+def test_flat_collision_becomes_a_thin_box(parts, tmp_path):
+    sheet = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    sheet.export(tmp_path / "sheet.stl")
+    built = parts.build(robot_with(shape(tmp_path / "sheet.stl", tag="collision")))
+    assert "is flat; its bounding box is used" in str(built.report.warnings[0])
+    assert built.model.geom_size[-1] == pytest.approx([0.5, 0.5, 1e-4])
+    assert built.model.geom_pos[-1] == pytest.approx([0.5, 0.5, 0])

@@ -1,0 +1,61 @@
+"""The shipped Fast DDS profiles: valid, and loaded without complaint."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
+
+from launch_py.packages import Packages
+
+PROFILES = ("dds_profile.xml", "dds_profile_images.xml")
+NAMESPACE = {"d": "http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"}
+
+TALK = """
+import rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("profiled")
+received = []
+publisher = node.create_publisher(String, "chat", 1)
+node.create_subscription(String, "chat", received.append, 1)
+while not received:
+    publisher.publish(String(data="x"))
+    rclpy.spin_once(node, timeout_sec=0.02)
+node.destroy_node()
+rclpy.shutdown()
+"""
+
+
+def profile_path(name: str) -> Path:
+    return Packages(os.environ).share_folder("launch_py") / "config" / name
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_a_profile_follows_the_schema(name):
+    schema = etree.XMLSchema(etree.parse(Path(sys.prefix) / "share" / "fastRTPS_profiles.xsd"))
+    schema.assertValid(etree.parse(profile_path(name)))
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_a_profile_makes_discovery_fast_and_wide(name):
+    tree = etree.parse(profile_path(name))
+    assert tree.findtext(".//d:initialAnnouncements/d:count", namespaces=NAMESPACE) == "40"
+    ranges = [e.text for e in tree.iterfind(".//d:maxInitialPeersRange", NAMESPACE)]
+    assert ranges == ["64", "64"]
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("name", PROFILES)
+def test_a_profile_is_loaded_without_complaint(name):
+    done = subprocess.run(
+        [sys.executable, "-c", TALK],
+        env={**os.environ, "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile_path(name))},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

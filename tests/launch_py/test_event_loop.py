@@ -1,0 +1,80 @@
+"""Timers, readers and signals of the supervisor's loop."""
+
+import os
+import signal
+
+import pytest
+
+from launch_py.supervision.event_loop import EventLoop
+from launch_py.testing import ManualClock
+
+
+@pytest.fixture
+def loop():
+    loop = EventLoop()
+    yield loop
+    loop.close()
+
+
+def test_timers_are_called_in_their_order():
+    clock = ManualClock()
+    loop = EventLoop(clock)
+    called = []
+    loop.call_later(2.0, lambda: called.append("late"))
+    loop.call_later(1.0, lambda: called.append("first"))
+    loop.call_later(1.0, lambda: called.append("second"))
+    loop.call_later(1.0, lambda: called.append("never")).cancel()
+    clock.advance(1.0)
+    loop.call_due_timers()
+    assert called == ["first", "second"]
+    clock.advance(1.0)
+    loop.call_due_timers()
+    assert called == ["first", "second", "late"]
+    loop.close()
+
+
+def test_run_waits_for_a_timer(loop):
+    called = []
+    loop.call_later(0.01, lambda: called.append(1))
+    loop.run(until=lambda: bool(called))
+
+
+def test_run_waits_for_a_file(loop):
+    readable, writable = os.pipe()
+    received = []
+    loop.add_reader(readable, lambda: received.append(os.read(readable, 10)))
+    os.write(writable, b"x")
+    loop.run(until=lambda: bool(received))
+    loop.remove_reader(readable)
+    os.close(readable)
+    os.close(writable)
+    assert received == [b"x"]
+
+
+def test_a_reader_may_remove_another(loop):
+    pipes = [os.pipe() for _ in range(2)]
+    called = []
+
+    def remove_all(index):
+        called.append(index)
+        for readable, _ in pipes:
+            loop.remove_reader(readable)
+
+    for index, (readable, writable) in enumerate(pipes):
+        loop.add_reader(readable, lambda i=index: remove_all(i))
+        os.write(writable, b"x")
+    loop.run(until=lambda: bool(called))
+    assert len(called) == 1
+    for pipe in pipes:
+        os.close(pipe[0])
+        os.close(pipe[1])
+
+
+def test_signals_come_from_the_loop_and_the_handlers_are_restored(loop):
+    before = signal.getsignal(signal.SIGUSR1)
+    called = []
+    with loop.signals({signal.SIGUSR1: lambda: called.append(1)}):
+        os.kill(os.getpid(), signal.SIGUSR1)
+        assert called == []
+        loop.run(until=lambda: bool(called))
+    assert signal.getsignal(signal.SIGUSR1) is before

@@ -1,0 +1,106 @@
+"""Readiness that only another ROS participant can see."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+NODE = """
+import sys
+CODE = '''
+import signal, threading
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+node = rclpy.create_node("tested")
+ended = threading.Event()
+signal.signal(signal.SIGINT, lambda *_: ended.set())
+print("node is up", flush=True)
+BODY
+while not ended.is_set():
+    rclpy.spin_once(node, timeout_sec=0.02)
+node.destroy_node()
+rclpy.shutdown()
+'''
+
+
+def tested(body, **options):
+    return python("tested", dedent(CODE).replace("BODY", body), **options)
+
+
+"""
+
+
+def segments_of(pid: int) -> set[Path]:
+    """Return the shared-memory files that a process has open or mapped."""
+    lines = Path(f"/proc/{pid}/maps").read_text().splitlines()
+    mapped = {Path(line.split()[-1]) for line in lines if "/fastrtps_" in line}
+    links = [Path(os.readlink(link)) for link in Path(f"/proc/{pid}/fd").iterdir()]
+    return mapped | {path for path in links if path.name.startswith("fastrtps_")}
+
+
+@pytest.mark.parametrize(
+    ("body", "condition"),
+    [
+        ("node.create_publisher(String, 'chat', 1)", "TopicPublished('chat')"),
+        (
+            "node.create_publisher(String, 'chat', 1)",
+            "TopicPublished('/chat', 'std_msgs/msg/String')",
+        ),
+        (
+            "publisher = node.create_publisher(String, 'chat', 1)\n"
+            "node.create_timer(0.05, lambda: publisher.publish(String(data='x')))",
+            "TopicPublished('/chat', first_message=True)",
+        ),
+        (
+            "from rclpy.qos import DurabilityPolicy, QoSProfile\n"
+            "latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)\n"
+            "node.create_publisher(String, 'chat', latched).publish(String(data='x'))",
+            "TopicPublished('/chat', first_message=True)",
+        ),
+        (
+            "node.create_service(Trigger, 'serve', lambda _, response: response)",
+            "ServiceAvailable('serve')",
+        ),
+    ],
+)
+def test_a_condition_is_met(launch, body, condition):
+    launched = launch(f"{NODE}actions = [tested({body!r}, ready={condition})]")
+    launched.wait_for("^ready ")
+    launched.signal(signal.SIGINT)
+    assert launched.wait() == 0
+
+
+@pytest.mark.parametrize(
+    ("condition", "missing"),
+    [
+        ("TopicPublished('chat', timeout_s=1.0)", "no publisher on topic /chat"),
+        ("TopicPublished('/chat', first_message=True, timeout_s=1)", "no message on topic /chat"),
+        ("ServiceAvailable('serve', timeout_s=1.0)", "no server of service /serve"),
+        ("ActionAvailable('/move', timeout_s=1.0)", "no server of action /move"),
+    ],
+)
+def test_a_condition_that_is_not_met_says_what_is_missing(launch, condition, missing):
+    launched = launch(f"{NODE}actions = [tested('pass', ready={condition})]")
+    assert launched.wait() == 1
+    assert f"tested is not ready after 1 s: {missing}" in launched.lines[-1]
+
+
+def test_a_killed_node_leaves_nothing_in_shared_memory(launch, waiting):
+    launched = launch(
+        f"{NODE}actions = [tested('import os; print(os.getpid(), flush=True)', "
+        "ready=LogLine(r'^\\d+$'), on_exit=Shutdown())]"
+    )
+    pid = int(launched.wait_for(r"^\[tested\] \d+$").split()[1])
+    launched.wait_for("^ready ")
+    owned = segments_of(pid)
+    assert owned
+    os.kill(pid, signal.SIGKILL)
+    assert launched.wait() == 128 + signal.SIGKILL
+    assert not any(path.exists() for path in owned)

@@ -1,0 +1,113 @@
+"""Which shared-memory files are removed: only those of our own dead processes.
+
+The folder is a stand-in; the locks are real, held by real processes.
+"""
+
+import os
+import select
+import subprocess
+import sys
+
+import pytest
+
+from launch_py.supervision.shared_memory import SharedMemoryLedger, watch_folder
+
+HOLD = (
+    "import fcntl, sys; f = open(sys.argv[1]); fcntl.flock(f, fcntl.LOCK_EX); "
+    "print('held', flush=True); sys.stdin.read()"
+)
+
+
+@pytest.fixture
+def segment(tmp_path):
+    """Make the files of a segment and a process that owns it."""
+    owners = []
+
+    def make(stem):
+        for name in (stem, f"{stem}_el", f"sem.{stem}_mutex"):
+            (tmp_path / name).touch()
+        owner = subprocess.Popen(
+            [sys.executable, "-c", HOLD, str(tmp_path / f"{stem}_el")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        owners.append(owner)
+        assert owner.stdout is not None
+        assert owner.stdout.readline() == "held\n"
+        return owner
+
+    yield make
+    for owner in owners:
+        owner.kill()
+        owner.communicate()
+
+
+def end(owner):
+    owner.kill()
+    owner.wait()
+
+
+def test_the_files_of_a_dead_process_of_ours_are_removed(tmp_path, segment):
+    owner = segment("fastrtps_1")
+    ledger = SharedMemoryLedger(lambda pid: pid == owner.pid, str(tmp_path))
+    ledger.observe()
+    end(owner)
+    assert sorted(ledger.sweep()) == ["fastrtps_1", "fastrtps_1_el", "sem.fastrtps_1_mutex"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_files_of_a_living_process_stay(tmp_path, segment):
+    segment("fastrtps_1")
+    ledger = SharedMemoryLedger(lambda _: True, str(tmp_path))
+    ledger.observe()
+    assert ledger.sweep() == []
+
+
+def test_the_files_of_others_stay_even_when_they_are_dead(tmp_path, segment):
+    ours, other = segment("fastrtps_1"), segment("fastrtps_2")
+    ledger = SharedMemoryLedger(lambda pid: pid == ours.pid, str(tmp_path))
+    ledger.observe()
+    end(ours)
+    end(other)
+    ledger.sweep()
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "fastrtps_2",
+        "fastrtps_2_el",
+        "sem.fastrtps_2_mutex",
+    }
+
+
+def test_what_a_survivor_makes_anew_is_removed_again(tmp_path, segment):
+    owner = segment("fastrtps_port7411")
+    ledger = SharedMemoryLedger(lambda _: True, str(tmp_path))
+    ledger.observe()
+    end(owner)
+    ledger.sweep()
+    (tmp_path / "fastrtps_port7411").touch()
+    assert ledger.sweep() == ["fastrtps_port7411"]
+
+
+def test_a_port_that_another_process_has_taken_over_stays(tmp_path, segment):
+    owner = segment("fastrtps_port7411")
+    ledger = SharedMemoryLedger(lambda pid: pid == owner.pid, str(tmp_path))
+    ledger.observe()
+    end(owner)
+    segment("fastrtps_port7411")
+    assert ledger.sweep() == []
+
+
+def test_a_folder_that_does_not_exist_is_empty():
+    ledger = SharedMemoryLedger(lambda _: True, "/nowhere")
+    ledger.observe()
+    assert ledger.sweep() == []
+    assert watch_folder("/nowhere") is None
+
+
+def test_a_new_file_wakes_the_watcher(tmp_path):
+    fd = watch_folder(str(tmp_path))
+    assert fd is not None
+    assert select.select([fd], [], [], 0)[0] == []
+    (tmp_path / "fastrtps_1").touch()
+    assert select.select([fd], [], [], 10)[0] == [fd]
+    os.close(fd)

@@ -1,0 +1,160 @@
+"""Parameters of the manager and its controllers."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+POSITION = "position_controllers/JointGroupPositionController"
+BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+JOINTS = ("j0", "j1", "j2", "j3")
+
+
+@pytest.fixture
+def parameters_of(client: Any) -> Callable[[str], dict[str, Any]]:
+    """Return a function that reads all parameters of a node."""
+    from rcl_interfaces.srv import GetParameters, ListParameters
+    from rclpy.parameter import parameter_value_to_python
+
+    def read(node: str) -> dict[str, Any]:
+        names = client.call(
+            ListParameters, f"{node}/list_parameters", ListParameters.Request()
+        ).result.names
+        values = client.call(
+            GetParameters, f"{node}/get_parameters", GetParameters.Request(names=names)
+        ).values
+        return {
+            name: parameter_value_to_python(value)
+            for name, value in zip(names, values, strict=True)
+        }
+
+    return read
+
+
+def test_the_managers_parameters(control: Any, parameters_of: Any) -> None:
+    control.load("position_controller")
+    parameters = parameters_of("/controller_manager")
+    expected = {
+        "update_rate": 100,
+        "defaults.switch_controller.strictness": "best_effort",
+        "hardware_components_initial_state.unconfigured": [],
+        "overruns.print_warnings": True,
+        "position_controller.type": POSITION,
+        "position_controller.fallback_controllers": [],
+        "position_controller.node_options_args": [],
+    }
+    assert {name: parameters[name] for name in expected} == expected
+
+
+def test_a_controllers_parameters(control: Any, parameters_of: Any) -> None:
+    control.load("position_controller")
+    parameters = parameters_of("/position_controller")
+    expected = {
+        "interface_name": "position",
+        "is_async": False,
+        "joints": list(JOINTS),
+        "thread_priority": -100,
+        "update_rate": 100,
+    }
+    assert {name: parameters[name] for name in expected} == expected
+
+
+def test_the_broadcasters_parameters_are_read_only(
+    control: Any, parameters_of: Any, set_parameter: Any
+) -> None:
+    control.load("joint_state_broadcaster")
+    parameters = parameters_of("/joint_state_broadcaster")
+    expected = {
+        "extra_joints": [],
+        "frame_id": "base_link",
+        "interfaces": [],
+        "joints": [],
+        "map_interface_to_joint_state.effort": "effort",
+        "map_interface_to_joint_state.position": "position",
+        "map_interface_to_joint_state.velocity": "velocity",
+        "publish_dynamic_joint_states": True,
+        "use_local_topics": False,
+        "use_urdf_to_filter": True,
+    }
+    assert {name: parameters[name] for name in expected} == expected
+    for name, value in (("frame_id", "other"), ("joints", ["j0"])):
+        result = set_parameter("/joint_state_broadcaster", name, value)
+        assert not result.successful
+        assert "read-only" in result.reason
+
+
+def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
+    program = run_manager(
+        "--start",
+        "position_controller",
+        parameters={
+            "/**/controller_manager": {"ros__parameters": {"position_controller.type": POSITION}},
+            "/**/position_controller": {
+                "ros__parameters": {"joints": ["j0"], "state_publish_rate": 100.0, "open": True}
+            },
+        },
+        ros_arguments=("-r", "__ns:=/reports"),
+    )
+    line = program.wait_for_line("is not known to")
+    assert f"parameter 'open', 'state_publish_rate' is not known to {POSITION}" in line
+    assert "it knows interface_name, is_async, joints" in line
+
+
+def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> None:
+    run_manager(
+        "--start",
+        "jsb",
+        parameters={
+            "/**/controller_manager": {
+                "ros__parameters": {
+                    "jsb": {"type": BROADCASTER, "fallback_controllers": []},
+                    "hardware_components_initial_state": {"inactive": []},
+                }
+            },
+            "/**/jsb": {"ros__parameters": {"joints": []}},
+        },
+        ros_arguments=("-r", "__ns:=/empty"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("parameters", "reason"),
+    [
+        ({"update_rate": 0}, "parameter 'update_rate' of /controller_manager must be positive"),
+        ({"update_rate": "fast"}, "parameter 'update_rate' must be of type int, not 'fast'"),
+        (
+            {"defaults": {"switch_controller": {"strictness": "lax"}}},
+            "must be one of best_effort, strict, but is 'lax'",
+        ),
+    ],
+)
+def test_parameters_of_the_manager_that_make_no_sense_end_it_with_a_sentence(
+    run_manager: Any, parameters: dict[str, Any], reason: str
+) -> None:
+    program = run_manager(
+        parameters={"/**/controller_manager": {"ros__parameters": parameters}},
+        ros_arguments=("-r", "__ns:=/refused"),
+        wait=False,
+    )
+    assert program.wait() == 1
+    assert reason in program.output
+    assert "Traceback" not in program.output
+
+
+def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager: Any) -> None:
+    program = run_manager(
+        "--start",
+        "position_controller",
+        parameters={
+            "/**/controller_manager": {"ros__parameters": {"position_controller.type": POSITION}},
+            "/**/position_controller": {"ros__parameters": {"joints": ["j0", "j9"]}},
+        },
+        ros_arguments=("-r", "__ns:=/refused"),
+        wait=False,
+    )
+    assert program.wait() == 1
+    assert "the command interface 'j9/position' is not available" in program.output
+    assert "(available: j0/position, j0/velocity, j1/position" in program.output
+    assert "Traceback" not in program.output

@@ -1,0 +1,58 @@
+"""A manager's process: namespaces, failures, the end."""
+
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+
+
+def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, client: Any) -> None:
+    from sensor_msgs.msg import JointState
+
+    program = run_manager(
+        parameters={
+            "/right/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}},
+            "/right/jsb": {"ros__parameters": {"frame_id": "there"}},
+        },
+        ros_arguments=("-r", "__ns:=/right", "-r", "__node:=host"),
+    )
+    control_of("/right").start("jsb")
+    message = client.subscribe(JointState, "/right/joint_states").wait_for(1)[0]
+    assert message.header.frame_id == "there"
+    assert {"jsb", "controller_manager", "hardwareinterface"} <= {
+        name
+        for name, namespace in client.node.get_node_names_and_namespaces()
+        if namespace == "/right"
+    }
+    assert program.stop() == 0
+
+
+def test_hardware_that_fails_takes_its_controllers_down(run_manager: Any, control_of: Any) -> None:
+    program = run_manager(
+        "--start",
+        "jsb",
+        parameters={"/**/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}}},
+        ros_arguments=("-r", "__ns:=/failing"),
+    )
+    control = control_of("/failing")
+    program.tell("fail read")
+    program.wait_for_line("read cycle resulted in an error: [ HardwareInterface ]")
+    control.wait_for_states(jsb="inactive")
+    (component,) = control.call("ListHardwareComponents", "list_hardware_components").component
+    assert component.state.label == "unconfigured"
+
+
+@pytest.mark.parametrize("paused", [(), ("--paused",)])
+def test_it_ends_with_code_0(run_manager: Any, paused: tuple[str, ...]) -> None:
+    program = run_manager(
+        *paused,
+        "--start",
+        "jsb",
+        parameters={"/**/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}}},
+        ros_arguments=("-r", "__ns:=/ending"),
+    )
+    assert program.stop() == 0
+    assert "Traceback" not in program.output
