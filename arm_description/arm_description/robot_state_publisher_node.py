@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_description.errors import DescriptionError
+from arm_node.discovery import answers_held_back
 from arm_node.process import NodeProcess, run_process
 
 
@@ -15,7 +16,7 @@ def application(_process: NodeProcess) -> Iterator[None]:
     from arm_description.ros.node_errors import user_mistakes_named
     from arm_description.ros.robot_state_publisher import RobotStatePublisher
 
-    with user_mistakes_named():
+    with user_mistakes_named(), answers_held_back():
         node = RobotStatePublisher()
     with spinning(node):
         yield

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from arm_gazebo.camera_channel import CameraEnd
 from arm_gazebo.camera_settings import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, CameraError, GazeboError
+from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
 
 if TYPE_CHECKING:
@@ -72,7 +73,8 @@ def _application(
     from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
     from arm_gazebo.ros.camera_publisher import CameraPublisher
 
-    node = Node("camera")
+    with answers_held_back():
+        node = Node("camera")
     publishers = [CameraPublisher(node, sensor) for sensor in settings.cameras]
     pipeline = CameraPipeline(
         settings.cameras, publishers, partial(_open_renderer, settings, channel), settings.seed

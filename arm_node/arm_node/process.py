@@ -19,6 +19,7 @@ from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from arm_node.discovery import answers_held_back
 from arm_node.environment import MissingInterfacesError, prepare_environment
 from arm_node.notify import notify
 
@@ -187,7 +188,9 @@ def run_node(
 
     @contextmanager
     def application(process: NodeProcess) -> Iterator[None]:
-        process.executor.add_node(node_class())
+        with answers_held_back():
+            node = node_class()
+        process.executor.add_node(node)
         yield
 
     return run_process(application, argv, user_errors)

@@ -44,7 +44,7 @@ def test_a_profile_makes_discovery_fast_and_wide(name):
     tree = etree.parse(profile_path(name))
     assert tree.findtext(".//d:initialAnnouncements/d:count", namespaces=NAMESPACE) == "40"
     ranges = [e.text for e in tree.iterfind(".//d:maxInitialPeersRange", NAMESPACE)]
-    assert ranges == ["64", "64"]
+    assert ranges == ["64"]
 
 
 @pytest.mark.ros

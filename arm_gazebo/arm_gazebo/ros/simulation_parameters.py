@@ -3,15 +3,16 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arm_description.robot import Pose
 from arm_gazebo.errors import SettingsError
+from arm_gazebo.rendering.backend_selection import PREFERENCES
 
 BASES = ("fixed", "free")
-BACKENDS = ("auto", "egl", "osmesa", "raycast")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ def read_settings(node: Node) -> SimulationSettings:
         package_path=tuple(
             Path(p) for p in values.texts("package_path", "folders for package:// and model://")
         ),
-        render_backend=values.choice("render_backend", "auto", BACKENDS, "of the cameras"),
+        render_backend=values.choice("render_backend", "auto", PREFERENCES, "of the cameras"),
         seed=values.whole("seed", 0, "of the cameras' noise"),
     )
 
@@ -162,7 +163,7 @@ class _Values:
             raise SettingsError(f"{name} must be a list of texts, not {value!r}")
         return list(value)
 
-    def _declare(self, name: str, default: object, description: str) -> object:
+    def _declare(self, name: str, default: object, description: str) -> Any:
         descriptor = ParameterDescriptor(
             description=description, read_only=True, dynamic_typing=True
         )

@@ -8,7 +8,8 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from rclpy.clock import Clock, ClockType
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
@@ -30,6 +31,7 @@ from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settin
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
 from arm_gazebo.simulation_tick import SimulationTick
+from arm_node.discovery import answers_held_back
 from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess
 
@@ -47,7 +49,8 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
     Raises:
         GazeboError, ArmControlError, DescriptionError: it cannot be built as asked for.
     """
-    node = Node(NODE_NAME)
+    with answers_held_back():
+        node = Node(NODE_NAME)
     process.executor.add_node(node)
     settings = read_settings(node)
     manager_node = ControllerManagerNode(arguments)
@@ -62,7 +65,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         manager_node.settings.hardware_components_initial_state.unconfigured,
         manager_node.settings.hardware_components_initial_state.inactive,
     )
-    cameras = _camera_feed(sensors, settings)
+    cameras = _camera_feed(sensors, settings, node.get_namespace())
     tick = SimulationTick(manager, simulation, RosClockPublisher(node), cameras, timing.period_s)
     pacer = Pacer(
         timing.period_s,
@@ -129,11 +132,11 @@ def _build(
 
 
 def _camera_feed(
-    sensors: tuple[CameraSensor, ...], settings: SimulationSettings
+    sensors: tuple[CameraSensor, ...], settings: SimulationSettings, namespace: str
 ) -> CameraFeed | None:
     if not sensors:
         return None
-    return CameraFeed(sensors, render_backend=settings.render_backend, seed=settings.seed)
+    return CameraFeed(sensors, settings.render_backend, settings.seed, ("-r", f"__ns:={namespace}"))
 
 
 def _supervise(

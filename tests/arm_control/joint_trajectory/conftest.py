@@ -24,11 +24,29 @@ from arm_control.testing import fake_hardware
 JOINTS = ("j0", "j1", "j2")
 RATE_HZ = 100
 
+INTERFACES = [
+    (("position",), ("position",)),
+    (("position",), ("position", "velocity")),
+    (("position",), ("position", "velocity", "acceleration")),
+    (("position", "velocity"), ("position",)),
+    (("position", "velocity"), ("position", "velocity")),
+    (("position", "velocity"), ("velocity", "position", "acceleration")),
+    (("velocity", "position", "acceleration"), ("position",)),
+    (("position", "velocity", "acceleration"), ("position", "velocity")),
+    (("position", "velocity", "acceleration"), ("position", "velocity", "acceleration")),
+    (("position", "effort"), ("position", "velocity")),
+    (("velocity",), ("position", "velocity")),
+    (("velocity",), ("position", "velocity", "acceleration")),
+    (("effort",), ("position", "velocity")),
+    (("effort",), ("position", "velocity", "acceleration")),
+]
+"""Command interfaces, and state interfaces that go with them."""
+
 Point = tuple[Any, ...]
 """(time, positions), then velocities, accelerations and efforts as far as they are given."""
 
 
-def request(
+def trajectory_request(
     points: Sequence[Point], joints: Sequence[str] = JOINTS, stamp_s: float = 0.0
 ) -> TrajectoryRequest:
     return TrajectoryRequest(joints, [TrajectoryPoint(*point) for point in points], stamp_s)
@@ -142,12 +160,14 @@ class Rig:
 
     def trajectory(self, points: Sequence[Point], **options: Any) -> None:
         """Send a trajectory without a goal."""
-        refusal = self.controller.submit_trajectory(request(points, **options))
+        refusal = self.controller.submit_trajectory(trajectory_request(points, **options))
         assert refusal is None, refusal
 
     def goal(self, points: Sequence[Point], goal_id: object = "goal", **options: Any) -> None:
         """Send a goal that must be taken; see `GoalRequest` for the options."""
-        trajectory = request(points, options.pop("joints", JOINTS), options.pop("stamp_s", 0.0))
+        trajectory = trajectory_request(
+            points, options.pop("joints", JOINTS), options.pop("stamp_s", 0.0)
+        )
         assert self.controller.check_goal(trajectory) is None
         assert self.controller.submit_goal(GoalRequest(goal_id, trajectory, **options)) is None
 
@@ -199,9 +219,15 @@ def make_rig() -> Callable[..., Rig]:
     return make
 
 
+@pytest.fixture(params=INTERFACES, ids=lambda pair: "-".join("+".join(kinds) for kinds in pair))
+def interfaces(request: pytest.FixtureRequest) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return every legal combination of interfaces, one after the other."""
+    return request.param
+
+
 @pytest.fixture
 def make_request() -> Callable[..., TrajectoryRequest]:
-    return request
+    return trajectory_request
 
 
 @pytest.fixture

@@ -51,9 +51,14 @@ class Results:
 
 
 @pytest.fixture
-def controller(bench: Any) -> JointTrajectoryController:
+def sink() -> Results:
+    return Results()
+
+
+@pytest.fixture
+def controller(bench: Any, sink: Results) -> JointTrajectoryController:
     controller = JointTrajectoryController(ControllerContext("jtc", 100))
-    controller.sink = Results()
+    controller.sink = sink
     bench.manager.load_controller(controller, "test")
     return controller
 
@@ -73,14 +78,14 @@ def positions(bench: Any) -> list[float]:
     return [bench.hardware.states[names.index(f"{joint}/position")] for joint in JOINTS]
 
 
-def test_follows_a_goal(bench: Any, controller: JointTrajectoryController):
+def test_follows_a_goal(bench: Any, controller: JointTrajectoryController, sink: Results):
     bench.manager.configure_controller("jtc", PARAMETERS)
     switch(bench, ("jtc",))
     go(controller, 0.5, 1.0, 2.0, 3.0, 4.0)
     bench.tick(51)
 
     assert positions(bench) == [1.0, 2.0, 3.0, 4.0]
-    assert [result.message for result in controller.sink.results] == ["Goal successfully reached!"]
+    assert [result.message for result in sink.results] == ["Goal successfully reached!"]
 
 
 def test_runs_at_a_rate_of_its_own(bench: Any, controller: JointTrajectoryController):
@@ -108,7 +113,9 @@ def test_takes_over_from_another_controller_without_a_jump(
     assert positions(bench) == [0.1, 0.2, 0.3, 0.4]
 
 
-def test_hands_over_in_the_middle_of_a_goal(bench: Any, controller: JointTrajectoryController):
+def test_hands_over_in_the_middle_of_a_goal(
+    bench: Any, controller: JointTrajectoryController, sink: Results
+):
     forward = JointGroupPositionController(ControllerContext("forward", 100))
     bench.manager.load_controller(forward, "test")
     bench.manager.configure_controller("forward", PositionGroupParameters(JOINTS))
@@ -119,7 +126,7 @@ def test_hands_over_in_the_middle_of_a_goal(bench: Any, controller: JointTraject
     switch(bench, ("forward",), ("jtc",))
     bench.tick(10)
 
-    assert [result.message for result in controller.sink.results] == [
+    assert [result.message for result in sink.results] == [
         "Current goal cancelled during deactivate transition."
     ]
     assert positions(bench) == pytest.approx([0.51] * 4)

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arm_control.joint_trajectory.angles import nearest_turn, shortest_way
@@ -16,6 +16,9 @@ from arm_control.joint_trajectory.spline import Spline
 JOINTS = 2
 STEP_S = 1e-8
 NOT_CONTINUOUS = np.zeros(JOINTS, dtype=np.bool_)
+
+unhurried = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+"""On a busy machine an example may take its time."""
 
 numbers = st.floats(-10.0, 10.0)
 degrees = st.sampled_from([1, 3, 5])
@@ -53,6 +56,7 @@ def around(function: Callable, time_s: float) -> tuple[np.ndarray, np.ndarray]:
     return function(time_s - STEP_S), function(time_s + STEP_S)
 
 
+@unhurried
 @given(way_points())
 def test_every_way_point_is_met_exactly(points: tuple[np.ndarray, np.ndarray]):
     times, motions_there = points
@@ -64,6 +68,7 @@ def test_every_way_point_is_met_exactly(points: tuple[np.ndarray, np.ndarray]):
 
 @pytest.mark.parametrize(("degree", "continuous_rows"), [(1, 1), (3, 2), (5, 3)])
 def test_continuity_at_way_points(degree: int, continuous_rows: int):
+    @unhurried
     @given(way_points(degree))
     def check(points: tuple[np.ndarray, np.ndarray]) -> None:
         times, motions_there = points
@@ -76,6 +81,7 @@ def test_continuity_at_way_points(degree: int, continuous_rows: int):
     check()
 
 
+@unhurried
 @given(plans())
 def test_the_end_lasts(plan: SplinePlan):
     end = plan.sample(max(plan.end_s, 0.0))
@@ -83,6 +89,7 @@ def test_the_end_lasts(plan: SplinePlan):
     assert plan.sample(max(plan.end_s, 0.0) + 7.0).tolist() == end.tolist()
 
 
+@unhurried
 @given(plans(), st.lists(st.floats(0.0, 30.0), min_size=1, max_size=8))
 def test_a_sample_does_not_depend_on_the_samples_before(plan: SplinePlan, times: list[float]):
     """Upstream keeps a cursor in the trajectory; here a sample is a function of time alone."""
@@ -92,11 +99,13 @@ def test_a_sample_does_not_depend_on_the_samples_before(plan: SplinePlan, times:
     assert alone == backwards[::-1]
 
 
+@unhurried
 @given(plans(), st.floats(0.0, 30.0))
 def test_nothing_is_left_open(plan: SplinePlan, time_s: float):
     assert np.isfinite(plan.sample(time_s)).all()
 
 
+@unhurried
 @given(way_points(), st.floats(0.0, 1.0))
 def test_velocity_and_acceleration_are_derivatives(
     points: tuple[np.ndarray, np.ndarray], fraction: float
@@ -111,6 +120,7 @@ def test_velocity_and_acceleration_are_derivatives(
         assert np.allclose(here[1:3], slope, rtol=1e-3, atol=1e-3 * (1.0 + np.abs(here).max()))
 
 
+@unhurried
 @given(st.lists(st.floats(0.05, 5.0), min_size=1, max_size=5), st.data())
 def test_integrated_velocities_are_followed(gaps: list[float], data: st.DataObject):
     times = np.cumsum(gaps)
@@ -126,6 +136,7 @@ def test_integrated_velocities_are_followed(gaps: list[float], data: st.DataObje
         assert np.allclose(spline.sample(time_s)[1], mean, atol=1e-8)
 
 
+@unhurried
 @given(numbers, numbers)
 def test_the_short_way_is_short_and_arrives(start: float, end: float):
     way = shortest_way(np.array([start]), np.array([end]))[0]
@@ -135,6 +146,7 @@ def test_the_short_way_is_short_and_arrives(start: float, end: float):
     assert np.sin(start + way) == pytest.approx(np.sin(end), abs=1e-9)
 
 
+@unhurried
 @given(numbers, numbers)
 def test_the_nearest_turn_is_the_same_angle(start: float, end: float):
     moved = nearest_turn(np.array([start]), np.array([end]), np.array([True]))[0]
@@ -143,6 +155,7 @@ def test_the_nearest_turn_is_the_same_angle(start: float, end: float):
     assert np.cos(moved) == pytest.approx(np.cos(start), abs=1e-9)
 
 
+@unhurried
 @given(way_points(), motions(degree=5), st.floats(-10.0, 5.0), st.floats(0.01, 3.0))
 def test_a_join_starts_as_commanded_and_ends_as_planned(
     points: tuple[np.ndarray, np.ndarray], commanded: np.ndarray, offset_s: float, least_s: float
@@ -158,6 +171,7 @@ def test_a_join_starts_as_commanded_and_ends_as_planned(
             assert plan.sample(time_s).tolist() == spline.sample(time_s - offset_s).tolist()
 
 
+@unhurried
 @given(
     st.lists(numbers, min_size=JOINTS, max_size=JOINTS),
     st.lists(numbers, min_size=JOINTS, max_size=JOINTS),

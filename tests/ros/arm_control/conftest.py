@@ -162,6 +162,21 @@ def manager(run_manager: Run) -> Program:
     return run_manager()
 
 
+SERVICES = {
+    "cleanup_controller": "CleanupController",
+    "configure_controller": "ConfigureController",
+    "list_controller_types": "ListControllerTypes",
+    "list_controllers": "ListControllers",
+    "list_hardware_components": "ListHardwareComponents",
+    "list_hardware_interfaces": "ListHardwareInterfaces",
+    "load_controller": "LoadController",
+    "reload_controller_libraries": "ReloadControllerLibraries",
+    "set_hardware_component_state": "SetHardwareComponentState",
+    "switch_controller": "SwitchController",
+    "unload_controller": "UnloadController",
+}
+
+
 class Control:
     """What a client says to a controller manager."""
 
@@ -170,43 +185,46 @@ class Control:
         self._prefix = f"{namespace}/controller_manager"
         self._services: dict[str, Any] = {}
 
-    def call(self, type_name: str, service: str, **fields: Any) -> Any:
+    def call(self, service: str, **fields: Any) -> Any:
         """Call one of its services; a list is asked for again where no answer comes."""
-        import controller_manager_msgs.srv
-
-        type_ = getattr(controller_manager_msgs.srv, type_name)
-        if service not in self._services:
-            self._services[service] = self._connect(type_, service)
+        if not self._services:
+            self._connect()
+        client = self._services[service]
         attempts = 6 if service.startswith("list_") else 1
         for _ in range(attempts):
             answered = threading.Event()
-            future = self._services[service].call_async(type_.Request(**fields))
+            future = client.call_async(client.srv_type.Request(**fields))
             future.add_done_callback(lambda _, answered=answered: answered.set())
             if answered.wait(TIMEOUT_S / attempts):
                 return future.result()
         pytest.fail(f"no answer from {self._prefix}/{service}")
 
-    def _connect(self, type_: Any, service: str) -> Any:
-        client = self._client.node.create_client(type_, f"{self._prefix}/{service}")
-        self._client.wait_until(client.service_is_ready, f"{self._prefix}/{service}")
-        # The server may not know of this client yet, and its answer would be lost.
+    def _connect(self) -> None:
+        import controller_manager_msgs.srv
+
+        for service, type_name in SERVICES.items():
+            type_ = getattr(controller_manager_msgs.srv, type_name)
+            self._services[service] = self._client.node.create_client(
+                type_, f"{self._prefix}/{service}"
+            )
+        for service, client in self._services.items():
+            self._client.wait_until(client.service_is_ready, f"{self._prefix}/{service}")
+        # The server may not know of its client yet, and an answer would be lost.
         threading.Event().wait(0.2)
-        return client
 
     def load(self, name: str) -> bool:
-        return self.call("LoadController", "load_controller", name=name).ok
+        return self.call("load_controller", name=name).ok
 
     def configure(self, name: str) -> bool:
-        return self.call("ConfigureController", "configure_controller", name=name).ok
+        return self.call("configure_controller", name=name).ok
 
     def unload(self, name: str) -> bool:
-        return self.call("UnloadController", "unload_controller", name=name).ok
+        return self.call("unload_controller", name=name).ok
 
     def switch(
         self, activate: Sequence[str] = (), deactivate: Sequence[str] = (), strictness: int = 2
     ) -> Any:
         return self.call(
-            "SwitchController",
             "switch_controller",
             activate_controllers=list(activate),
             deactivate_controllers=list(deactivate),
@@ -222,7 +240,7 @@ class Control:
         assert answer.ok, answer.message
 
     def list(self) -> list[Any]:
-        return list(self.call("ListControllers", "list_controllers").controller)
+        return list(self.call("list_controllers").controller)
 
     def states(self) -> dict[str, str]:
         return {controller.name: controller.state for controller in self.list()}
@@ -236,6 +254,12 @@ class Control:
         self.switch((), [name for name, state in states.items() if state == "active"])
         for name in states:
             assert self.unload(name)
+
+
+@pytest.fixture(scope="session")
+def services() -> dict[str, str]:
+    """Return the services of a controller manager and their types."""
+    return SERVICES
 
 
 @pytest.fixture

@@ -41,7 +41,7 @@ def test_hardware_that_fails_takes_its_controllers_down(run_manager: Any, contro
     program.tell("fail read")
     program.wait_for_line("read cycle resulted in an error: [ HardwareInterface ]")
     control.wait_for_states(jsb="inactive")
-    (component,) = control.call("ListHardwareComponents", "list_hardware_components").component
+    (component,) = control.call("list_hardware_components").component
     assert component.state.label == "unconfigured"
 
 

@@ -14,28 +14,17 @@ COMMANDS = [f"{joint}/position" for joint in JOINTS]
 BEST_EFFORT, STRICT = 1, 2
 
 
-def test_the_services_of_a_real_one_are_there(control: Any, client: Any) -> None:
+def test_the_services_of_a_real_one_are_there(
+    control: Any, client: Any, services: dict[str, str]
+) -> None:
     control.list()
-    services = dict(client.node.get_service_names_and_types_by_node("controller_manager", "/"))
-    expected = {
-        "cleanup_controller": "CleanupController",
-        "configure_controller": "ConfigureController",
-        "list_controller_types": "ListControllerTypes",
-        "list_controllers": "ListControllers",
-        "list_hardware_components": "ListHardwareComponents",
-        "list_hardware_interfaces": "ListHardwareInterfaces",
-        "load_controller": "LoadController",
-        "reload_controller_libraries": "ReloadControllerLibraries",
-        "set_hardware_component_state": "SetHardwareComponentState",
-        "switch_controller": "SwitchController",
-        "unload_controller": "UnloadController",
-    }
-    for name, type_ in expected.items():
-        assert services[f"/controller_manager/{name}"] == [f"controller_manager_msgs/srv/{type_}"]
+    offered = dict(client.node.get_service_names_and_types_by_node("controller_manager", "/"))
+    for name, type_ in services.items():
+        assert offered[f"/controller_manager/{name}"] == [f"controller_manager_msgs/srv/{type_}"]
 
 
 def test_controller_types_are_listed_with_their_base_class(control: Any) -> None:
-    answer = control.call("ListControllerTypes", "list_controller_types")
+    answer = control.call("list_controller_types")
     assert {POSITION, BROADCASTER} <= set(answer.types)
     assert set(answer.base_classes) == {"controller_interface::ControllerInterface"}
     assert len(answer.base_classes) == len(answer.types)
@@ -172,7 +161,7 @@ def test_switching_to_a_controller_whose_interface_is_taken(control: Any) -> Non
 
 def test_hardware_interfaces(control: Any) -> None:
     control.start("second_controller")
-    answer = control.call("ListHardwareInterfaces", "list_hardware_interfaces")
+    answer = control.call("list_hardware_interfaces")
     claimed = {i.name: i.is_claimed for i in answer.command_interfaces}
     assert [name for name, is_claimed in claimed.items() if is_claimed] == ["j3/position"]
     names = [i.name for i in answer.state_interfaces]
@@ -183,7 +172,7 @@ def test_hardware_interfaces(control: Any) -> None:
 
 
 def test_hardware_components(control: Any) -> None:
-    (component,) = control.call("ListHardwareComponents", "list_hardware_components").component
+    (component,) = control.call("list_hardware_components").component
     assert (component.name, component.type, component.rw_rate) == (
         "HardwareInterface",
         "system",
@@ -199,7 +188,6 @@ def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control: Any) 
 
     def set_state(name: str, **state: Any) -> Any:
         return control.call(
-            "SetHardwareComponentState",
             "set_hardware_component_state",
             name=name,
             target_state=State(**state),
@@ -234,7 +222,6 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out(control: Any, manager: Any)
     manager.tell("block")
     try:
         answer = control.call(
-            "SwitchController",
             "switch_controller",
             activate_controllers=["position_controller"],
             strictness=STRICT,
@@ -251,9 +238,7 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out(control: Any, manager: Any)
 
 def test_reload_unloads_everything_active_controllers_only_by_force(control: Any) -> None:
     def reload(force: bool) -> bool:
-        return control.call(
-            "ReloadControllerLibraries", "reload_controller_libraries", force_kill=force
-        ).ok
+        return control.call("reload_controller_libraries", force_kill=force).ok
 
     control.start("position_controller")
     control.load("second_controller")
