@@ -164,9 +164,10 @@ class ControlLoop:
 
     def _wait_for_call(self, timeout_s: float | None) -> None:
         try:
-            self._calls.get(timeout=timeout_s).run()
+            call = self._calls.get(timeout=timeout_s)
         except Empty:
             return
+        call.run()
 
     def _serve_calls(self) -> None:
         # Only what is there now: callers that keep coming must not hold up the tick.

@@ -9,6 +9,9 @@ LaunchError
 +-- StartError             a process that could not be started
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class LaunchError(Exception):
     """Root of the errors of launch_py."""
@@ -36,3 +39,21 @@ class ParameterError(LaunchError):
 
 class StartError(LaunchError):
     """A process could not be started."""
+
+
+@contextmanager
+def blaming(what: str) -> Iterator[None]:
+    """Turn whatever the code of a launch file raises inside into a sentence that names `what`.
+
+    Raises:
+        LaunchFileError: something other than a LaunchError was raised.
+    """
+    try:
+        yield
+    except LaunchError:
+        raise
+    except Exception as error:
+        # An error class of somebody's own comes with a sentence; KeyError and the like do not.
+        own = type(error).__module__ != "builtins"
+        text = str(error) if own and str(error) else f"{type(error).__name__}: {error}"
+        raise LaunchFileError(f"{what}: {text}") from error

@@ -10,6 +10,7 @@ from typing import Any
 
 from launch_py.actions.action import Action, check_actions
 from launch_py.child_environment import for_program
+from launch_py.errors import blaming
 from launch_py.events import ProcessEvent
 from launch_py.names import join_names
 from launch_py.plan import DeferredStep, PlanBuilder, Step, Trigger
@@ -69,7 +70,9 @@ class LaunchContext:
         def expand(event: ProcessEvent) -> Sequence[Step]:
             inner = self.scoped()
             inner.after, inner.delay_s = (), 0.0
-            for action in check_actions(function(event, inner) or (), "an event handler"):
+            with blaming("an event handler"):
+                actions = function(event, inner) or ()
+            for action in check_actions(actions, "an event handler"):
                 action.visit(inner)
             return self.plan.finish_steps()
 

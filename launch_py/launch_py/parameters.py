@@ -81,7 +81,7 @@ def evaluate_value(context: LaunchContext, value: Any) -> Value:
             return value
         case PathLike():
             return str(value.__fspath__())
-        case Mapping():
+        case Mapping() if value:
             return evaluate_parameters(context, value)
         case list() | tuple() if any(isinstance(item, Substitution) for item in value):
             return read_yaml(perform_text(context, value))
@@ -153,6 +153,8 @@ def _escape(match: re.Match[str]) -> str:
 
 
 def _one_type(items: list[Any]) -> list[Any]:
+    if not items:
+        raise ParameterError("an empty list has no type that a node could read; leave it out")
     types = {type(item) for item in items}
     if types == {int, float}:
         return [float(item) for item in items]

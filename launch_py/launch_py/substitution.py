@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 class Substitution:
     """A text that depends on the launch context."""
 
+    is_costly = False
+    """Whether performing it takes time or does something, so that a mere survey should not."""
+
     def perform(self, context: LaunchContext) -> str:
         """Return the text.
 
@@ -64,6 +67,15 @@ def describe_text(value: Text) -> str:
     if isinstance(value, PathLike):
         return str(value.__fspath__())
     return "".join(describe_text(part) for part in value)
+
+
+def is_costly(value: Text) -> bool:
+    """Return whether a substitution in `value` is costly to perform."""
+    if isinstance(value, Substitution):
+        return value.is_costly
+    if isinstance(value, str | PathLike):
+        return False
+    return any(is_costly(part) for part in value)
 
 
 def perform_pairs(context: LaunchContext, pairs: Pairs) -> tuple[tuple[str, str], ...]:

@@ -23,8 +23,9 @@ from launch_py import (
 from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.errors import LaunchFileError, NotFoundError, SubstitutionError, UsageError
 from launch_py.events import Shutdown as ShutdownEvent
+from launch_py.expansion import survey_description
 from launch_py.plan import MessageStep, ShutdownStep, StopDelays
-from launch_py.substitutions import LaunchConfiguration
+from launch_py.substitutions import Call, LaunchConfiguration
 
 
 def sh(name="sh", **options):
@@ -194,3 +195,26 @@ def test_stop_delays_may_be_substitutions(expand):
 def test_unknown_output_is_refused(expand):
     with pytest.raises(LaunchFileError, match="output='scren' of sh; did you mean 'screen'"):
         expand([sh(output="scren")])
+
+
+def test_an_error_in_an_opaque_function_is_a_sentence(expand):
+    def decide(_context):
+        return {}["missing"]
+
+    with pytest.raises(LaunchFileError, match="OpaqueFunction decide: KeyError: 'missing'"):
+        expand([OpaqueFunction(function=decide)])
+
+
+def test_a_survey_does_not_perform_what_is_costly(expand):
+    calls = []
+
+    def describe():
+        calls.append(1)
+        return "text"
+
+    argument = DeclareLaunchArgument("description", default_value=Call(describe))
+    survey = survey_description(LaunchDescription([argument]), {})
+    assert survey.arguments["description"].default == "Call(describe)"
+    assert calls == []
+    expand([argument])
+    assert calls == [1]

@@ -110,6 +110,19 @@ def test_call_gets_performed_texts(context):
     assert call.perform(context) == "/a/objects {'base': 'true'}"
 
 
+def test_call_that_fails_is_a_sentence(context):
+    class OwnError(Exception):
+        pass
+
+    def describe():
+        raise OwnError("no file arm.xacro")
+
+    with pytest.raises(LaunchFileError, match=r"^Call\(describe\): no file arm.xacro$"):
+        Call(describe).perform(context)
+    with pytest.raises(LaunchFileError, match=r"Call\(int\): ValueError: invalid literal"):
+        Call(int, "x").perform(context)
+
+
 @pytest.mark.parametrize(
     ("substitution", "expected"),
     [

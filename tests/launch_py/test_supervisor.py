@@ -341,6 +341,13 @@ def test_a_handler_that_fails_ends_the_launch_with_a_sentence(trial):
     assert "no program 'no-such-program-x'" in str(t.screen.last_line)
 
 
+def test_a_function_as_handler_that_raises_ends_the_launch_with_a_sentence(trial):
+    t = trial(process("a", on_exit=lambda event, _context: event.no_such_thing))
+    t["a"].end(0)
+    assert t.finish() == 1
+    assert "an event handler: AttributeError" in str(t.screen.last_line)
+
+
 def test_whoever_waits_for_a_process_does_not_wait_for_its_handlers(trial):
     a = process("a", on_exit=process("mourner"))
     t = trial(a, process("b", depends_on=a))

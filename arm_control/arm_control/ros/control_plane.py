@@ -29,6 +29,7 @@ ResultT = TypeVar("ResultT")
 LOOP_TIMEOUT_S = 10.0
 DEFAULT_SWITCH_TIMEOUT_S = 1.0
 START_SWITCH_TIMEOUT_S = 5.0
+EXECUTOR_TIMEOUT_S = 1.0
 
 
 class ControlPlane:
@@ -119,6 +120,7 @@ class ControlPlane:
             self._find(name, "unload")
             self.on_loop(lambda: self._manager.unload_controller(name))
             self._forget(name)
+            self._wait_for_executor()
 
     def unload_all(self, *, force: bool) -> None:
         """Unload every controller, to begin anew; active ones only by force."""
@@ -247,6 +249,12 @@ class ControlPlane:
                 f"this name exists; loaded: {', '.join(self._nodes) or 'none'}"
             )
         return node
+
+    def _wait_for_executor(self) -> None:
+        """Let the executor pass once: until then it keeps a destroyed node in the graph."""
+        passed = threading.Event()
+        self._executor.create_task(passed.set)
+        passed.wait(EXECUTOR_TIMEOUT_S)
 
     def _forget(self, name: str) -> None:
         node = self._nodes.pop(name)

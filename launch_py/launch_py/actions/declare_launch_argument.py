@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from launch_py.actions.action import Action
 from launch_py.errors import LaunchError, UsageError
 from launch_py.near_names import describe_known
-from launch_py.substitution import Text, describe_text, perform_text
+from launch_py.substitution import Text, describe_text, is_costly, perform_text
 from launch_py.survey import ArgumentInfo
 
 if TYPE_CHECKING:
@@ -76,10 +77,10 @@ class DeclareLaunchArgument(Action):
     def _shown_default(self, context: LaunchContext) -> str | None:
         if self.default_value is None:
             return None
-        try:
-            return perform_text(context, self.default_value)
-        except LaunchError:
-            return describe_text(self.default_value)
+        if not is_costly(self.default_value):
+            with suppress(LaunchError):
+                return perform_text(context, self.default_value)
+        return describe_text(self.default_value)
 
     def describe(self) -> str:
         """Return what to call it in a message."""

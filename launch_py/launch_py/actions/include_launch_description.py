@@ -59,7 +59,8 @@ class IncludeLaunchDescription(Action):
         inner = context.included(path, arguments)
         if len(inner.included_files) > MAX_DEPTH:
             raise LaunchFileError(f"launch files include each other without end: {path}")
-        self._refuse_unknown(arguments, path, description, inner)
+        if arguments:
+            self._refuse_unknown(arguments, path, description, inner)
         description.visit(inner)
 
     def survey(self, survey: Survey, context: LaunchContext) -> None:

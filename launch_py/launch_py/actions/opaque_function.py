@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from launch_py.actions.action import Action, check_actions
+from launch_py.errors import blaming
 from launch_py.substitution import Text
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ class OpaqueFunction(Action):
             action.visit(context)
 
     def _call(self, context: LaunchContext) -> Iterable[Action] | Action:
-        return self.function(context, *self.args, **self.kwargs) or ()
+        with blaming(self.describe()):
+            return self.function(context, *self.args, **self.kwargs) or ()
 
     def describe(self) -> str:
         """Return what to call it in a message."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from launch_py.errors import blaming
 from launch_py.substitution import Substitution, Text, perform_text
 
 if TYPE_CHECKING:
@@ -19,16 +20,23 @@ class Call(Substitution):
     with `SetLaunchConfiguration` and refer to that.
     """
 
+    is_costly = True
+
     def __init__(self, function: Callable[..., object], *args: Text, **kwargs: Text) -> None:
         self.function = function
         self.args = args
         self.kwargs = kwargs
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the result; errors of the function pass through."""
+        """Return the result.
+
+        Raises:
+            LaunchFileError: the function raised something; the message says what.
+        """
         args = [perform_text(context, value) for value in self.args]
         kwargs = {name: perform_text(context, value) for name, value in self.kwargs.items()}
-        return str(self.function(*args, **kwargs))
+        with blaming(self.describe()):
+            return str(self.function(*args, **kwargs))
 
     def describe(self) -> str:
         """Return how it is written."""

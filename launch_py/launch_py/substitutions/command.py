@@ -42,6 +42,8 @@ class Command(Substitution):
     a second: where the work is a Python function, `Call` does it in no time.
     """
 
+    is_costly = True
+
     def __init__(self, command: Text, *, on_stderr: OnStderr = "fail") -> None:
         self.command = command
         self.on_stderr = on_stderr

@@ -159,7 +159,7 @@ class Member:
         self.state = MemberState.RUNNING
         self.was_started = True
         self._listener.member_started(self)
-        if not self.ready:
+        if not self.ready and not self.stopping:
             self._await_readiness()
 
     def stop(self, delays: StopDelays | None = None) -> None:

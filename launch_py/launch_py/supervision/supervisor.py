@@ -155,6 +155,8 @@ class Supervisor:
 
     def member_late(self, member: Member, missing: str) -> None:
         """Give up: what depends on the process could never start."""
+        if self.stopping:
+            return
         self._fail(Failure(f"{member.name} {missing}", EXIT_NOT_READY))
         self.stop(f"{member.name} is not ready in time")
 

@@ -44,6 +44,14 @@ def test_a_controller_from_load_to_unload(control: Any) -> None:
     assert control.states() == {}
 
 
+def test_an_unloaded_controller_leaves_nothing_behind(control: Any, manager: Any) -> None:
+    for _ in range(3):
+        control.start("joint_state_broadcaster")
+        control.unload_all()
+    # rcl says so where a node of the same name is still there.
+    assert "already registered" not in manager.output
+
+
 def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> None:
     control.start("joint_state_broadcaster", "position_controller")
     position, broadcaster = control.list()
