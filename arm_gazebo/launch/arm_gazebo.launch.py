@@ -15,11 +15,6 @@ from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 
-COMMAND = (
-    "arm topic pub --once /position_controller/commands std_msgs/msg/Float64MultiArray "
-    '"data: [1.0, 0.5, 0.1, 0.5]"'
-)
-
 
 def generate_launch_description() -> LaunchDescription:
     """Return the world with controllers, and the controller node without a pose."""
@@ -47,6 +42,10 @@ def generate_launch_description() -> LaunchDescription:
                     ("/position_controller/commands", "std_msgs/msg/Float64MultiArray, j0 to j3"),
                     ("/joint_states", "sensor_msgs/msg/JointState"),
                     ("/videocamera", "sensor_msgs/msg/Image"),
+                ],
+                commands=[
+                    ("type poses", "publisher_terminal"),
+                    ("five poses", "publisher_defined"),
                 ],
             ),
         ]

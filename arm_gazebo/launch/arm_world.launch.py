@@ -4,7 +4,13 @@ The joints hold their position; `hold_joints:=false` lets the arm fall, as it do
 before any controller is there.
 """
 
-from launch_py import DeclareLaunchArgument, LaunchDescription, Notified, SetLaunchConfiguration
+from launch_py import (
+    DeclareLaunchArgument,
+    LaunchDescription,
+    Notified,
+    SetLaunchConfiguration,
+    Shutdown,
+)
 from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
@@ -84,6 +90,7 @@ def generate_launch_description() -> LaunchDescription:
         ],
         parameters_node="arm_gazebo",
         ready=Notified(),
+        on_exit=Shutdown(),
     )
     state_publisher = Node(
         package="arm_description",

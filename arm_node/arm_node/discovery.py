@@ -16,25 +16,25 @@ def answers_held_back() -> Iterator[None]:
     """Keep answers to the first announcement in the sockets until this thread is through.
 
     Make the process's first node inside. Threads inherit the scheduling of the thread that makes
-    them, so Fast DDS's receiving threads start on this thread's processor, and as SCHED_BATCH,
-    which never preempts: they read what came in once this thread waits for something, and by then
-    the participant listens. Afterwards all threads of the process run as before. Needs no
-    privileges; where the kernel refuses, the node is made all the same.
+    them, so Fast DDS's receiving threads start on this thread's processor and cannot preempt it:
+    they read what came in once this thread waits for something, and by then the participant
+    listens. SCHED_FIFO, where the process may, keeps other processes from coming between;
+    SCHED_BATCH needs no privilege. Afterwards all threads of the process run as before.
     """
     allowed = os.sched_getaffinity(0)
-    policy = os.sched_getscheduler(0)
-    if policy != os.SCHED_OTHER or not _confine():
+    if os.sched_getscheduler(0) != os.SCHED_OTHER or not _confine():
         yield
         return
     try:
         yield
     finally:
         for thread in _threads():
-            _schedule(thread, os.SCHED_OTHER, allowed)
+            _schedule(thread, os.SCHED_OTHER, 0, allowed)
 
 
 def _confine() -> bool:
-    return _schedule(0, os.SCHED_BATCH, {_current_processor()})
+    here = {_current_processor()}
+    return _schedule(0, os.SCHED_FIFO, 1, here) or _schedule(0, os.SCHED_BATCH, 0, here)
 
 
 def _current_processor() -> int:
@@ -47,11 +47,11 @@ def _threads() -> list[int]:
     return [int(name) for name in os.listdir("/proc/self/task")]
 
 
-def _schedule(thread: int, policy: int, processors: set[int]) -> bool:
+def _schedule(thread: int, policy: int, priority: int, processors: set[int]) -> bool:
     """Set policy and processors of a thread; return False where the kernel refuses."""
     try:
+        os.sched_setscheduler(thread, policy, os.sched_param(priority))
         os.sched_setaffinity(thread, processors)
-        os.sched_setscheduler(thread, policy, os.sched_param(0))
     except OSError:
         return False
     return True

@@ -18,8 +18,22 @@ def test_a_thread_made_inside_cannot_preempt_its_maker():
         thread.join()
         mine = scheduling(0)
     assert seen == [mine]
-    assert mine[0] == os.SCHED_BATCH
+    assert mine[0] in (os.SCHED_FIFO, os.SCHED_BATCH)
     assert len(mine[1]) == 1
+
+
+def test_without_privilege_batch_scheduling_does(monkeypatch):
+    set_scheduler = os.sched_setscheduler
+
+    def refuse_fifo(thread: int, policy: int, parameters: os.sched_param) -> None:
+        if policy == os.SCHED_FIFO:
+            raise PermissionError
+        set_scheduler(thread, policy, parameters)
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse_fifo)
+    with answers_held_back():
+        assert os.sched_getscheduler(0) == os.SCHED_BATCH
+    assert os.sched_getscheduler(0) == os.SCHED_OTHER
 
 
 def test_every_thread_is_as_before_afterwards():

@@ -10,7 +10,11 @@ from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from launch_py.packages import Packages
 
-PROFILES = ("dds_profile.xml", "dds_profile_images.xml")
+PROFILES = (
+    "launch_py/config/dds_profile.xml",
+    "arm_gazebo/config/dds_images.xml",
+    "arm_gazebo/config/dds_images_small.xml",
+)
 NAMESPACE = {"d": "http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"}
 
 TALK = """
@@ -30,7 +34,8 @@ rclpy.shutdown()
 
 
 def profile_path(name: str) -> Path:
-    return Packages(os.environ).share_folder("launch_py") / "config" / name
+    package, _, path = name.partition("/")
+    return Packages(os.environ).share_folder(package) / path
 
 
 @pytest.mark.parametrize("name", PROFILES)

@@ -3,6 +3,7 @@
 Nothing here sleeps: every wait is on a condition, with a generous time-out.
 """
 
+import fcntl
 import os
 import signal
 import subprocess
@@ -73,16 +74,26 @@ class Launched:
         """All processes below the launcher."""
         return psutil.Process(self.process.pid).children(recursive=True)
 
-    def shared_memory(self) -> set[str]:
+    def shared_memory(self) -> set[Path]:
         """The middleware's shared-memory files that the launcher and all below it have mapped."""
-        files = set()
-        for process in [psutil.Process(self.process.pid), *self.descendants()]:
-            files |= {
-                m.path
-                for m in process.memory_maps()
-                if "/dev/shm/" in m.path and "fastrtps" in m.path
-            }
-        return files
+        processes = [psutil.Process(self.process.pid), *self.descendants()]
+        paths = {Path(m.path) for process in processes for m in process.memory_maps()}
+        return {p for p in paths if p.parent == Path("/dev/shm") and "fastrtps" in p.name}
+
+    @staticmethod
+    def is_abandoned(file: Path) -> bool:
+        """Return whether a shared-memory file is there and nobody holds its lock."""
+        try:
+            lock = os.open(f"{file}_el", os.O_RDONLY)
+        except OSError:
+            return file.exists()
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False
+        finally:
+            os.close(lock)
+        return file.exists()
 
     def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:
         """Send a signal, wait for the end, and return the exit code."""
