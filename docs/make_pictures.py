@@ -21,13 +21,14 @@ import mujoco
 import numpy as np
 import rclpy
 from ament_index_python.packages import get_package_share_directory
+from rclpy.node import Node
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64MultiArray
+
 from arm_control.hardware_info import parse_hardware_info
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
 from arm_gazebo.model_builder import build_model
-from rclpy.node import Node
-from sensor_msgs.msg import Image, JointState
-from std_msgs.msg import Float64MultiArray
 
 IMAGES = Path(__file__).with_name("images")
 REACHING = {"j0_pos": "0.4", "j1_pos": "0.5", "j2_pos": "0.5", "j3_pos": "1.0"}
