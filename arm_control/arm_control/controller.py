@@ -105,6 +105,13 @@ class Controller(ABC, Generic[ParametersT]):
     def on_configure(self, parameters: ParametersT) -> None:
         """Take the parameters."""
 
+    def update_parameters(self, parameters: ParametersT) -> None:
+        """Take parameters that a client changed since `on_configure`, between two updates.
+
+        Read-only ones are as before. By default nothing changes before the next `on_configure`.
+        Raise `ControllerError` or `ParameterError` to refuse the change.
+        """
+
     def on_activate(self) -> None:
         """Get ready for the first update; `commands` and `states` are loaned from now on."""
 

@@ -30,6 +30,9 @@ _CONTROLLERS = {
     "joint_state_broadcaster/JointStateBroadcaster": (
         "arm_control.joint_state_broadcaster:JointStateBroadcaster"
     ),
+    "joint_trajectory_controller/JointTrajectoryController": (
+        "arm_control.joint_trajectory:JointTrajectoryController"
+    ),
     "position_controllers/JointGroupPositionController": f"{_FORWARD}:JointGroupPositionController",
     "velocity_controllers/JointGroupVelocityController": f"{_FORWARD}:JointGroupVelocityController",
 }

@@ -8,6 +8,25 @@ import pytest
 pytestmark = pytest.mark.ros
 
 
+def write_controllers(
+    folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]"
+) -> Path:
+    path = folder / "controllers.yaml"
+    path.write_text(f"""\
+controller_manager:
+  ros__parameters:
+    update_rate: {update_rate}
+    joint_state_broadcaster:
+      type: joint_state_broadcaster/JointStateBroadcaster
+    position_controller:
+      type: position_controllers/JointGroupPositionController
+position_controller:
+  ros__parameters:
+    joints: {joints}
+""")
+    return path
+
+
 def test_without_holding_the_arm_falls(launch, client):
     from sensor_msgs.msg import JointState
 
@@ -41,42 +60,12 @@ def test_unclaimed_joints_hold_by_default(launch, client):
 def test_the_originals_update_rates_work(launch, client, tmp_path, rate_hz):
     from sensor_msgs.msg import JointState
 
-    controllers = tmp_path / "controllers.yaml"
-    controllers.write_text(f"""\
-controller_manager:
-  ros__parameters:
-    update_rate: {rate_hz}
-    joint_state_broadcaster:
-      type: joint_state_broadcaster/JointStateBroadcaster
-    position_controller:
-      type: position_controllers/JointGroupPositionController
-position_controller:
-  ros__parameters:
-    joints: [j0, j1, j2, j3]
-""")
-    launch("camera:=none", f"controllers:={controllers}").wait_until_ready()
+    launch(
+        "camera:=none", f"controllers:={write_controllers(tmp_path, rate_hz)}"
+    ).wait_until_ready()
     states = client.subscribe(JointState, "/joint_states").wait_for(2 * rate_hz)
     stamps = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in states])
     assert np.median(np.diff(stamps)) == pytest.approx(1 / rate_hz, rel=1e-3)
-
-
-def write_controllers(
-    folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]"
-) -> Path:
-    path = folder / "controllers.yaml"
-    path.write_text(f"""\
-controller_manager:
-  ros__parameters:
-    update_rate: {update_rate}
-    joint_state_broadcaster:
-      type: joint_state_broadcaster/JointStateBroadcaster
-    position_controller:
-      type: position_controllers/JointGroupPositionController
-position_controller:
-  ros__parameters:
-    joints: {joints}
-""")
-    return path
 
 
 def test_an_unknown_joint_in_the_controllers_file_is_named(launch, tmp_path):

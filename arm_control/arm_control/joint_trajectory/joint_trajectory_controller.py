@@ -38,6 +38,7 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
     """
 
     parameters_type: ClassVar[type[Any]] = JointTrajectoryParameters
+    adapter = "arm_control.ros.joint_trajectory_adapter:JointTrajectoryAdapter"
 
     def __init__(self, context: ControllerContext) -> None:
         """Read the robot description.

@@ -227,7 +227,9 @@ class ControlPlane:
         context = ControllerContext(name, self._manager.update_rate_hz, self._robot_description)
         try:
             controller = controller_class(type_name)(context)
-            return ControllerNode(controller, type_name, self._node.get_namespace(), arguments)
+            return ControllerNode(
+                controller, type_name, self._node.get_namespace(), arguments, self._loop
+            )
         except ArmControlError:
             raise
         except Exception as error:

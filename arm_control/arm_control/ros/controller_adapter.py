@@ -5,6 +5,7 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.node import Node
 
+from arm_control.control_loop import ControlLoop
 from arm_control.controller import Controller
 
 ControllerT = TypeVar("ControllerT", bound=Controller[Any])
@@ -16,11 +17,17 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
     Made when the controller is loaded. The methods run on a control-plane thread, never while the
     controller is active; what they create hands messages to the core from the executor's thread,
     and takes results from it on the loop thread.
+
+    Attributes:
+        controller: the core.
+        node: the controller's; an executor of one thread spins it.
+        loop: runs the core.
     """
 
-    def __init__(self, controller: ControllerT, node: Node) -> None:
+    def __init__(self, controller: ControllerT, node: Node, loop: ControlLoop) -> None:
         self.controller = controller
         self.node = node
+        self.loop = loop
 
     @abstractmethod
     def on_configure(self, parameters: Any) -> None:

@@ -1,13 +1,18 @@
 """The node of one controller: its parameters, its adapter, its transition events."""
 
 from collections.abc import Sequence
+from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Any
 
 from lifecycle_msgs.msg import TransitionEvent
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 
+from arm_control.control_loop import ControlLoop
 from arm_control.controller import Controller
-from arm_control.errors import ParameterError
+from arm_control.errors import LoopStoppedError, ParameterError
+from arm_control.guarded import failure_of
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.parameters import ParameterSpec
 from arm_control.registry import load_object
@@ -16,6 +21,7 @@ from arm_control.ros.convert import transition_events
 from arm_control.ros.parameter_node import ParameterNode
 
 EVENT_DEPTH = 10
+LOOP_TIMEOUT_S = 1.0
 
 
 class ControllerNode(ParameterNode):
@@ -26,7 +32,12 @@ class ControllerNode(ParameterNode):
     """
 
     def __init__(
-        self, controller: Controller[Any], type_name: str, namespace: str, arguments: Sequence[str]
+        self,
+        controller: Controller[Any],
+        type_name: str,
+        namespace: str,
+        arguments: Sequence[str],
+        loop: ControlLoop,
     ) -> None:
         """Make the node and declare the parameters.
 
@@ -35,6 +46,7 @@ class ControllerNode(ParameterNode):
             type_name: its type string, for messages.
             namespace: the manager's.
             arguments: ROS arguments for this node alone.
+            loop: runs the controller.
 
         Raises:
             ParameterError: a given parameter has the wrong type.
@@ -47,6 +59,8 @@ class ControllerNode(ParameterNode):
             use_global_arguments=False,
         )
         self.controller = controller
+        self._loop = loop
+        self._is_configured = False
         self._specs = controller.parameter_specs(self.given_parameters())
         general = _general_specs(controller.context.update_rate_hz)
         self.declare_specs((*self._specs, *general))
@@ -55,6 +69,7 @@ class ControllerNode(ParameterNode):
         self._events = self.create_publisher(
             TransitionEvent, "~/transition_event", QoSProfile(depth=EVENT_DEPTH)
         )
+        self.add_on_set_parameters_callback(self._change_parameters)
 
     def read_controller_parameters(self) -> tuple[Any, int]:
         """Return the controller's parameters as they are now, and the update rate asked for.
@@ -72,9 +87,11 @@ class ControllerNode(ParameterNode):
         """Create the controller's end points."""
         if self._adapter is not None:
             self._adapter.on_configure(parameters)
+        self._is_configured = True
 
     def on_cleanup(self) -> None:
         """Destroy the controller's end points."""
+        self._is_configured = False
         if self._adapter is not None:
             self._adapter.on_cleanup()
 
@@ -87,7 +104,38 @@ class ControllerNode(ParameterNode):
 
     def _make_adapter(self) -> ControllerAdapter[Any] | None:
         path = self.controller.adapter
-        return load_object(path)(self.controller, self) if path else None
+        return load_object(path)(self.controller, self, self._loop) if path else None
+
+    def _change_parameters(self, changed: Sequence[Parameter]) -> SetParametersResult:
+        """Bring new values into force, or say why not; on the executor's thread.
+
+        It waits for the loop, a fraction of a tick as a rule, so that the answer is true.
+        """
+        values = self.values_of(self._specs)
+        changes = {item.name: item.value for item in changed if item.name in values}
+        try:
+            parameters = self.controller.build_parameters({**values, **changes})
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        reason = self._update_parameters(parameters) if changes and self._is_configured else ""
+        return SetParametersResult(successful=not reason, reason=reason)
+
+    def _update_parameters(self, parameters: Any) -> str:
+        """Hand parameters to the controller; return why it does not take them."""
+        controller = self.controller
+        future = self._loop.call(
+            lambda: failure_of(
+                lambda: controller.update_parameters(parameters),
+                f"update_parameters of controller '{controller.name}'",
+            )
+        )
+        try:
+            return future.result(LOOP_TIMEOUT_S)
+        except FutureTimeoutError:
+            future.cancel()
+            return f"the control loop did not get to the change within {LOOP_TIMEOUT_S:g} s"
+        except LoopStoppedError as error:
+            return str(error)
 
 
 def _general_specs(update_rate_hz: int) -> tuple[ParameterSpec, ...]:

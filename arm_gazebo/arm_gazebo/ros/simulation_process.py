@@ -156,6 +156,8 @@ def _supervise(
             logger.error("%s", failure)
         if cameras is not None:
             cameras.supervise()
-        notify(f"STATUS=real-time factor {pacer.statistics.achieved_factor:.2f}")
+        factor = pacer.statistics.achieved_factor
+        if factor:  # 0 until there is something to average
+            notify(f"STATUS=real-time factor {factor:.2f}")
 
     node.create_timer(SUPERVISION_PERIOD_S, look, clock=Clock(clock_type=ClockType.STEADY_TIME))

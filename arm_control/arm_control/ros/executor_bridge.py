@@ -1,0 +1,63 @@
+"""Brings the control loop's results to an rclpy executor, with neither waiting for the other.
+
+An executor asleep is not woken where a future that one of its coroutines awaits is completed on
+another thread, so whoever completes it wakes the executor, too.
+"""
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future as LoopFuture
+from typing import Any
+
+from rclpy.executors import Executor
+from rclpy.task import Future
+
+from arm_control.control_loop import ControlLoop
+
+EXECUTOR_TIMEOUT_S = 1.0
+
+
+def settle(future: Future, result: object, executor: Executor) -> None:
+    """Complete a future that a coroutine of `executor` awaits; any thread."""
+    future.set_result(result)
+    executor.wake()
+
+
+def call_on_loop(loop: ControlLoop, function: Callable[[], Any], executor: Executor) -> Future:
+    """Run a function on the loop thread between two ticks.
+
+    Returns:
+        Its result, or what it raised, for a coroutine of `executor` to await.
+    """
+    future = Future()
+
+    def pass_on(done: "LoopFuture[Any]") -> None:
+        error = done.exception()
+        if error is None:
+            settle(future, done.result(), executor)
+            return
+        future.set_exception(error)
+        executor.wake()
+
+    loop.call(function).add_done_callback(pass_on)
+    return future
+
+
+def run_on_executor(executor: Executor, function: Callable[[], None]) -> None:
+    """Run a function where the executor runs callbacks, and wait for it; not on that thread.
+
+    For what must not happen while the executor gathers the entities to wait for, such as the end
+    of an action server. Where the executor does not spin the function runs here.
+    """
+    done = threading.Event()
+
+    def run() -> None:
+        try:
+            function()
+        finally:
+            done.set()
+
+    task = executor.create_task(run)
+    if not done.wait(EXECUTOR_TIMEOUT_S):
+        task.cancel()
+        function()

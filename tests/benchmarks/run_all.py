@@ -1,0 +1,43 @@
+"""Runs every benchmark of the suite and writes RESULTS.md, with the machine named.
+
+    python tests/benchmarks/run_all.py
+
+Takes a quarter of an hour; run it on a machine that does nothing else, with the suite installed
+(not editable: compiled modules are part of the start-up time).
+"""
+
+import datetime
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import harness
+
+FOLDER = Path(__file__).parent
+SCRIPTS = ("start_up.py", "control_loop.py", "as_fast_as_possible.py", "camera_rate.py")
+
+
+def main() -> None:
+    """Write the table of all scripts."""
+    parts = [
+        "# Benchmark results\n",
+        f"{datetime.date.today()}, {harness.machine()}.\n",
+        "Targets stand beside the figures. Absolute times depend on the machine and on what else "
+        "runs on it; each script says how it measures.\n",
+    ]
+    for script in SCRIPTS:
+        print(f"{script} ...", flush=True)
+        done = subprocess.run(
+            [sys.executable, str(FOLDER / script)],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+            env={"AMENT_PREFIX_PATH": sys.prefix, **os.environ},
+        )
+        parts.append(done.stdout.strip() + "\n")
+        (FOLDER / "RESULTS.md").write_text("\n".join(parts))
+
+
+if __name__ == "__main__":
+    main()
