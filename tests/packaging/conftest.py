@@ -175,7 +175,8 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def install_wheel(folder: Path, wheel: Path) -> Installation:
     """Install the built wheel into an environment of its own."""
     python = make_environment(folder / "venv")
-    pip("install", "--no-deps", wheel, into=python, folder=folder)
+    # Forced: pip takes the suite of the outer environment, seen through the .pth, for this one.
+    pip("install", "--no-deps", "--force-reinstall", wheel, into=python, folder=folder)
     return in_environment(Project(ROOT), folder / "venv", python, folder / "venv")
 
 

@@ -7,12 +7,14 @@ another thread, so whoever completes it wakes the executor, too.
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future as LoopFuture
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from rclpy.executors import Executor
 from rclpy.task import Future
 
 from arm_control.control_loop import ControlLoop
+
+ResultT = TypeVar("ResultT")
 
 EXECUTOR_TIMEOUT_S = 1.0
 
@@ -23,11 +25,13 @@ def settle(future: Future, result: object, executor: Executor) -> None:
     executor.wake()
 
 
-def call_on_loop(loop: ControlLoop, function: Callable[[], Any], executor: Executor) -> Future:
-    """Run a function on the loop thread between two ticks.
+async def call_on_loop(
+    loop: ControlLoop, function: Callable[[], ResultT], executor: Executor
+) -> ResultT:
+    """Run a function on the loop thread between two ticks; for coroutines of `executor`.
 
     Returns:
-        Its result, or what it raised, for a coroutine of `executor` to await.
+        Its result, or what it raised; `LoopStoppedError` where the loop runs no more.
     """
     future = Future()
 
@@ -40,7 +44,7 @@ def call_on_loop(loop: ControlLoop, function: Callable[[], Any], executor: Execu
         executor.wake()
 
     loop.call(function).add_done_callback(pass_on)
-    return future
+    return cast(ResultT, await future)
 
 
 def run_on_executor(executor: Executor, function: Callable[[], None]) -> None:

@@ -4,10 +4,10 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import cast
 
 from control_msgs.action import FollowJointTrajectory
-from rclpy.action import CancelResponse, GoalResponse
-from rclpy.action.server import ActionServer, ServerGoalHandle
+from rclpy.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
@@ -126,7 +126,7 @@ class JointTrajectoryAction:
 
     async def _await_end(self, handle: ServerGoalHandle) -> FollowJointTrajectory.Result:
         goal_id = bytes(handle.goal_id.uuid)
-        result: GoalResult = await self._running[goal_id].ended
+        result = cast(GoalResult, await self._running[goal_id].ended)
         match result.outcome:
             case Outcome.SUCCEEDED:
                 handle.succeed()

@@ -71,7 +71,8 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             lambda: bool(node.get_parameter("reject_with_reason").value),
         )
         self.controller.sink = JointTrajectoryNews(self._publisher, self._action)
-        self._query = node.create_service(QueryTrajectoryState, "~/query_state", self._answer)
+        answer: Any = self._answer  # rclpy awaits coroutines, though its annotations know none
+        self._query = node.create_service(QueryTrajectoryState, "~/query_state", answer)
         self._subscriptions = (
             node.create_subscription(JointTrajectory, "~/joint_trajectory", self._take, default),
         )

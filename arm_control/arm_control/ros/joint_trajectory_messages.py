@@ -24,7 +24,7 @@ from arm_control.joint_trajectory.motion import QUANTITIES
 from arm_control.joint_trajectory.requests import FIELDS
 from arm_control.ros.convert import time_message
 
-FIELD_OF_QUANTITY = dict(zip(QUANTITIES, FIELDS, strict=True))
+FIELD_OF_QUANTITY: dict[str, str] = dict(zip(QUANTITIES, FIELDS, strict=True))
 """The field of a JointTrajectoryPoint that holds a quantity: 'positions' for 'position'."""
 
 
@@ -36,7 +36,7 @@ def seconds_of(time: Time | Duration) -> float:
 def trajectory_request(message: JointTrajectory) -> TrajectoryRequest:
     """Return a trajectory as the controller takes it; the numbers stay in the message."""
     return TrajectoryRequest(
-        joint_names=message.joint_names,
+        joint_names=list(message.joint_names),
         points=[
             TrajectoryPoint(
                 seconds_of(point.time_from_start),

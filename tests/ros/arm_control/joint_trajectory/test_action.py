@@ -1,0 +1,215 @@
+"""The action ~/follow_joint_trajectory, from a client's goal to its result."""
+
+import signal
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+NAME = "joint_trajectory_controller"
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+HERE = (0.0, 0.0, 0.0, 0.0)
+THERE = (0.1, 0.2, 0.3, 0.4)
+FOR_EVER_S = 1000.0
+
+PREEMPTED = (ABORTED, -1, "Current goal preempted by new incoming action.")
+REACHED = (SUCCEEDED, 0, "Goal successfully reached!")
+
+
+@pytest.fixture
+def paused(manager: Any) -> Iterator[Any]:
+    """Return a manager whose time a test may stop; it goes on afterwards."""
+    yield manager
+    manager.tell("resume")
+
+
+def test_a_goal_is_reached(active: Any, send: Any, states: Any) -> None:
+    goal = send((0.1, HERE), (0.2, THERE))
+    assert goal.result() == REACHED
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == list(THERE),
+        "the arm is there",
+    )
+
+
+def test_joints_may_come_in_any_order(active: Any, send: Any, states: Any) -> None:
+    assert send((0.1, (4, 3, 2, 1)), joints=("j3", "j2", "j1", "j0")).result() == REACHED
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == [1, 2, 3, 4],
+        "each at its own",
+    )
+
+
+def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
+    goal = send((0.5, THERE))
+    goal.result()
+    messages = [message.feedback for message in goal.feedback]
+    stamps = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages]
+    assert len(messages) >= 9
+    assert all(
+        after - before == pytest.approx(0.05, abs=1e-6) for before, after in pairwise(stamps)
+    )
+    last = messages[-1]
+    assert list(last.joint_names) == ["j0", "j1", "j2", "j3"]
+    assert last.error.positions[0] == pytest.approx(
+        last.desired.positions[0] - last.actual.positions[0]
+    )
+    assert len(last.actual.velocities) == 4
+
+
+@pytest.mark.parametrize(
+    ("points", "joints", "reason"),
+    [
+        ([], ("j0", "j1", "j2", "j3"), "Empty trajectory received."),
+        (
+            [(1.0, (0.0,))],
+            ("j0",),
+            "Joints on incoming trajectory don't match the controller joints.",
+        ),
+        (
+            [(1.0, HERE)],
+            ("j0", "j1", "j2", "j9"),
+            "Incoming joint j9 doesn't match the controller's joints.",
+        ),
+        (
+            [(1.0, HERE), (1.0, HERE)],
+            ("j0", "j1", "j2", "j3"),
+            "Time between points 0 and 1 is not strictly increasing",
+        ),
+        (
+            [(1.0, (0.0, float("nan"), 0.0, 0.0))],
+            ("j0", "j1", "j2", "j3"),
+            "The positions of joint j1 at point #0 are not finite: nan.",
+        ),
+    ],
+    ids=["empty", "too few joints", "unknown joint", "time", "nan"],
+)
+def test_a_goal_with_a_fault_is_rejected_and_the_log_says_why(
+    active: Any, send: Any, manager: Any, points: Any, joints: Any, reason: str
+) -> None:
+    assert not send(*points, joints=joints).accepted
+    manager.wait_for_line(reason)
+
+
+def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(
+    active: Any, send: Any, set_parameter: Any
+) -> None:
+    assert set_parameter(f"/{NAME}", "reject_with_reason", True).successful
+    status, code, text = send((1.0, HERE), joints=("j0", "j1", "j2", "j9")).result()
+    assert (status, code) == (ABORTED, -2)
+    assert text == "Incoming joint j9 doesn't match the controller's joints."
+
+
+def test_an_inactive_controller_rejects_goals(control: Any, send: Any, manager: Any) -> None:
+    control.load(NAME)
+    control.configure(NAME)
+    assert not send((0.1, THERE)).accepted
+    manager.wait_for_line("Can't accept new action goals. Controller is not running.")
+
+
+def test_a_new_goal_preempts_the_one_before(active: Any, send: Any) -> None:
+    first = send((FOR_EVER_S, THERE))
+    second = send((0.1, THERE))
+    assert first.result() == PREEMPTED
+    assert second.result() == REACHED
+
+
+def test_a_goal_is_preempted_while_time_stands_still(active: Any, send: Any, paused: Any) -> None:
+    first = send((FOR_EVER_S, THERE))
+    paused.tell("pause")
+    second = send((0.1, THERE))
+    assert first.result() == PREEMPTED
+    assert not second.ended()
+    paused.tell("resume")
+    assert second.result() == REACHED
+
+
+def test_a_cancelled_goal_ends_with_an_empty_result(active: Any, send: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    assert goal.cancel() == 1
+    assert goal.result() == (CANCELED, 0, "")
+
+
+def test_a_goal_is_cancelled_while_time_stands_still(active: Any, send: Any, paused: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    paused.tell("pause")
+    assert goal.cancel() == 1
+    assert goal.result() == (CANCELED, 0, "")
+
+
+def test_a_goal_that_has_ended_cannot_be_cancelled(active: Any, send: Any) -> None:
+    goal = send((0.1, THERE))
+    assert goal.result() == REACHED
+    assert goal.cancel() == 0
+
+
+def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
+    from control_msgs.msg import JointTolerance
+
+    goal = send(
+        (0.0, (9, 9, 9, 9)), (1.0, HERE), path_tolerance=[JointTolerance(name="j1", position=0.01)]
+    )
+    assert goal.result() == (ABORTED, -4, "Aborted due to path tolerance violation")
+
+
+def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    assert active.switch([], [NAME]).ok
+    assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
+
+
+def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    assert active.call("reload_controller_libraries", force_kill=True).ok
+    assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
+
+
+def test_the_action_works_again_after_another_configure(active: Any, send: Any) -> None:
+    assert send((0.1, THERE)).result() == REACHED
+    assert active.switch([], [NAME]).ok
+    assert active.configure(NAME)
+    assert active.switch([NAME]).ok
+    assert send((0.1, HERE)).result() == REACHED
+
+
+DYING_CLIENT = """
+import threading
+from arm_node.environment import prepare_environment
+prepare_environment()
+import rclpy
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from rclpy.action import ActionClient
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+rclpy.init()
+node = rclpy.create_node("dying_client")
+action = ActionClient(node, FollowJointTrajectory,
+    "/joint_trajectory_controller/follow_joint_trajectory")
+action.wait_for_server()
+point = JointTrajectoryPoint(positions=[0.5] * 4, time_from_start=Duration(sec=1))
+goal = FollowJointTrajectory.Goal(
+    trajectory=JointTrajectory(joint_names=["j0", "j1", "j2", "j3"], points=[point]))
+sent = action.send_goal_async(goal)
+rclpy.spin_until_future_complete(node, sent)
+sent.result().get_result_async()
+rclpy.spin_once(node, timeout_sec=0.1)
+print("accepted", sent.result().accepted, flush=True)
+threading.Event().wait()
+"""
+
+
+def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
+    active: Any, send: Any, run: Any, states: Any, manager: Any
+) -> None:
+    dying = run("-c", DYING_CLIENT)
+    dying.wait_for_line("accepted True")
+    dying.stop(signal.SIGKILL)
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == [0.5] * 4,
+        "the goal goes on",
+    )
+    assert send((0.1, HERE)).result() == REACHED
+    assert "callback failed" not in manager.output
