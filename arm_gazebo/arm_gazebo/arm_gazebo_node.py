@@ -1,5 +1,6 @@
 """The executable `arm_gazebo_node`: the simulated robot and its controller manager."""
 
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
@@ -23,6 +24,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _simulation(process: NodeProcess, arguments: list[str]) -> AbstractContextManager[None]:
+    # This process draws nothing; MuJoCo would load a window library all the same, in 50 ms.
+    os.environ.setdefault("MUJOCO_GL", "disabled")
     # Imported once the environment is prepared: message packages are found through it.
     from arm_gazebo.ros.simulation_process import simulation_process
 

@@ -7,6 +7,7 @@ thread joined, while services still answer), executor, nodes, context. A supervi
 the process is ready (see `arm_node.notify`).
 """
 
+import gc
 import logging
 import math
 import signal
@@ -120,6 +121,9 @@ def run_process(
 
     A missing interface package is one sentence on stderr and exit code 2.
     """
+    # What is made at the start stays: collecting it again and again would cost start-up time, and
+    # later a pause in the middle of a control period.
+    gc.disable()
     # Before the imports below, which take some tenths of a second: Ctrl-C is heard from now on.
     with _signals_set(threading.Event()) as stop:
         try:
@@ -166,6 +170,8 @@ def _run_initialised(
         try:
             with application(process):
                 process.start_spinning()
+                gc.freeze()
+                gc.enable()
                 notify("READY=1")
                 process.wait()
                 notify("STOPPING=1")

@@ -17,7 +17,12 @@ from arm_control.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.joint_trajectory.requests import GoalRequest, TrajectoryRequest
 from arm_control.joint_trajectory.results import NOT_RUNNING, GoalResult, Refusal
 from arm_control.joint_trajectory.speed_scaling import SpeedScaling
-from arm_control.joint_trajectory.state import MOTION_ROWS, QueriedState, TrajectorySink
+from arm_control.joint_trajectory.state import (
+    MOTION_ROWS,
+    QueriedState,
+    StateLayout,
+    TrajectorySink,
+)
 from arm_control.joint_trajectory.trajectory import Trajectory
 from arm_control.joint_trajectory.validation import find_fault
 from arm_control.parameters import ParameterSpec
@@ -109,6 +114,11 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
             return prepared
         self._inbox.put(Replacement(prepared))
         return None
+
+    @property
+    def state_layout(self) -> StateLayout:
+        """What the sink will be opened with, for one that needs time to get ready."""
+        return StateLayout.of(self._configured()[0].wiring)
 
     @property
     def takes_speed_scaling(self) -> bool:

@@ -70,7 +70,9 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             executor,
             lambda: bool(node.get_parameter("reject_with_reason").value),
         )
-        self.controller.sink = JointTrajectoryNews(self._publisher, self._action)
+        news = JointTrajectoryNews(self._publisher, self._action)
+        news.open(self.controller.state_layout)
+        self.controller.sink = news
         answer: Any = self._answer  # rclpy awaits coroutines, though its annotations know none
         self._query = node.create_service(QueryTrajectoryState, "~/query_state", answer)
         self._subscriptions = (
@@ -123,7 +125,7 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
 
 
 class JointTrajectoryNews:
-    """Publishes what the controller tells; see `TrajectorySink`. Loop thread only."""
+    """Publishes what the controller tells; see `TrajectorySink`. Loop thread, but for `open`."""
 
     def __init__(self, publisher: Publisher, action: JointTrajectoryAction) -> None:
         self._publisher = publisher
@@ -132,7 +134,10 @@ class JointTrajectoryNews:
         self._states: JointTrajectoryStatePublisher | None = None
 
     def open(self, layout: StateLayout) -> None:
-        """Serialise a message of this layout once; layouts change with the parameters only."""
+        """Serialise a message of this layout, unless that is done already.
+
+        It takes as long as some ticks, so it is done where the controller is configured.
+        """
         if layout != self._layout:
             self._layout = layout
             self._states = JointTrajectoryStatePublisher(self._publisher, layout)

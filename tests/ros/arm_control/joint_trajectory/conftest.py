@@ -43,16 +43,16 @@ def trajectory() -> Callable[..., Any]:
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
     def make(*points: tuple[float, Sequence[float]], joints: Sequence[str] = JOINTS) -> Any:
-        message = JointTrajectory(joint_names=list(joints))
-        for time_s, positions in points:
-            duration = Duration(sec=int(time_s), nanosec=round(time_s % 1 * 1e9))
-            message.points.append(
+        return JointTrajectory(
+            joint_names=list(joints),
+            points=[
                 JointTrajectoryPoint(
                     positions=[float(position) for position in positions],
-                    time_from_start=duration,
+                    time_from_start=Duration(sec=int(time_s), nanosec=round(time_s % 1 * 1e9)),
                 )
-            )
-        return message
+                for time_s, positions in points
+            ],
+        )
 
     return make
 
@@ -94,7 +94,7 @@ def wait(future: Any) -> Any:
 def send(client: Any, trajectory: Any) -> Iterator[Callable[..., Goal]]:
     """Return a function that sends a goal, given as the points of its trajectory."""
     from control_msgs.action import FollowJointTrajectory
-    from rclpy.action import ActionClient
+    from rclpy.action.client import ActionClient
 
     action = ActionClient(client.node, FollowJointTrajectory, f"/{NAME}/follow_joint_trajectory")
 

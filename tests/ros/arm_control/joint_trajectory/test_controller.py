@@ -276,7 +276,7 @@ def test_its_parameters_are_those_of_a_real_one(loaded: Any, client: Any) -> Non
     described = client.call(
         DescribeParameters, f"/{NAME}/describe_parameters", DescribeParameters.Request(names=names)
     )
-    values = [parameter_value_to_python(value) for value in answer.values]
+    values: list[Any] = [parameter_value_to_python(value) for value in answer.values]
     values = [value if isinstance(value, (str, float, bool)) else list(value) for value in values]
     read_only = [descriptor.read_only for descriptor in described.descriptors]
     assert dict(zip(names, zip(values, read_only, strict=True), strict=True)) == expected
