@@ -33,7 +33,7 @@ def generate_launch_description() -> LaunchDescription:
             Node(
                 package="arm_controller",
                 executable="arm_controller_node",
-                parameters=[{"use_sim_time": True, "print_period": 0.0}],
+                parameters=[{"print_period": 0.0}],
                 ready=Notified(),
             ),
             ReadyPanel(

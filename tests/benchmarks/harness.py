@@ -22,6 +22,8 @@ from pathlib import Path
 import numpy as np
 import psutil
 
+os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+
 CONTROLLERS = """\
 controller_manager:
   ros__parameters:

@@ -20,6 +20,7 @@ from arm_control.parameters import ParameterSpec
 from arm_control.registry import controller_class
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_node import ControllerNode
+from arm_control.ros.executor_bridge import run_on_executor
 from arm_control.ros.node_arguments import controller_arguments
 
 logger = logging.getLogger(__name__)
@@ -117,9 +118,10 @@ class ControlPlane:
     def unload_controller(self, name: str) -> None:
         """Destroy a controller that is not active, and its node."""
         with self._lock:
-            self._find(name, "unload")
+            node = self._find(name, "unload")
             self.on_loop(lambda: self._manager.unload_controller(name))
-            self._forget(name)
+            node.on_cleanup()
+            run_on_executor(self._executor, lambda: self._forget(name))
             self._wait_for_executor()
 
     def unload_all(self, *, force: bool) -> None:

@@ -20,7 +20,7 @@ from arm_control.joint_trajectory import (
     Outcome,
     StateLayout,
 )
-from arm_control.ros.executor_bridge import EXECUTOR_TIMEOUT_S, run_on_executor, settle
+from arm_control.ros.executor_bridge import EXECUTOR_TIMEOUT_S, settle
 from arm_control.ros.joint_trajectory_messages import (
     feedback_message,
     goal_request,
@@ -80,10 +80,9 @@ class JointTrajectoryAction:
             cancel_callback=self._cancel,
         )
 
-    def close(self) -> None:
-        """Withdraw the action once the results of all goals are out; a control-plane thread."""
+    def wait_for_results(self) -> None:
+        """Wait until the results of all goals are out; a control-plane thread."""
         self._idle.wait(EXECUTOR_TIMEOUT_S)
-        run_on_executor(self._executor, self._server.destroy)
 
     # Loop thread
 
@@ -96,6 +95,10 @@ class JointTrajectoryAction:
         settle(self._running[goal_id].ended, result, self._executor)
 
     # Executor's thread
+
+    def destroy(self) -> None:
+        """Withdraw the action."""
+        self._server.destroy()
 
     def _answer(self, goal: FollowJointTrajectory.Goal) -> GoalResponse:
         self._logger.info("Received new action goal")

@@ -28,7 +28,7 @@ from arm_control.joint_trajectory import (
     StateLayout,
 )
 from arm_control.ros.controller_adapter import ControllerAdapter
-from arm_control.ros.executor_bridge import call_on_loop
+from arm_control.ros.executor_bridge import call_on_loop, run_on_executor
 from arm_control.ros.joint_trajectory_action import JointTrajectoryAction
 from arm_control.ros.joint_trajectory_messages import (
     fill_query_response,
@@ -86,8 +86,13 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             )
 
     def on_cleanup(self) -> None:
-        """Destroy the end points."""
+        """Destroy the end points, once the results of all goals are out."""
         self.controller.sink = None
+        if self._action is not None:
+            self._action.wait_for_results()
+            run_on_executor(self._executor, self._destroy)
+
+    def _destroy(self) -> None:
         for subscription in self._subscriptions:
             self.node.destroy_subscription(subscription)
         self._subscriptions = ()
@@ -95,7 +100,7 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             self.node.destroy_service(self._query)
             self._query = None
         if self._action is not None:
-            self._action.close()
+            self._action.destroy()
             self._action = None
         if self._publisher is not None:
             self.node.destroy_publisher(self._publisher)

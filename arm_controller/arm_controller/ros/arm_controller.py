@@ -35,7 +35,7 @@ class ArmController(Node):
             POLL_S, self._deliver, clock=self._steady, autostart=False
         )
         self._readings = JointReadings()
-        self._states = JointStateInput(self, self._readings)
+        self._states: JointStateInput | None = None
         self._print_timer: Timer | None = None
         self._declare_changeable()
 
@@ -125,6 +125,9 @@ class ArmController(Node):
     def _print_every(self, period_s: float) -> None:
         if self._print_timer is not None:
             self.destroy_timer(self._print_timer)
+        if period_s > 0.0 and self._states is None:
+            # Who never prints does not subscribe either: a message to nobody costs nothing.
+            self._states = JointStateInput(self, self._readings)
         self._print_timer = (
             self.create_timer(period_s, self._print_states, clock=self._steady)
             if period_s > 0.0
@@ -132,7 +135,7 @@ class ArmController(Node):
         )
 
     def _print_states(self) -> None:
-        if not self._states.take():
+        if self._states is None or not self._states.take():
             return
         for name in self._joint_names:
             reading = self._readings.get(name)

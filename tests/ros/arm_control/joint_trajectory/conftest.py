@@ -57,10 +57,22 @@ def trajectory() -> Callable[..., Any]:
     return make
 
 
+class Feedback:
+    """A goal's feedback as it arrives."""
+
+    def __init__(self) -> None:
+        self.messages: list[Any] = []
+        self.come = threading.Event()
+
+    def __call__(self, message: Any) -> None:
+        self.messages.append(message.feedback)
+        self.come.set()
+
+
 class Goal:
     """A goal from the sight of its client."""
 
-    def __init__(self, handle: Any, feedback: Any) -> None:
+    def __init__(self, handle: Any, feedback: Feedback) -> None:
         self.feedback = feedback
         self.accepted = handle.accepted
         self._handle = handle
@@ -71,6 +83,11 @@ class Goal:
         """Wait for the end; return status, error code and error string."""
         answer = wait(self._ended)
         return answer.status, answer.result.error_code, answer.result.error_string
+
+    def wait_until_running(self) -> None:
+        """Wait for the first feedback: the client hears of its acceptance before the controller."""
+        if not self.feedback.come.wait(TIMEOUT_S):
+            pytest.fail(f"no feedback within {TIMEOUT_S} s")
 
     def ended(self) -> bool:
         """Return whether there is a result."""
@@ -113,8 +130,8 @@ def send(client: Any, trajectory: Any) -> Iterator[Callable[..., Goal]]:
         message = FollowJointTrajectory.Goal(trajectory=trajectory(*points, joints=joints))
         for name, value in fields.items():
             setattr(message, name, value)
-        feedback: list[Any] = []
-        return Goal(wait(action.send_goal_async(message, feedback.append)), feedback)
+        feedback = Feedback()
+        return Goal(wait(action.send_goal_async(message, feedback)), feedback)
 
     yield send_goal
     client.executor.create_task(action.destroy)

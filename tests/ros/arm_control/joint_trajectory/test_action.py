@@ -46,7 +46,7 @@ def test_joints_may_come_in_any_order(active: Any, send: Any, states: Any) -> No
 def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
     goal = send((0.5, THERE))
     goal.result()
-    messages = [message.feedback for message in goal.feedback]
+    messages = goal.feedback.messages
     stamps = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages]
     assert len(messages) >= 9
     assert all(
@@ -157,12 +157,14 @@ def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
 
 def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
     goal = send((FOR_EVER_S, THERE))
+    goal.wait_until_running()
     assert active.switch([], [NAME]).ok
     assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
 
 
 def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
     goal = send((FOR_EVER_S, THERE))
+    goal.wait_until_running()
     assert active.call("reload_controller_libraries", force_kill=True).ok
     assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
 
