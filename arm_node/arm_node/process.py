@@ -75,7 +75,10 @@ class NodeProcess:
         self._spinning.start()
 
     def join_spinning(self) -> None:
-        """Stop the executor and join its thread: a thread still spinning at exit aborts."""
+        """Stop the executor and join its thread: a thread still spinning at exit aborts.
+
+        The application may call it at the end of its teardown, before it destroys nodes itself.
+        """
         self._spin_ended.set()
         self.executor.shutdown(timeout_sec=2.0)
         if self._spinning is not None:

@@ -94,6 +94,8 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         server.shutdown()
         loop.stop()
         loop.join(LOOP_JOIN_TIMEOUT_S)
+        # A node that goes while the executor looks at it takes the process along.
+        process.join_spinning()
         server.destroy_nodes()
 
 
