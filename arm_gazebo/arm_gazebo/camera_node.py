@@ -29,6 +29,8 @@ logger = logging.getLogger(__name__)
 
 PR_SET_PDEATHSIG = 1
 JOIN_TIMEOUT_S = 2.0
+NICENESS = 5
+"""Software OpenGL takes all processors when it starts: the physics comes first."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -37,6 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         settings = CameraSettings.from_json(arguments.settings)
         _end_with_parent(arguments.parent)
+        os.nice(NICENESS)
         channel = CameraEnd(arguments.socket)
     except CameraError as error:
         sys.stderr.write(f"{error}\n")
