@@ -46,9 +46,9 @@ def test_the_launchers_profile_is_not_the_users_own(shared_memory):
 
 
 def test_the_supervisor_is_not_told_of_this_process(shared_memory):
-    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/root"})
+    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"})
     assert "NOTIFY_SOCKET" not in environment
-    assert environment["HOME"] == "/root"
+    assert environment["HOME"] == "/home/me"
 
 
 @pytest.mark.parametrize("name", ["dds_images", "dds_images_small"])
