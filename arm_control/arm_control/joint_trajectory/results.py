@@ -1,7 +1,9 @@
 """How goals end, and why requests are refused."""
 
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import IntEnum
+
+from arm_control.goal_outcome import Outcome
 
 
 class ErrorCode(IntEnum):
@@ -13,14 +15,6 @@ class ErrorCode(IntEnum):
     OLD_HEADER_TIMESTAMP = -3
     PATH_TOLERANCE_VIOLATED = -4
     GOAL_TOLERANCE_VIOLATED = -5
-
-
-class Outcome(Enum):
-    """The state in which a goal ends."""
-
-    SUCCEEDED = "succeeded"
-    ABORTED = "aborted"
-    CANCELED = "canceled"
 
 
 @dataclass(frozen=True, slots=True)
