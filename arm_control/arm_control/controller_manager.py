@@ -9,11 +9,19 @@ from arm_control.controller_lifecycle import ControllerLifecycle
 from arm_control.controller_switch import SwitchRequest, SwitchResult
 from arm_control.controller_switcher import ControllerSwitcher
 from arm_control.errors import ControllerManagerError
+from arm_control.guarded import log_failure, raise_failure
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
+from arm_control.manager_policy import ManagerPolicy
 from arm_control.resource_manager import ResourceManager, Trouble
+from arm_control.run_supervision import RunSupervision
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
+
+STATISTICS_S = 5
+"""The statistics speak of the last few seconds: a stall shows for a while, not for ever."""
+
+DEFAULT_POLICY = ManagerPolicy()
 
 logger = logging.getLogger(__name__)
 
@@ -46,8 +54,18 @@ class ControllerManager:
         resources: the components, and the arrays of states and commands.
     """
 
-    def __init__(self, hardware: Sequence[Hardware], update_rate_hz: int) -> None:
+    def __init__(
+        self,
+        hardware: Sequence[Hardware],
+        update_rate_hz: int,
+        policy: ManagerPolicy = DEFAULT_POLICY,
+    ) -> None:
         """Take over the components, all still unconfigured; see `bring_up`.
+
+        Args:
+            hardware: the components' drivers.
+            update_rate_hz: ticks per second.
+            policy: what to do where there is a choice.
 
         Raises:
             ControllerManagerError: the rate is not positive, or names are used twice.
@@ -55,7 +73,16 @@ class ControllerManager:
         if update_rate_hz < 1:
             raise ControllerManagerError(f"update_rate must be positive, not {update_rate_hz} Hz")
         self.update_rate_hz = update_rate_hz
-        self.resources = ResourceManager(hardware)
+        self._policy = policy
+        self._supervision = RunSupervision(
+            samples=STATISTICS_S * update_rate_hz,
+            on_exception=log_failure if policy.handle_exceptions else raise_failure,
+        )
+        self.resources = ResourceManager(
+            hardware,
+            self._supervision,
+            command_inactive=policy.activate_with_inactive_hardware,
+        )
         self._controllers: dict[str, ManagedController] = {}
         self._commanding: tuple[ManagedController, ...] = ()
         self._broadcasting: tuple[ManagedController, ...] = ()
@@ -99,13 +126,19 @@ class ControllerManager:
         """Activate every component but those named, which stop at the state named; read once.
 
         Raises:
-            ControllerManagerError: a name is unknown, or a component did not get there.
+            ControllerManagerError: a name is unknown, or a component did not get there and the
+                policy does not let that pass.
         """
         targets = dict.fromkeys(self.resources.components, LifecycleState.ACTIVE)
         targets.update(dict.fromkeys(inactive, LifecycleState.INACTIVE))
         targets.update(dict.fromkeys(unconfigured, LifecycleState.UNCONFIGURED))
         for name, target in targets.items():
-            self.set_hardware_component_state(name, target)
+            try:
+                self.set_hardware_component_state(name, target)
+            except ControllerManagerError as error:
+                if self._policy.end_on_initial_state_failure:
+                    raise
+                logger.error("%s", error)
         self.read(0.0, 0.0)
 
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
@@ -149,7 +182,7 @@ class ControllerManager:
         if name in fallback_names:
             raise ControllerManagerError(f"controller '{name}' cannot be its own fallback")
         managed = ManagedController(
-            controller, type_name, tuple(fallback_names), self.update_rate_hz
+            controller, type_name, tuple(fallback_names), self.update_rate_hz, self._supervision
         )
         self._controllers[name] = managed
         self._activity_changed()
@@ -244,7 +277,8 @@ class ControllerManager:
         for component, outcome in trouble:
             if outcome is HardwareReturn.DEACTIVATE:
                 logger.error("hardware component '%s' deactivates itself", component.name)
-                self._deactivate(self._users_of({component.name}, commanding_only=True))
+                if self._policy.stop_with_self_deactivated_hardware:
+                    self._deactivate(self._users_of({component.name}, commanding_only=True))
                 self.resources.set_component_state(component.name, LifecycleState.INACTIVE)
             else:
                 logger.error(

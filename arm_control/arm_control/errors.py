@@ -6,6 +6,7 @@ ArmControlError
 ├── ParameterError         a parameter of a controller that is missing or wrong
 ├── ControllerError        a controller refuses a step of its life cycle
 ├── ControllerManagerError the manager refuses what was asked of it
+├── UnhandledFailureError  a controller or component raised, and nobody is to catch it
 └── LoopStoppedError       a call to a control loop that runs no more
 """
 
@@ -32,6 +33,10 @@ class ControllerError(ArmControlError):
 
 class ControllerManagerError(ArmControlError):
     """The manager refuses a request; the message says why and what exists."""
+
+
+class UnhandledFailureError(ArmControlError):
+    """A controller or component raised in a cycle, and the manager is told not to catch it."""
 
 
 class LoopStoppedError(ArmControlError):

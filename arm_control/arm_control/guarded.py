@@ -3,9 +3,29 @@
 import logging
 from collections.abc import Callable
 
-from arm_control.errors import ArmControlError
+from arm_control.errors import ArmControlError, UnhandledFailureError
 
 logger = logging.getLogger(__name__)
+
+FailureHandler = Callable[[str, Exception], None]
+"""Gets what outside code raised in a cycle, with a sentence that says where."""
+
+
+def log_failure(what: str, error: Exception) -> None:
+    """Log it with its traceback; whoever raised it is stopped, the rest goes on."""
+    logger.error("%s", what, exc_info=error)
+
+
+def raise_failure(what: str, error: Exception) -> None:
+    """Let it end the control loop, and the process with it.
+
+    Raises:
+        UnhandledFailureError: always.
+    """
+    raise UnhandledFailureError(
+        f"{what}: {type(error).__name__}: {error}; "
+        "the process ends, because parameter 'handle_exceptions' is false"
+    ) from error
 
 
 def failure_of(step: Callable[[], object], what: str) -> str:

@@ -1,13 +1,12 @@
 """One hardware component in the manager's care: its driver and its life cycle."""
 
-import logging
 from collections.abc import Callable
 
 from arm_control.guarded import failure_of
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.lifecycle import LifecycleState, Transition
-
-logger = logging.getLogger(__name__)
+from arm_control.run_record import RunRecord
+from arm_control.run_supervision import RunSupervision
 
 
 class HardwareComponent:
@@ -16,11 +15,18 @@ class HardwareComponent:
     Attributes:
         hardware: the driver.
         state: of its life cycle.
+        reads: its latest reads, in the manager's time.
+        writes: its latest writes, in the manager's time.
     """
 
-    def __init__(self, hardware: Hardware) -> None:
+    def __init__(self, hardware: Hardware, supervision: RunSupervision | None = None) -> None:
         self.hardware = hardware
         self.state = LifecycleState.UNCONFIGURED
+        supervision = supervision or RunSupervision()
+        self.reads = supervision.record()
+        self.writes = supervision.record()
+        self._now_s = supervision.now_s
+        self._on_exception = supervision.on_exception
 
     @property
     def name(self) -> str:
@@ -45,6 +51,8 @@ class HardwareComponent:
             if reason:
                 return reason
             self.state = step.goal
+            self.reads.clear()
+            self.writes.clear()
         return ""
 
     def fail(self) -> None:
@@ -56,24 +64,28 @@ class HardwareComponent:
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Read the states; whatever the driver raises is an error of the component."""
-        return self._exchange(self.hardware.read, time_s, period_s)
+        return self._exchange(self.hardware.read, self.reads, time_s, period_s)
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
         """Write the commands; whatever the driver raises is an error of the component."""
-        return self._exchange(self.hardware.write, time_s, period_s)
+        return self._exchange(self.hardware.write, self.writes, time_s, period_s)
 
     def _exchange(
         self,
         exchange: Callable[[float, float], HardwareReturn],
+        runs: RunRecord,
         time_s: float,
         period_s: float,
     ) -> HardwareReturn:
+        began_s = self._now_s()
         try:
-            return exchange(time_s, period_s)
-        except Exception:
-            # A driver is outside code; the manager takes the component down and goes on.
-            logger.exception("hardware component '%s' failed", self.name)
+            outcome = exchange(time_s, period_s)
+        except Exception as error:
+            # A driver is outside code; as a rule the manager takes it down and goes on.
+            self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
+        runs.add(time_s, self._now_s() - began_s)
+        return outcome
 
     def _step_towards(self, target: LifecycleState) -> Transition:
         if target is LifecycleState.FINALIZED:

@@ -6,6 +6,7 @@ from typing import Any
 from arm_control.controller import Controller, ReturnType
 from arm_control.lifecycle import LifecycleState
 from arm_control.resource_manager import ResourceManager
+from arm_control.run_supervision import RunSupervision
 from arm_control.status import ControllerStatus
 
 logger = logging.getLogger(__name__)
@@ -21,6 +22,7 @@ class ManagedController:
         state: of its life cycle.
         commands: full names of the command interfaces it asks for; empty while unconfigured.
         states: full names of the state interfaces it asks for; empty while unconfigured.
+        runs: its latest updates, in the manager's time.
     """
 
     def __init__(
@@ -29,6 +31,7 @@ class ManagedController:
         type_name: str,
         fallback_names: tuple[str, ...],
         manager_rate_hz: int,
+        supervision: RunSupervision | None = None,
     ) -> None:
         self.controller = controller
         self.type_name = type_name
@@ -40,6 +43,10 @@ class ManagedController:
         self._own_period_s = 0.0
         self._last_update_s: float | None = None
         self.update_rate_hz = manager_rate_hz
+        supervision = supervision or RunSupervision()
+        self.runs = supervision.record()
+        self._now_s = supervision.now_s
+        self._on_exception = supervision.on_exception
 
     @property
     def name(self) -> str:
@@ -91,6 +98,7 @@ class ManagedController:
     def restart_cadence(self) -> None:
         """Let the next cycle be the first: it runs at once, with the nominal period."""
         self._last_update_s = None
+        self.runs.clear()
 
     def run(self, time_s: float, period_s: float) -> bool:
         """Update the controller if its cycle has come; return False where that failed."""
@@ -98,12 +106,15 @@ class ManagedController:
             period_s = self._due_period_s(time_s, period_s)
             if period_s <= 0.0:
                 return True
+        began_s = self._now_s()
         try:
-            return self.controller.update(time_s, period_s) is ReturnType.OK
-        except Exception:
-            # A controller is outside code; the manager deactivates it and goes on.
-            logger.exception("controller '%s' raised in its update", self.name)
+            outcome = self.controller.update(time_s, period_s)
+        except Exception as error:
+            # A controller is outside code; as a rule the manager deactivates it and goes on.
+            self._on_exception(f"controller '{self.name}' raised in its update", error)
             return False
+        self.runs.add(time_s, self._now_s() - began_s)
+        return outcome is ReturnType.OK
 
     def status(self) -> ControllerStatus:
         """Return a snapshot for the list services."""

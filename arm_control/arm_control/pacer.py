@@ -4,11 +4,13 @@ import logging
 from dataclasses import dataclass
 
 from arm_control.clock import Clock, MonotonicClock
+from arm_control.run_record import RunRecord
 
 CATCH_UP_S = 0.05
 """A stall up to this long is made up for; of a longer one the rest is given up."""
 
 WINDOW_S = 1.0
+STATISTICS_S = 5.0
 WARNING_INTERVAL_S = 10.0
 
 
@@ -38,7 +40,12 @@ class Pacer:
 
     After a stall the ticks that were missed follow one another without a wait, up to
     `catch_up_s` of wall time; what is beyond is given up and counted. Loop thread only, except
-    `statistics`, which any thread may read.
+    `statistics`, `runs` and `remaining_s`, which any thread may read.
+
+    Attributes:
+        period_s: time that one tick advances, in seconds of the ticked time.
+        print_warnings: whether it says in the log that ticks come too late.
+        runs: the latest ticks, in wall time.
     """
 
     def __init__(
@@ -63,6 +70,7 @@ class Pacer:
             raise ValueError(f"the period must be positive, not {period_s!r} s")
         self.period_s = period_s
         self.print_warnings = print_warnings
+        self.runs = RunRecord(max(2, round(STATISTICS_S / period_s)))
         self._catch_up_s = catch_up_s
         self._now_s = (clock or MonotonicClock()).now_s
         self._ticks = self._overruns = 0
@@ -99,9 +107,10 @@ class Pacer:
 
     def restart(self) -> None:
         """Forget the deadlines, for example after a pause: the next tick is due now."""
-        self._due_s = self._window_start_s = self._now_s()
+        self._due_s = self._window_start_s = self._began_s = self._now_s()
         self._window_ticks = self._window_overruns = 0
         self._window_lost_s = self._window_max_lag_s = 0.0
+        self.runs.clear()
 
     def remaining_s(self) -> float:
         """Return how long the next tick is still to wait; 0 or less when it is due."""
@@ -109,9 +118,9 @@ class Pacer:
 
     def begin(self) -> None:
         """Note that a tick starts, and set the deadline of the next one."""
+        self._began_s = now_s = self._now_s()
         if not self._wall_period_s:
             return
-        now_s = self._now_s()
         self._lag_s = lag_s = max(0.0, now_s - self._due_s)
         if lag_s > self._window_max_lag_s:
             self._window_max_lag_s = lag_s
@@ -125,6 +134,7 @@ class Pacer:
     def end(self) -> None:
         """Note that the tick is done."""
         now_s = self._now_s()
+        self.runs.add(self._began_s, now_s - self._began_s)
         self._ticks += 1
         self._window_ticks += 1
         if self._wall_period_s and now_s > self._due_s:

@@ -10,6 +10,7 @@ from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.hardware_component import HardwareComponent
 from arm_control.lifecycle import LifecycleState
 from arm_control.loaned_interfaces import LoanedInterfaces
+from arm_control.run_supervision import RunSupervision
 from arm_control.status import HardwareComponentStatus, InterfaceStatus
 
 Trouble = tuple[HardwareComponent, HardwareReturn]
@@ -27,8 +28,19 @@ class ResourceManager:
         components: by name, in the order given.
     """
 
-    def __init__(self, hardware: Sequence[Hardware]) -> None:
+    def __init__(
+        self,
+        hardware: Sequence[Hardware],
+        supervision: RunSupervision | None = None,
+        *,
+        command_inactive: bool = False,
+    ) -> None:
         """Lay out the arrays and hand each component its part.
+
+        Args:
+            hardware: the drivers.
+            supervision: of their reads and writes.
+            command_inactive: whether components that are only configured may be commanded, too.
 
         Raises:
             ControllerManagerError: two components, or two interfaces, have the same name.
@@ -37,7 +49,7 @@ class ResourceManager:
         self._state_owner: dict[str, HardwareComponent] = {}
         self._command_owner: dict[str, HardwareComponent] = {}
         for driver in hardware:
-            self._add(HardwareComponent(driver))
+            self._add(HardwareComponent(driver, supervision))
         self.states = np.full(len(self._state_owner), np.nan)
         self.commands = np.full(len(self._command_owner), np.nan)
         self._read_only_states = self.states.view()
@@ -45,6 +57,9 @@ class ResourceManager:
         self._state_index = {name: i for i, name in enumerate(self._state_owner)}
         self._command_index = {name: i for i, name in enumerate(self._command_owner)}
         self._claims: dict[str, str] = {}
+        self._commandable = {LifecycleState.ACTIVE}
+        if command_inactive:
+            self._commandable.add(LifecycleState.INACTIVE)
         self._reading: tuple[HardwareComponent, ...] = ()
         self._writing: tuple[HardwareComponent, ...] = ()
         self._bind()
@@ -98,7 +113,7 @@ class ResourceManager:
     def prepare_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
         """Ask each component concerned; return why one refuses, or nothing."""
         for component, ours, theirs in self._concerned(start, stop):
-            if ours and component.state is not LifecycleState.ACTIVE:
+            if ours and component.state not in self._commandable:
                 return f"hardware component '{component.name}' is {component.state.label}"
             reason = failure_of(
                 lambda c=component, a=ours, b=theirs: c.hardware.prepare_command_mode_switch(a, b),

@@ -180,3 +180,30 @@ def test_keeping_up_is_silent(caplog: pytest.LogCaptureFixture) -> None:
     for _ in range(500):
         run_tick(pacer, clock, 0.009)
     assert caplog.text == ""
+
+
+@pytest.mark.parametrize(("factor", "rate_hz"), [(1.0, 100.0), (0.5, 50.0), (0.0, 500.0)])
+def test_ticks_are_recorded_in_wall_time(factor: float, rate_hz: float) -> None:
+    clock = ManualClock()
+    pacer = Pacer(0.01, real_time_factor=factor, clock=clock)
+    for _ in range(20):
+        run_tick(pacer, clock, 0.002)
+    statistics = pacer.runs.statistics()
+    assert statistics is not None
+    assert statistics.periodicity_hz is not None
+    assert statistics.periodicity_hz.mean == pytest.approx(rate_hz)
+    assert statistics.execution_time_us.mean == pytest.approx(2000.0)
+
+
+def test_a_pause_is_no_long_period() -> None:
+    clock = ManualClock()
+    pacer = Pacer(0.01, clock=clock)
+    run_tick(pacer, clock)
+    clock.advance(60.0)
+    pacer.restart()
+    for _ in range(3):
+        run_tick(pacer, clock)
+    statistics = pacer.runs.statistics()
+    assert statistics is not None
+    assert statistics.periodicity_hz is not None
+    assert statistics.periodicity_hz.minimum == pytest.approx(100.0)
