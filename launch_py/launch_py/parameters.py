@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 UNPRINTABLE = re.compile("[\x7f-\x9f\ufffe\uffff]")
 """What JSON writes as it is and YAML does not allow bare."""
 
+NODE_KEY = "ros__parameters"
+"""What a parameter file has between the name of a node and its parameters."""
+
 Value = bool | int | float | str | list[Any] | dict[str, Any]
 
 
@@ -114,12 +117,26 @@ def read_yaml(text: str) -> Value:
     return _one_type(value) if isinstance(value, list) else value
 
 
+def parameters_by_node(
+    parameters: Mapping[Any, Any], node_name: str
+) -> Mapping[str, Mapping[Any, Any]]:
+    """Return a dict's parameters by node.
+
+    Args:
+        parameters: of one node, or of several in the form of a parameter file.
+        node_name: whose they are if the dict does not say; "" for every node of the process.
+    """
+    if parameters and all(isinstance(v, Mapping) and NODE_KEY in v for v in parameters.values()):
+        return {str(node): entry[NODE_KEY] for node, entry in parameters.items()}
+    return {node_name: parameters}
+
+
 def parameter_file_text(node_name: str, parameters: Mapping[str, Value]) -> str:
     """Return the text of a parameter file for one node, "/**" for every node of the process.
 
     Written as JSON, which is YAML: strings are quoted, so 'yes' stays a string.
     """
-    return f"{json.dumps(node_name)}: {_dump({'ros__parameters': parameters})}\n"
+    return f"{json.dumps(node_name)}: {_dump({NODE_KEY: parameters})}\n"
 
 
 def _dump(value: Value | Mapping[str, Any]) -> str:

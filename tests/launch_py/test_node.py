@@ -87,8 +87,17 @@ def test_parameters_of_a_named_node_go_to_it_alone(expand):
 
 
 def test_parameters_may_be_meant_for_one_node_of_several(expand):
-    plan = expand([node(parameters_node="arm_gazebo", parameters=[{"rate": 100}])])
-    assert list(parameters(plan)[0]) == ["/arm_gazebo"]
+    each = {
+        "arm_gazebo": {"ros__parameters": {"rate": 100}},
+        "controller": {"ros__parameters": {"joints": ["j0"]}},
+    }
+    plan = expand([node(namespace="left", parameters=[each])])
+    assert parameters(plan) == [
+        {
+            "/left/arm_gazebo": {"ros__parameters": {"rate": 100}},
+            "/left/controller": {"ros__parameters": {"joints": ["j0"]}},
+        }
+    ]
     assert not any("__node" in str(word) for word in words(plan))
 
 

@@ -96,16 +96,3 @@ def test_an_update_rate_of_zero_is_refused(launch, tmp_path):
     assert launched.wait() != 0
     assert "update_rate" in launched.output
     assert "Traceback" not in launched.output
-
-
-def test_a_description_without_a_ros2_control_block_is_refused(launch, tmp_path):
-    model = tmp_path / "bare.urdf"
-    model.write_text("""\
-<robot name="bare"><link name="base_link"/><link name="arm"/>
-  <joint name="j0" type="revolute"><parent link="base_link"/><child link="arm"/>
-    <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-</robot>""")
-    launched = launch(f"model:={model}")
-    assert launched.wait() != 0
-    assert "<ros2_control>" in launched.output
-    assert "Traceback" not in launched.output

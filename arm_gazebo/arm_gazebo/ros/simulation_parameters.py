@@ -1,6 +1,7 @@
 """The parameters of the simulation node, read and checked once."""
 
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ class SimulationSettings:
         package_path: folders searched for package:// and model:// besides the installed ones.
         render_backend: of the cameras.
         seed: of the cameras' noise.
+        headless: False for a window on the simulation.
     """
 
     robot_description: str
@@ -48,6 +50,7 @@ class SimulationSettings:
     package_path: tuple[Path, ...]
     render_backend: str
     seed: int
+    headless: bool
 
 
 def read_settings(node: Node) -> SimulationSettings:
@@ -73,11 +76,10 @@ def read_settings(node: Node) -> SimulationSettings:
         pose=_pose(values),
         self_collide=values.flag("self_collide", False, "links of the robot touch each other"),
         strict=values.flag("strict", False, "a missing mesh is an error"),
-        package_path=tuple(
-            Path(p) for p in values.texts("package_path", "folders for package:// and model://")
-        ),
+        package_path=values.folders("package_path", "for package:// and model://, with colons"),
         render_backend=values.choice("render_backend", "auto", PREFERENCES, "of the cameras"),
         seed=values.whole("seed", 0, "of the cameras' noise"),
+        headless=values.flag("headless", True, "false opens a window on the simulation"),
     )
 
 
@@ -162,6 +164,13 @@ class _Values:
         if not all(isinstance(v, str) for v in value):
             raise SettingsError(f"{name} must be a list of texts, not {value!r}")
         return list(value)
+
+    def folders(self, name: str, description: str) -> tuple[Path, ...]:
+        return tuple(
+            Path(folder).expanduser()
+            for folder in self.text(name, "", f"folders {description}").split(os.pathsep)
+            if folder
+        )
 
     def _declare(self, name: str, default: object, description: str) -> Any:
         descriptor = ParameterDescriptor(

@@ -13,7 +13,11 @@ from launch_py.event_handlers import Reaction
 from launch_py.names import join_names
 from launch_py.near_names import describe_known
 from launch_py.packages import Packages
-from launch_py.parameters import evaluate_parameters, parameter_file_text
+from launch_py.parameters import (
+    evaluate_parameters,
+    parameter_file_text,
+    parameters_by_node,
+)
 from launch_py.plan import SIGKILL_TIMEOUT_S, SIGTERM_TIMEOUT_S, GeneratedFile
 from launch_py.readiness import Readiness
 from launch_py.restart_policy import RestartPolicy
@@ -39,9 +43,9 @@ class Node(ExecuteProcess):
             process with several nodes; `exec_name` says what to call the process.
         namespace: the namespace, inside the one of `PushRosNamespace`.
         exec_name: what to call the process; default the node's name, else the executable's.
-        parameters: parameter files and dicts of parameters; later ones win.
-        parameters_node: the node that dicts of parameters are meant for, in a process with
-            several; default `name`, else every node of the process.
+        parameters: parameter files and dicts; later ones win. A dict holds parameters of `name`,
+            or of every node of the process without one; in a process with several nodes it may
+            have the form of a file, {node: {"ros__parameters": {...}}}.
         remappings: pairs of a name and what it becomes.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
@@ -56,7 +60,6 @@ class Node(ExecuteProcess):
         namespace: Text | None = None,
         exec_name: Text | None = None,
         parameters: Iterable[Parameters] = (),
-        parameters_node: Text | None = None,
         remappings: Iterable[tuple[Text, Text]] = (),
         arguments: Iterable[Text] = (),
         ros_arguments: Iterable[Text] = (),
@@ -102,7 +105,6 @@ class Node(ExecuteProcess):
         self.node_name = name
         self.namespace = namespace
         self.parameters = [parameters] if isinstance(parameters, Mapping) else list(parameters)
-        self.parameters_node = parameters_node
         self.remappings = list(remappings)
         self.arguments = list(arguments)
         self.ros_arguments = list(ros_arguments)
@@ -124,11 +126,7 @@ class Node(ExecuteProcess):
             ros += ["-r", f"__node:={name}"]
         if namespace:
             ros += ["-r", f"__ns:={namespace}"]
-        meant_for = (
-            name if self.parameters_node is None else perform_text(context, self.parameters_node)
-        )
-        node_key = f"{namespace}/{meant_for}" if meant_for else "/**"
-        for parameters in self._parameter_files(context, node_key):
+        for parameters in self._parameter_files(context, namespace, name):
             ros += ["--params-file", parameters]
         for old, new in [*context.remappings, *self.remappings]:
             ros += ["-r", f"{perform_text(context, old)}:={perform_text(context, new)}"]
@@ -146,16 +144,24 @@ class Node(ExecuteProcess):
         return f"a Node of executable {describe_text(self.executable)!r}"
 
     def _parameter_files(
-        self, context: LaunchContext, node_name: str
+        self, context: LaunchContext, namespace: str, name: str
     ) -> Iterator[str | GeneratedFile]:
         for parameters in [*context.parameters, *self.parameters]:
             if isinstance(parameters, Mapping):
+                by_node = parameters_by_node(parameters, name)
                 try:
-                    values = evaluate_parameters(context, parameters)
+                    texts = [
+                        parameter_file_text(
+                            f"{namespace}/{node}" if node else "/**",
+                            evaluate_parameters(context, values),
+                        )
+                        for node, values in by_node.items()
+                        if values
+                    ]
                 except ParameterError as error:
                     raise ParameterError(f"{self.process_name(context)}: {error}") from None
-                if values:
-                    yield GeneratedFile(".yaml", parameter_file_text(node_name, values))
+                if texts:
+                    yield GeneratedFile(".yaml", "".join(texts))
                 continue
             path = perform_text(context, parameters)
             if not os.path.isfile(path):

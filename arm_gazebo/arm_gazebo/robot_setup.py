@@ -1,0 +1,164 @@
+"""What a launch file needs to simulate a robot: its description, its controllers, its folders."""
+
+import os
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arm_description.resources import resolve_uri
+from arm_description.xacro_expansion import expand_xacro
+from arm_gazebo.controllers_file import startable_controllers
+from arm_gazebo.default_control import (
+    COMMANDER,
+    DEFAULT_CONTROLLERS,
+    commandable_joints,
+    default_parameters,
+    has_hardware,
+    with_hardware,
+)
+from arm_gazebo.errors import SettingsError
+
+SPAWN_AUTO = "auto"
+"""Start every controller whose joints are free."""
+ASSIGNMENT = ":="
+FOLDERS_UP = 3
+"""The folder of a model's file, its package, and the folder that holds its neighbours."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSetup:
+    """A robot, ready to be simulated.
+
+    Attributes:
+        description: URDF text with a <ros2_control> block.
+        controllers: a parameter file, or the content of one.
+        spawn: controllers to start with the simulation.
+        package_path: folders searched for the description's files.
+        remarks: what was made up, one sentence each.
+    """
+
+    description: str
+    controllers: Path | Mapping[str, Any]
+    spawn: tuple[str, ...]
+    package_path: tuple[Path, ...]
+    remarks: tuple[str, ...]
+
+
+def set_up_robot(
+    model: str,
+    model_args: str = "",
+    controllers: str = "",
+    spawn: str = SPAWN_AUTO,
+    package_path: str = "",
+) -> RobotSetup:
+    """Read a robot and complete what it lacks.
+
+    Args:
+        model: URDF or xacro file, also as a package:// URI.
+        model_args: xacro arguments, "a:=1 b:=2".
+        controllers: parameter file; "" makes one up.
+        spawn: names with commas; "auto" for every controller whose joints are free.
+        package_path: folders with colons.
+
+    Raises:
+        SettingsError: arguments that make no sense; DescriptionError: no such model, or it is no
+            robot.
+    """
+    file = model_file(model)
+    description = expand_xacro(file, model_arguments(model_args))
+    remarks: list[str] = []
+    commanded: tuple[str, ...] | None = None
+    if not has_hardware(description) or not controllers:
+        # Only here: a robot that comes with everything starts without being parsed twice.
+        description, commanded = _completed(description, file, remarks)
+    content: Path | Mapping[str, Any] = Path(controllers)
+    if not controllers:
+        content = default_parameters(commanded or ())
+        remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
+    return RobotSetup(
+        description,
+        content,
+        _spawned(spawn, content, commanded or (), remarks),
+        (*folders(package_path), *folders_of(file)),
+        tuple(remarks),
+    )
+
+
+def model_file(model: str) -> Path:
+    """Return the file that a model is named by; ResourceNotFoundError where there is none."""
+    return resolve_uri(model) if "://" in model else Path(model).expanduser()
+
+
+def model_arguments(words: str) -> dict[str, str]:
+    """Return xacro arguments by name.
+
+    Raises:
+        SettingsError: a word that is not NAME:=VALUE.
+    """
+    arguments: dict[str, str] = {}
+    try:
+        for word in shlex.split(words):
+            name, assignment, value = word.partition(ASSIGNMENT)
+            if not (name and assignment):
+                raise ValueError(f"'{word}' is not NAME:=VALUE")
+            arguments[name] = value
+    except ValueError as error:
+        raise SettingsError(f"model_args {words!r}: {error}") from error
+    return arguments
+
+
+def folders(path: str) -> tuple[Path, ...]:
+    """Return the folders of a text that parts them by colons."""
+    return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
+
+
+def folders_of(model: Path) -> tuple[Path, ...]:
+    """Return where a model's own files may be: beside it, in its package, in a neighbour."""
+    return tuple(model.absolute().parents)[:FOLDERS_UP]
+
+
+def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, tuple[str, ...]]:
+    """Return the description with hardware, and the joints that it commands by position."""
+    from arm_control.hardware_info import parse_hardware_info
+    from arm_description.urdf import parse_urdf
+
+    if not has_hardware(description):
+        robot = parse_urdf(description, str(file))
+        joints = commandable_joints(robot)
+        remarks.append(
+            f"robot '{robot.name}' has no <ros2_control> block: one is made up that commands "
+            f"{', '.join(joints) or 'nothing, for no joint can be commanded'}"
+        )
+        return with_hardware(description, robot), joints
+    joints = tuple(
+        joint.name
+        for component in parse_hardware_info(description)
+        for joint in component.joints
+        if any(interface.name == "position" for interface in joint.command_interfaces)
+    )
+    return description, joints
+
+
+def _made_up(joints: tuple[str, ...]) -> str:
+    names = [*DEFAULT_CONTROLLERS] if joints else [*DEFAULT_CONTROLLERS][:1]
+    driven = f"; {COMMANDER} drives {', '.join(joints)}" if joints else ""
+    return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} made up{driven}"
+
+
+def _spawned(
+    spawn: str,
+    controllers: Path | Mapping[str, Any],
+    commanded: tuple[str, ...],
+    remarks: list[str],
+) -> tuple[str, ...]:
+    if spawn.strip() != SPAWN_AUTO:
+        return tuple(name for name in spawn.replace(",", " ").split())
+    if not isinstance(controllers, Path):
+        return tuple(name for name in DEFAULT_CONTROLLERS if commanded or name != COMMANDER)
+    from arm_control.registry import controller_types
+
+    startable = startable_controllers(controllers, frozenset(controller_types()))
+    remarks += startable.remarks
+    return startable.names

@@ -1,0 +1,96 @@
+"""Any robot in any world: the simulation with its controllers, and the state publisher."""
+
+from launch_py import DeclareLaunchArgument, LaunchDescription, LogInfo, Notified, Shutdown
+from launch_py.actions import OpaqueFunction
+from launch_py.launch_context import LaunchContext
+from launch_py.ros import Node
+from launch_py.substitutions import LaunchConfiguration
+
+ROBOT_ARGUMENTS = {
+    "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
+    "controllers": (
+        "",
+        "parameter file of the controller manager and its controllers; without one a position "
+        "controller is made up",
+    ),
+    "spawn": (
+        "auto",
+        "controllers to start with the simulation, with commas; auto starts those whose joints "
+        "are free, in the file's order",
+    ),
+    "package_path": ("", "folders for package://, besides the model's own package, with colons"),
+    "namespace": ("", "of all nodes of the robot"),
+}
+
+SIMULATION_ARGUMENTS = {
+    "world": ("empty", "a shipped world (empty, objects), or a MuJoCo XML file"),
+    "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
+    "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible"),
+    "physics_step": ("0.0", "in s; 0 chooses one of at most 2 ms that fits the control rate"),
+    "hold_joints": ("true", "joints that no controller claims hold their position"),
+    "self_collide": ("false", "links of the robot touch each other"),
+    "strict": ("false", "a missing mesh is an error, not a box and a warning"),
+    "render_backend": ("auto", "of the cameras", ["auto", "egl", "osmesa", "raycast"]),
+}
+
+
+def declared(arguments: dict) -> list[DeclareLaunchArgument]:
+    """Return the declarations of a table of arguments."""
+    return [
+        DeclareLaunchArgument(
+            name,
+            default_value=default,
+            description=description,
+            choices=choices[0] if choices else None,
+        )
+        for name, (default, description, *choices) in arguments.items()
+    ]
+
+
+def simulate(context: LaunchContext) -> list:
+    """Return the robot's nodes, and what was made up for it."""
+    # Here, so that --show-args needs nothing but this file.
+    from arm_gazebo.robot_setup import set_up_robot
+
+    words = context.launch_configurations
+    setup = set_up_robot(
+        words["model"],
+        words["model_args"],
+        words["controllers"],
+        words["spawn"],
+        words["package_path"],
+    )
+    settings = {
+        "robot_description": setup.description,
+        "spawn": ",".join(setup.spawn),
+        "package_path": ":".join(str(folder) for folder in setup.package_path),
+        **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS},
+    }
+    simulation = Node(
+        package="arm_gazebo",
+        executable="arm_gazebo_node",
+        namespace=words["namespace"],
+        parameters=[setup.controllers, {"arm_gazebo": {"ros__parameters": settings}}],
+        ready=Notified(),
+        on_exit=Shutdown(),
+    )
+    state_publisher = Node(
+        package="arm_description",
+        executable="robot_state_publisher",
+        namespace=words["namespace"],
+        parameters=[{"robot_description": setup.description, "use_sim_time": True}],
+        ready=Notified(),
+    )
+    return [*(LogInfo(msg=remark) for remark in setup.remarks), simulation, state_publisher]
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the simulation and the state publisher."""
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("model", description="URDF or xacro file"),
+            *declared(ROBOT_ARGUMENTS),
+            *declared(SIMULATION_ARGUMENTS),
+            OpaqueFunction(function=simulate),
+        ]
+    )

@@ -1,0 +1,51 @@
+"""`arm launch arm_gazebo sim.launch.py`: robots that this suite has never seen."""
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.ros
+
+FRAME = '<link name="base_link"/><link name="upper"/><link name="lower"/>'
+LIMIT = '<limit lower="-2" upper="2" effort="20" velocity="2"/>'
+JOINTS = f"""
+<joint name="shoulder" type="revolute"><parent link="base_link"/><child link="upper"/>
+  <origin xyz="0 0 1"/><axis xyz="0 1 0"/>{LIMIT}</joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+  <origin xyz="0 0 0.3"/><axis xyz="0 1 0"/>{LIMIT}</joint>
+"""
+
+
+@pytest.fixture
+def bare(tmp_path):
+    """The file of a robot that says nothing about its hardware."""
+    model = tmp_path / "bare.urdf"
+    model.write_text(f'<robot name="bare">{FRAME}{JOINTS}</robot>')
+    return model
+
+
+def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    launched = launch("arm_gazebo", "sim.launch.py", f"model:={bare}", "namespace:=left")
+    launched.wait_until_ready()
+    assert "one is made up that commands shoulder, elbow" in launched.output
+    states = client.subscribe(JointState, "/left/joint_states")
+    commands = client.publisher(Float64MultiArray, "/left/position_controller/commands")
+    commands.publish(Float64MultiArray(data=[0.5, -0.5]))
+    goal = {"shoulder": 0.5, "elbow": -0.5}
+    states.wait_until(
+        lambda m: (
+            bool(m) and np.allclose(m[-1].position, [goal[name] for name in m[-1].name], atol=0.005)
+        ),
+        "the pose is reached",
+    )
+
+
+def test_a_model_that_is_no_robot_is_a_sentence(launch, tmp_path):
+    model = tmp_path / "two.urdf"
+    model.write_text('<robot name="two"><link name="a"/>\n<link name="b"/></robot>')
+    launched = launch("arm_gazebo", "sim.launch.py", f"model:={model}")
+    assert launched.wait() != 0
+    assert "'a' (line 1), 'b' (line 2)" in launched.output
+    assert "Traceback" not in launched.output
