@@ -4,10 +4,7 @@ It is started by the simulation, never by hand, and ends with it.
 """
 
 import argparse
-import ctypes
 import logging
-import os
-import signal
 import sys
 import threading
 from collections.abc import Iterator, Sequence
@@ -17,7 +14,8 @@ from typing import TYPE_CHECKING
 
 from arm_gazebo.camera_channel import CameraEnd
 from arm_gazebo.camera_settings import EXIT_BACKEND, CameraSettings
-from arm_gazebo.errors import BackendError, CameraError, GazeboError
+from arm_gazebo.errors import BackendError, GazeboError
+from arm_gazebo.parent_process import add_parent_arguments, follow_parent
 from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
 
@@ -27,10 +25,7 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-PR_SET_PDEATHSIG = 1
 JOIN_TIMEOUT_S = 2.0
-NICENESS = 5
-"""Software OpenGL takes all processors when it starts: the physics comes first."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -38,10 +33,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments, ros_arguments = _parser().parse_known_args(argv)
     try:
         settings = CameraSettings.from_json(arguments.settings)
-        _end_with_parent(arguments.parent)
-        os.nice(NICENESS)
+        follow_parent(arguments.parent)
         channel = CameraEnd(arguments.socket)
-    except CameraError as error:
+    except GazeboError as error:
         sys.stderr.write(f"{error}\n")
         return EXIT_USAGE
     application = partial(_application, settings, channel)
@@ -53,17 +47,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
-    parser.add_argument("--socket", type=int, required=True, help="descriptor, inherited")
-    parser.add_argument("--parent", type=int, required=True, help="process id of the simulation")
+    add_parent_arguments(parser)
     parser.add_argument("--settings", required=True, help="CameraSettings as JSON")
     return parser
-
-
-def _end_with_parent(parent: int) -> None:
-    """Have the kernel end this process when its parent dies, even while a driver hangs."""
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
-    if os.getppid() != parent:
-        raise CameraError("the simulation that started this camera process has ended")
 
 
 @contextmanager

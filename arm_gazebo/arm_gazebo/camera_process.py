@@ -5,13 +5,13 @@ import math
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from arm_gazebo.camera_environment import camera_environment
 from arm_gazebo.camera_settings import EXIT_BACKEND, CameraSettings
+from arm_gazebo.fed_process import FedProcess, Spawn, describe_exit
 
 logger = logging.getLogger(__name__)
 
@@ -22,10 +22,6 @@ FIRST_DELAY_S = 1.0
 LONGEST_DELAY_S = 30.0
 HEALTHY_AFTER_S = 60.0
 """A process that lived so long starts the row of delays anew."""
-END_TIMEOUT_S = 3.0
-TERMINATE_TIMEOUT_S = 2.0
-
-Spawn = Callable[..., subprocess.Popen[bytes]]
 
 
 class CameraProcess:
@@ -56,8 +52,7 @@ class CameraProcess:
         self._ros_arguments = tuple(ros_arguments)
         self._environ = environ
         self._clock = clock
-        self._spawn = spawn
-        self._process: subprocess.Popen[bytes] | None = None
+        self._child = FedProcess(MODULE, "the camera process", spawn)
         self._backend: str | None = None
         self._delay_s = FIRST_DELAY_S
         self._started_s = 0.0
@@ -66,7 +61,7 @@ class CameraProcess:
     @property
     def pid(self) -> int | None:
         """Process id of the child that runs or has just died; None if there is none."""
-        return None if self._process is None else self._process.pid
+        return self._child.pid
 
     @property
     def settings(self) -> CameraSettings:
@@ -74,28 +69,15 @@ class CameraProcess:
         return self._settings
 
     def start(self, socket_fd: int) -> None:
-        """Start a process that inherits this socket.
-
-        Call it from a thread that lives as long as the simulation: when the thread ends, Linux
-        ends the process.
-        """
-        command = [
-            *(sys.executable, "-P", "-m", MODULE),
-            *("--socket", str(socket_fd), "--parent", str(os.getpid())),
+        """Start a process that inherits this socket; see `FedProcess.start` about the thread."""
+        arguments = [
             *("--settings", self._settings.to_json()),
             *(("--ros-args", *self._ros_arguments) if self._ros_arguments else ()),
         ]
         self._backend = None
         self._started_s = self._clock()
         try:
-            self._process = self._spawn(
-                command,
-                env=camera_environment(self._environ),
-                pass_fds=(socket_fd,),
-                stdin=subprocess.DEVNULL,
-                # Out of the reach of Ctrl-C: it ends with the simulation, and not before.
-                process_group=0,
-            )
+            self._child.start(socket_fd, arguments, camera_environment(self._environ))
         except OSError as error:
             self._try_later(f"the camera process cannot be started ({error})")
 
@@ -107,37 +89,20 @@ class CameraProcess:
         """
         if backends_tried:
             self._backend = backends_tried[-1]
-        if self._process is not None:
-            code = self._process.poll()
-            if code is None:
-                return False
-            self._process = None
+        code = self._child.take_exit_code()
+        if code is not None:
             self._note_death(code)
-        return self._clock() >= self._start_again_s
+        return self._child.pid is None and self._clock() >= self._start_again_s
 
     def end(self) -> None:
         """Wait until the process has ended, whose socket is closed already; insist if need be."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        for insist, timeout_s in (
-            (None, END_TIMEOUT_S),
-            (process.terminate, TERMINATE_TIMEOUT_S),
-            (process.kill, None),
-        ):
-            if insist is not None:
-                insist()
-            try:
-                process.wait(timeout_s)
-                return
-            except subprocess.TimeoutExpired:
-                logger.warning("the camera process does not end")
+        self._child.end()
 
     def _note_death(self, code: int) -> None:
         now = self._clock()
         if now - self._started_s >= HEALTHY_AFTER_S:
             self._delay_s = FIRST_DELAY_S
-        how = f"({signal.strsignal(-code)})" if code < 0 else f"with exit code {code}"
+        how = describe_exit(code)
         if self._backend_failed(code):
             failed = str(self._backend)
             self._settings = replace(self._settings, excluded=(*self._settings.excluded, failed))

@@ -3,6 +3,8 @@
 GazeboError
 ├── CameraError     a camera's description or its process
 │   └── BackendError  an OpenGL library that starts but does not draw
+├── OrphanError     the simulation ended before its child process was there
+├── WindowError     a window cannot be opened where the simulation runs
 ├── WorldError      a world file that is missing or is no MJCF
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
@@ -21,6 +23,14 @@ class CameraError(GazeboError):
 
 class BackendError(CameraError):
     """An OpenGL library started in this process, but no picture comes out of it."""
+
+
+class OrphanError(GazeboError):
+    """The simulation that started this child process has ended."""
+
+
+class WindowError(GazeboError):
+    """A window is asked for and there is no display; the message names the fix."""
 
 
 class WorldError(GazeboError):

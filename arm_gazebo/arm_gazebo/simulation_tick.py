@@ -1,9 +1,11 @@
 """One control period of the whole simulation, in the order that makes it quick to answer."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
+import mujoco
+
 from arm_control.controller_manager import ControllerManager
-from arm_gazebo.camera_feed import CameraFeed
 from arm_gazebo.simulation import Simulation
 
 
@@ -15,8 +17,16 @@ class ClockPublisher(Protocol):
         ...
 
 
+class Feed(Protocol):
+    """Shows the simulation: cameras, a window."""
+
+    def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
+        """Take the state if one is due; called on the loop thread, never waits."""
+        ...
+
+
 class SimulationTick:
-    """Commands, physics, states, clock, broadcasters, cameras. Called on the loop thread only.
+    """Commands, physics, states, clock, broadcasters, feeds. Called on the loop thread only.
 
     The commands that came in are applied before physics moves on, and what physics made of them
     is published in the same tick: a command shows in the very next /joint_states.
@@ -27,13 +37,13 @@ class SimulationTick:
         manager: ControllerManager,
         simulation: Simulation,
         clock: ClockPublisher,
-        cameras: CameraFeed | None,
+        feeds: Sequence[Feed],
         period_s: float,
     ) -> None:
         self._manager = manager
         self._simulation = simulation
         self._clock = clock
-        self._cameras = cameras
+        self._feeds = feeds
         self._period_s = period_s
 
     def __call__(self) -> None:
@@ -48,5 +58,5 @@ class SimulationTick:
         # The clock first: nobody shall see a stamp that lies ahead of the time they know.
         self._clock.publish(time_s)
         manager.publish(time_s, period_s)
-        if self._cameras is not None:
-            self._cameras.publish_due(time_s, simulation.data)
+        for feed in self._feeds:
+            feed.publish_due(time_s, simulation.data)

@@ -210,7 +210,7 @@ def test_a_model_without_the_camera_is_refused(world):
 
 
 def test_a_state_too_large_to_send_is_refused(world, monkeypatch):
-    monkeypatch.setattr("arm_gazebo.camera_feed.FRAMING_BYTES", 1 << 30)
+    monkeypatch.setattr("arm_gazebo.state_feed.FRAMING_BYTES", 1 << 30)
     with pytest.raises(CameraError, match="too many for the cameras"):
         world.feed.set_model(world.model)
 

@@ -330,7 +330,8 @@ def test_the_process_ends_with_a_simulation_that_is_killed():
             "from arm_gazebo.camera_sensor import CameraSensor\n"
             "feed = CameraFeed([CameraSensor('eye', 'l', 'f')])\n"
             "feed.start()\n"
-            "print(feed._process.pid, flush=True)\n"
+            "import psutil\n"
+            "print(psutil.Process().children()[0].pid, flush=True)\n"
             "threading.Event().wait()\n",
         ],
         stdout=subprocess.PIPE,

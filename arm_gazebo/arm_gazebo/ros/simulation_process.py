@@ -1,4 +1,4 @@
-"""Puts the simulation together: model, hardware, controller manager, loop, clock, cameras.
+"""Puts the simulation together: model, hardware, controller manager, loop, clock, cameras, window.
 
 Start: everything is made while time stands still, then the loop goes. End: the services stop,
 the controllers are shut down on the loop, the loop is joined, and only then are nodes destroyed.
@@ -6,7 +6,7 @@ the controllers are shut down on the loop, the loop is joined, and only then are
 
 import logging
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -18,11 +18,13 @@ from arm_control.hardware_info import HardwareInfo, parse_hardware_info
 from arm_control.pacer import Pacer
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
+from arm_control.ros.manager_settings import ManagerSettings
 from arm_description.urdf import parse_urdf
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.camera_feed import CameraFeed
 from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.display import check_display
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.model_builder import build_model
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
@@ -31,6 +33,7 @@ from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settin
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
 from arm_gazebo.simulation_tick import SimulationTick
+from arm_gazebo.window_feed import WindowFeed
 from arm_node.discovery import answers_held_back
 from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess
@@ -49,54 +52,60 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
     Raises:
         GazeboError, ArmControlError, DescriptionError: it cannot be built as asked for.
     """
-    with answers_held_back():
-        node = Node(NODE_NAME)
-    process.executor.add_node(node)
-    settings = read_settings(node)
-    manager_node = ControllerManagerNode(arguments)
-    timing = physics_timing(manager_node.settings.update_rate, settings.physics_step_s)
-    hardware_info = _hardware_info(settings)
-    sensors = parse_cameras(settings.robot_description)
-    built = _build(settings, hardware_info, sensors, timing)
-    simulation = Simulation(built, timing, settings.hold_joints)
-    hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
-    manager = ControllerManager(hardware, manager_node.settings.update_rate)
-    manager.bring_up(
-        manager_node.settings.hardware_components_initial_state.unconfigured,
-        manager_node.settings.hardware_components_initial_state.inactive,
-    )
-    cameras = _camera_feed(sensors, settings, node.get_namespace())
-    tick = SimulationTick(manager, simulation, RosClockPublisher(node), cameras, timing.period_s)
-    pacer = Pacer(
-        timing.period_s,
-        real_time_factor=settings.real_time_factor,
-        print_warnings=manager_node.settings.overruns.print_warnings,
-    )
-    loop = ControlLoop(tick, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
-    loop.start(paused=True)
-    server = ControllerManagerServer(
-        manager_node,
-        manager,
-        loop,
-        process.executor,
-        robot_description=settings.robot_description,
-    )
-    try:
+    # What is made is taken down in reverse, from wherever the making stops. Nodes go last: one that
+    # goes while the executor looks at it takes the process along.
+    with ExitStack() as nodes, ExitStack() as ending:
+        ending.callback(process.join_spinning)
+        with answers_held_back():
+            node = Node(NODE_NAME)
+        process.executor.add_node(node)
+        settings = read_settings(node)
+        manager_node = ControllerManagerNode(arguments)
+        timing = physics_timing(manager_node.settings.update_rate, settings.physics_step_s)
+        hardware_info = _hardware_info(settings)
+        sensors = parse_cameras(settings.robot_description)
+        built = _build(settings, hardware_info, sensors, timing)
+        simulation = Simulation(built, timing, settings.hold_joints)
+        hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
+        manager = _manager(hardware, manager_node.settings)
+        feeds = [
+            ending.enter_context(closing(feed))
+            for feed in _feeds(sensors, settings, node.get_namespace())
+        ]
+        tick = SimulationTick(manager, simulation, RosClockPublisher(node), feeds, timing.period_s)
+        pacer = Pacer(
+            timing.period_s,
+            real_time_factor=settings.real_time_factor,
+            print_warnings=manager_node.settings.overruns.print_warnings,
+        )
+        loop = ControlLoop(tick, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
+        ending.enter_context(_standing_still(loop))
+        server = ControllerManagerServer(
+            manager_node,
+            manager,
+            loop,
+            process.executor,
+            robot_description=settings.robot_description,
+        )
+        nodes.callback(server.destroy_nodes)
+        ending.callback(server.shutdown)
         server.start_controllers(settings.spawn)
         loop.resume()
-        if cameras is not None:
-            cameras.start(built.model)
-        _supervise(node, pacer, simulation, hardware, cameras)
+        for feed in feeds:
+            feed.start(built.model)
+        _supervise(node, pacer, simulation, hardware, feeds)
+        yield
+
+
+@contextmanager
+def _standing_still(loop: ControlLoop) -> Iterator[None]:
+    """Start the loop, whose time stands still at first; end it and wait for that."""
+    loop.start(paused=True)
+    try:
         yield
     finally:
-        if cameras is not None:
-            cameras.close()
-        server.shutdown()
         loop.stop()
         loop.join(LOOP_JOIN_TIMEOUT_S)
-        # A node that goes while the executor looks at it takes the process along.
-        process.join_spinning()
-        server.destroy_nodes()
 
 
 def _hardware_info(settings: SimulationSettings) -> tuple[HardwareInfo, ...]:
@@ -133,12 +142,29 @@ def _build(
     return built
 
 
-def _camera_feed(
+def _manager(hardware: Sequence[SimulatedHardware], settings: ManagerSettings) -> ControllerManager:
+    manager = ControllerManager(hardware, settings.update_rate)
+    manager.bring_up(
+        settings.hardware_components_initial_state.unconfigured,
+        settings.hardware_components_initial_state.inactive,
+    )
+    return manager
+
+
+def _feeds(
     sensors: tuple[CameraSensor, ...], settings: SimulationSettings, namespace: str
-) -> CameraFeed | None:
-    if not sensors:
-        return None
-    return CameraFeed(sensors, settings.render_backend, settings.seed, ("-r", f"__ns:={namespace}"))
+) -> Iterator[CameraFeed | WindowFeed]:
+    """Make what shows the simulation.
+
+    Raises:
+        WindowError: a window is asked for where there is no display.
+    """
+    if not settings.headless:
+        check_display()
+        yield WindowFeed()
+    if sensors:
+        ros_arguments = ("-r", f"__ns:={namespace}")
+        yield CameraFeed(sensors, settings.render_backend, settings.seed, ros_arguments)
 
 
 def _supervise(
@@ -146,9 +172,9 @@ def _supervise(
     pacer: Pacer,
     simulation: Simulation,
     hardware: Sequence[SimulatedHardware],
-    cameras: CameraFeed | None,
+    feeds: Sequence[CameraFeed | WindowFeed],
 ) -> None:
-    """Now and then: pass on what the loop may not log itself, revive the camera process."""
+    """Now and then: pass on what the loop may not log itself, look after child processes."""
 
     def look() -> None:
         for component in hardware:
@@ -156,8 +182,8 @@ def _supervise(
                 logger.warning("%s", warning)
         for failure in simulation.take_failures():
             logger.error("%s", failure)
-        if cameras is not None:
-            cameras.supervise()
+        for feed in feeds:
+            feed.supervise()
         factor = pacer.statistics.achieved_factor
         if factor:  # 0 until there is something to average
             notify(f"STATUS=real-time factor {factor:.2f}")
