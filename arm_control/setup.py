@@ -35,6 +35,11 @@ setup(
     ),
     license="Apache-2.0",
     entry_points={
-        "console_scripts": ["spawner = arm_control.spawner_node:main"],
+        "console_scripts": [
+            "ros2_control_node = arm_control.ros2_control_node:main",
+            "spawner = arm_control.spawner_node:main",
+            "unspawner = arm_control.unspawner_node:main",
+            "hardware_spawner = arm_control.hardware_spawner_node:main",
+        ],
     },
 )

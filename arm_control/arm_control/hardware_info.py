@@ -34,13 +34,32 @@ class InterfaceInfo:
 
 
 @dataclass(frozen=True, slots=True)
+class MimicInfo:
+    """What a joint follows: its position is multiplier * leader + offset, in rad or m."""
+
+    leader: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class JointInfo:
-    """A joint of a component; sensors and GPIOs have the same shape."""
+    """A joint of a component; sensors and GPIOs have the same shape.
+
+    Attributes:
+        name: of the joint.
+        command_interfaces: in document order.
+        state_interfaces: in document order.
+        parameters: its `<param>`s, as text.
+        mimic: from the URDF's joint of that name; None where it follows no other, or where
+            mimic="false" says so.
+    """
 
     name: str
     command_interfaces: tuple[InterfaceInfo, ...] = ()
     state_interfaces: tuple[InterfaceInfo, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
+    mimic: MimicInfo | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +74,7 @@ class HardwareInfo:
         sensors: in document order; they have no command interfaces.
         gpios: in document order.
         parameters: the `<param>`s of `<hardware>`, as text.
+        group: components of one group are configured, then activated, together; empty for none.
         line: where the block starts in the description.
     """
 
@@ -65,6 +85,7 @@ class HardwareInfo:
     sensors: tuple[JointInfo, ...] = ()
     gpios: tuple[JointInfo, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
+    group: str = ""
     line: int = 0
 
     @property
@@ -100,8 +121,10 @@ def parse_hardware_info(urdf_xml: str) -> tuple[HardwareInfo, ...]:
         arm_description.errors.XmlError: the text is not XML.
     """
     components: dict[str, HardwareInfo] = {}
-    for element in parse_xml(urdf_xml).iterchildren("ros2_control"):
-        component = _parse_component(element)
+    robot = parse_xml(urdf_xml)
+    mimics = _parse_mimics(robot)
+    for element in robot.iterchildren("ros2_control"):
+        component = _parse_component(element, mimics)
         if component.name in components:
             raise HardwareInfoError(
                 f"line {component.line}: a second <ros2_control> component is named "
@@ -111,7 +134,25 @@ def parse_hardware_info(urdf_xml: str) -> tuple[HardwareInfo, ...]:
     return tuple(components.values())
 
 
-def _parse_component(element: "etree._Element") -> HardwareInfo:
+def _parse_mimics(robot: "etree._Element") -> dict[str, MimicInfo]:
+    """Return what the URDF's joints say they follow, by joint."""
+    mimics: dict[str, MimicInfo] = {}
+    for joint in robot.iterchildren("joint"):
+        mimic = joint.find("mimic")
+        if mimic is None:
+            continue
+        where = f"line {mimic.sourceline}: %s of <mimic> in <joint name='{joint.get('name')}'>"
+        numbers = dict(mimic.attrib)
+        multiplier = _parse_number(numbers, "multiplier", where)
+        mimics[joint.get("name") or ""] = MimicInfo(
+            mimic.get("joint") or "",
+            1.0 if multiplier is None else multiplier,
+            _parse_number(numbers, "offset", where) or 0.0,
+        )
+    return mimics
+
+
+def _parse_component(element: "etree._Element", mimics: Mapping[str, MimicInfo]) -> HardwareInfo:
     name = _required_name(element, "<ros2_control>")
     where = f"<ros2_control name='{name}'>"
     kind = element.get("type", "")
@@ -131,15 +172,21 @@ def _parse_component(element: "etree._Element") -> HardwareInfo:
         name=name,
         type=kind,
         plugin=plugin,
-        joints=_parse_parts(element, "joint", where),
+        joints=_parse_parts(element, "joint", where, mimics),
         sensors=_parse_parts(element, "sensor", where),
         gpios=_parse_parts(element, "gpio", where),
         parameters=_parse_parameters(hardware, where),
+        group=(hardware.findtext("group") or "").strip(),
         line=element.sourceline or 0,
     )
 
 
-def _parse_parts(element: "etree._Element", tag: str, where: str) -> tuple[JointInfo, ...]:
+def _parse_parts(
+    element: "etree._Element",
+    tag: str,
+    where: str,
+    mimics: Mapping[str, MimicInfo] | None = None,
+) -> tuple[JointInfo, ...]:
     parts: dict[str, JointInfo] = {}
     for child in element.iterchildren(tag):
         name = _required_name(child, f"<{tag}> of {where}")
@@ -153,6 +200,7 @@ def _parse_parts(element: "etree._Element", tag: str, where: str) -> tuple[Joint
             command_interfaces=_parse_interfaces(child, "command_interface", here),
             state_interfaces=_parse_interfaces(child, "state_interface", here),
             parameters=_parse_parameters(child, here),
+            mimic=None if child.get("mimic") == "false" else (mimics or {}).get(name),
         )
     return tuple(parts.values())
 

@@ -7,21 +7,26 @@ built in, because that takes tens of milliseconds.
 """
 
 import importlib
+import logging
 from typing import TYPE_CHECKING, Any
 
 from arm_control.controller import Controller
-from arm_control.errors import RegistryError
+from arm_control.errors import ArmControlError, RegistryError
 from arm_control.hardware import Hardware
 from arm_control.hardware_info import HardwareInfo
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+logger = logging.getLogger(__name__)
+
 CONTROLLER_GROUP = "arm_control.controllers"
 HARDWARE_GROUP = "arm_control.hardware"
 
 _FORWARD = "arm_control.forward_command_controller"
+_GRIPPER = "arm_control.gripper"
 _CONTROLLERS = {
+    "effort_controllers/GripperActionController": f"{_GRIPPER}:EffortGripperController",
     "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
     "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
     "forward_command_controller/MultiInterfaceForwardCommandController": (
@@ -33,10 +38,14 @@ _CONTROLLERS = {
     "joint_trajectory_controller/JointTrajectoryController": (
         "arm_control.joint_trajectory:JointTrajectoryController"
     ),
+    "parallel_gripper_action_controller/GripperActionController": (
+        f"{_GRIPPER}:ParallelGripperController"
+    ),
+    "position_controllers/GripperActionController": f"{_GRIPPER}:PositionGripperController",
     "position_controllers/JointGroupPositionController": f"{_FORWARD}:JointGroupPositionController",
     "velocity_controllers/JointGroupVelocityController": f"{_FORWARD}:JointGroupVelocityController",
 }
-_HARDWARE = {"mock_components/GenericSystem": "arm_control.testing:FakeHardware"}
+_HARDWARE = {"mock_components/GenericSystem": "arm_control.mock_components:GenericSystem"}
 
 
 def controller_types() -> tuple[str, ...]:
@@ -63,9 +72,21 @@ def create_hardware(info: HardwareInfo) -> Hardware:
     """Make the driver that a hardware component's plugin names.
 
     Raises:
-        RegistryError: nothing offers the plugin, or what does cannot be imported.
+        RegistryError: nothing offers the plugin, or what does cannot be imported or made.
+        ArmControlError: the driver refuses what the description says.
     """
-    return _find(info.plugin, _HARDWARE, HARDWARE_GROUP, "hardware plugin")(info)
+    make = _find(info.plugin, _HARDWARE, HARDWARE_GROUP, "hardware plugin")
+    try:
+        return make(info)
+    except ArmControlError:
+        raise
+    except Exception as error:
+        # A driver is outside code, so anything may come out of it.
+        logger.exception("hardware component '%s' cannot be made", info.name)
+        raise RegistryError(
+            f"hardware component '{info.name}' cannot be made by '{info.plugin}': "
+            f"{type(error).__name__}: {error}"
+        ) from error
 
 
 def load_object(path: str) -> Any:

@@ -25,7 +25,7 @@ class ManualClock:
 
 
 class FakeHardware:
-    """Hardware whose states follow its commands at once (mock_components/GenericSystem).
+    """Hardware whose states follow its commands at once, and which fails on demand.
 
     A state interface with the name of a command interface shows the last command; any other keeps
     its initial value. Tests make it fail by setting the attributes below.

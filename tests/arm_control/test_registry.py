@@ -9,13 +9,13 @@ from arm_control import Controller
 from arm_control.errors import RegistryError
 from arm_control.forward_command_controller import JointGroupPositionController
 from arm_control.hardware_info import HardwareInfo
+from arm_control.mock_components import GenericSystem
 from arm_control.registry import (
     controller_class,
     controller_types,
     create_hardware,
     load_object,
 )
-from arm_control.testing import FakeHardware
 
 
 @pytest.fixture
@@ -74,10 +74,16 @@ def test_what_cannot_be_imported_says_why(installed: list[EntryPoint], path: str
 
 def test_hardware_is_made_by_its_plugin() -> None:
     info = HardwareInfo("H", "system", "mock_components/GenericSystem")
-    assert isinstance(create_hardware(info), FakeHardware)
+    assert isinstance(create_hardware(info), GenericSystem)
 
 
 def test_an_unknown_plugin_is_refused(installed: list[Any]) -> None:
     info = HardwareInfo("H", "system", "x/Y")
     with pytest.raises(RegistryError, match="no hardware plugin 'x/Y'; there is mock_components/"):
         create_hardware(info)
+
+
+def test_hardware_that_cannot_be_made_says_why(installed: list[Any]) -> None:
+    installed.append(EntryPoint("x/Y", "builtins:int", "arm_control.hardware"))
+    with pytest.raises(RegistryError, match="component 'H' cannot be made by 'x/Y': TypeError: "):
+        create_hardware(HardwareInfo("H", "system", "x/Y"))

@@ -32,6 +32,9 @@ DEFAULT_SWITCH_TIMEOUT_S = 1.0
 START_SWITCH_TIMEOUT_S = 5.0
 EXECUTOR_TIMEOUT_S = 1.0
 
+USE_SIM_TIME = ("--param", "use_sim_time:=true")
+"""A controller goes by the manager's clock, wherever the manager was told of it."""
+
 
 class ControlPlane:
     """What the manager's services do, and what a program may do without services.
@@ -218,6 +221,7 @@ class ControlPlane:
         arguments = controller_arguments(
             self._node.arguments,
             [
+                *(USE_SIM_TIME if self._node.get_parameter("use_sim_time").value else ()),
                 *self._node.strings(f"{name}.node_options_args"),
                 *(
                     argument

@@ -7,27 +7,22 @@ from collections.abc import Sequence
 from controller_manager_msgs.msg import ControllerManagerActivity
 from rclpy.executors import Executor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from std_msgs.msg import String
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
 from arm_control.errors import ArmControlError
 from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.manager_diagnostics import ManagerDiagnostics
+from arm_control.refusals import Refusals
 from arm_control.ros.control_plane import ControlPlane
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.convert import activity_message
+from arm_control.ros.description_topic import LATCHED_QOS, DescriptionTopic
 from arm_control.ros.executor_thread import ExecutorThread
 from arm_control.ros.manager_services import ManagerServices
 from arm_control.ros.node_arguments import controller_arguments
 
 logger = logging.getLogger(__name__)
-
-LATCHED_QOS = QoSProfile(
-    depth=1,
-    reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.TRANSIENT_LOCAL,
-)
 
 
 class ControllerManagerServer:
@@ -46,6 +41,7 @@ class ControllerManagerServer:
         executor: Executor,
         *,
         robot_description: str = "",
+        descriptions: DescriptionTopic | None = None,
     ) -> None:
         """Offer the services.
 
@@ -55,11 +51,12 @@ class ControllerManagerServer:
             loop: runs it; started already, paused or not.
             executor: serves the nodes of controllers and components.
             robot_description: the URDF that the hardware was made from.
+            descriptions: the node's subscription, where the URDF came that way.
         """
         self._node = node
         self._manager = manager
         self._executor = executor
-        self._robot_description = robot_description
+        self._descriptions = descriptions or DescriptionTopic(node, robot_description)
         self._plane = ControlPlane(
             node,
             manager,
@@ -72,12 +69,13 @@ class ControllerManagerServer:
             for component in self._plane.on_loop(manager.list_hardware_components)
         ]
         self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED_QOS)
-        self._services = ManagerServices(node, self._plane, manager)
-        self._description_subscription = node.create_subscription(
-            String, "robot_description", self._take_description, LATCHED_QOS
-        )
+        refusals = Refusals()
+        self._services = ManagerServices(node, self._plane, manager, refusals)
         self._plane.on_loop(lambda: manager.add_observer(self))
         self._plane.on_loop(self.activity_changed)
+        diagnostics = self._plane.on_loop(lambda: ManagerDiagnostics(manager, loop, refusals))
+        self._plane.on_loop(lambda: manager.add_observer(diagnostics))
+        node.health.watch(diagnostics)
         self._thread = ExecutorThread("controller manager services")
         self._thread.start(node)
 
@@ -91,6 +89,7 @@ class ControllerManagerServer:
 
     def shutdown(self) -> None:
         """Serve no more; deactivate and finalize controllers and components."""
+        self._node.health.stop()
         self._thread.stop()
         try:
             self._plane.shutdown()
@@ -128,11 +127,3 @@ class ControllerManagerServer:
         )
         self._executor.add_node(node)
         return node
-
-    def _take_description(self, message: String) -> None:
-        if message.data != self._robot_description:
-            logger.warning(
-                "a robot description other than the one in use was published on %s. "
-                "Ignoring attempt to reload a robot description.",
-                self._description_subscription.topic_name,
-            )

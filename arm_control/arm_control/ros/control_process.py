@@ -1,0 +1,168 @@
+"""Puts a stand-alone controller manager together: description, hardware, manager, loop, services.
+
+Start: the description is waited for, then everything is made in the main thread. End: the services
+stop, the controllers are shut down on the loop, the loop is joined, and only then are nodes
+destroyed.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+
+from rclpy.executors import SingleThreadedExecutor
+
+from arm_control.clock import SystemClock
+from arm_control.control_cycle import ControlCycle
+from arm_control.control_loop import ControlLoop
+from arm_control.controller_manager import ControllerManager
+from arm_control.errors import ArmControlError, HardwareInfoError
+from arm_control.hardware import Hardware
+from arm_control.hardware_info import parse_hardware_info
+from arm_control.pacer import Pacer
+from arm_control.registry import create_hardware
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.controller_manager_server import ControllerManagerServer
+from arm_control.ros.description_topic import DescriptionTopic
+from arm_control.ros.simulated_clock import DeadlineClock, SimulatedClock
+from arm_control.throttle import Throttle
+from arm_description.errors import DescriptionError
+from arm_node.discovery import answers_held_back
+from arm_node.process import EXIT_FAILED, NodeProcess
+
+LISTENING_S = 0.1
+REMINDER_INTERVAL_S = 1.0
+LOOP_JOIN_TIMEOUT_S = 5.0
+CATCH_UP_PERIODS = 0.5
+"""A cycle that was missed is left out: hardware has no use for commands in quick succession."""
+
+logger = logging.getLogger("controller_manager")
+
+
+@contextmanager
+def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[None]:
+    """Run a controller manager on the hardware of the first description that can be used.
+
+    Raises:
+        ArmControlError: a parameter makes no sense, or hardware did not reach its initial state.
+    """
+    with ExitStack() as nodes, ExitStack() as ending:
+        # A node that goes while the executor looks at it takes the process along.
+        ending.callback(process.join_spinning)
+        with answers_held_back():
+            node = ControllerManagerNode(arguments)
+        nodes.callback(node.destroy_node)
+        descriptions = DescriptionTopic(node)
+        found = _wait_for_robot(process, node, descriptions)
+        if found is not None:
+            description, hardware = found
+            manager = _manager(hardware, node)
+            loop = _loop(process, node, manager)
+            ending.callback(loop.join, LOOP_JOIN_TIMEOUT_S)
+            ending.callback(loop.stop)
+            server = ControllerManagerServer(
+                node,
+                manager,
+                loop,
+                process.executor,
+                robot_description=description,
+                descriptions=descriptions,
+            )
+            nodes.pop_all()
+            nodes.callback(server.destroy_nodes)
+            ending.callback(server.shutdown)
+        yield
+
+
+def _wait_for_robot(
+    process: NodeProcess, node: ControllerManagerNode, descriptions: DescriptionTopic
+) -> tuple[str, list[Hardware]] | None:
+    """Return the first description that can be used and its hardware; None where the end came."""
+    description = _description_parameter(node)
+    reminder = Throttle(REMINDER_INTERVAL_S)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    logger.info("Subscribing to '%s' topic for robot description.", descriptions.name)
+    try:
+        while not process.stopping:
+            if description is not None:
+                hardware = _hardware(description)
+                if hardware:
+                    descriptions.use(description)
+                    return description, hardware
+            elif reminder.permits():
+                logger.warning(
+                    "Waiting for data on 'robot_description' topic to finish initialization"
+                )
+            executor.spin_once(timeout_sec=LISTENING_S)
+            description = descriptions.take()
+        return None
+    finally:
+        executor.remove_node(node)
+        executor.shutdown()
+
+
+def _description_parameter(node: ControllerManagerNode) -> str | None:
+    given = node.given_parameters().get("robot_description")
+    if not given:
+        return None
+    logger.warning(
+        "[Deprecated] Passing the robot description parameter directly to the control_manager node "
+        "is deprecated. Use the 'robot_description' topic from 'robot_state_publisher' instead."
+    )
+    return str(given)
+
+
+def _hardware(description: str) -> list[Hardware]:
+    """Make the hardware of a description; where that cannot be, say why and return none."""
+    try:
+        infos = parse_hardware_info(description)
+        if not infos:
+            raise HardwareInfoError(
+                "it has no <ros2_control> block, so nothing says what hardware there is"
+            )
+        return [create_hardware(info) for info in infos]
+    except (ArmControlError, DescriptionError) as error:
+        logger.error(
+            "The robot description cannot be used: %s. Correct it and publish it again.", error
+        )
+        return []
+
+
+def _manager(hardware: Sequence[Hardware], node: ControllerManagerNode) -> ControllerManager:
+    settings = node.settings
+    manager = ControllerManager(hardware, settings.update_rate)
+    manager.bring_up(
+        settings.hardware_components_initial_state.unconfigured,
+        settings.hardware_components_initial_state.inactive,
+    )
+    logger.info("update rate is %d Hz", settings.update_rate)
+    return manager
+
+
+def _loop(
+    process: NodeProcess, node: ControllerManagerNode, manager: ControllerManager
+) -> ControlLoop:
+    """Start the loop; in simulation time it stands still until the first /clock."""
+    simulated = SimulatedClock() if node.get_parameter("use_sim_time").value else None
+    period_s = 1.0 / manager.update_rate_hz
+    pacer = Pacer(
+        period_s,
+        clock=DeadlineClock(simulated) if simulated else None,
+        catch_up_s=CATCH_UP_PERIODS * period_s,
+        print_warnings=node.settings.overruns.print_warnings and not simulated,
+    )
+    cycle = ControlCycle(manager, simulated or SystemClock())
+    loop = ControlLoop(cycle, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
+    loop.start(paused=simulated is not None)
+    if simulated is not None:
+        simulated.listen(
+            process.executor,
+            on_start=loop.resume,
+            on_advance=lambda: loop.call(_look_at_the_clock),
+            on_set_back=lambda: loop.call(pacer.restart),
+        )
+    return loop
+
+
+def _look_at_the_clock() -> None:
+    """Do nothing: that the loop wakes for it is enough."""

@@ -1,0 +1,72 @@
+"""/clock as the clock of a control loop."""
+
+from collections.abc import Callable
+from math import isnan, nan
+
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock as ClockMessage
+
+from arm_control.clock import Clock
+
+NODE_NAME = "_controller_manager_clock"
+CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+ROUNDING_S = 1e-6
+
+
+class SimulatedClock:
+    """The time that a simulation publishes; see `arm_control.clock.Clock`.
+
+    Its node is a hidden one of its own. That of the manager would not do: its services block the
+    thread that spins it, and time would stand still meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._time_s = nan
+
+    def now_s(self) -> float:
+        """Return the latest time; NaN before the first message."""
+        return self._time_s
+
+    def listen(
+        self,
+        executor: Executor,
+        *,
+        on_start: Callable[[], object],
+        on_advance: Callable[[], object],
+        on_set_back: Callable[[], object],
+    ) -> None:
+        """Subscribe.
+
+        Args:
+            executor: runs the callbacks.
+            on_start: called at the first message.
+            on_advance: called at each one after it.
+            on_set_back: called instead where time was set back.
+        """
+
+        def take(message: ClockMessage) -> None:
+            time_s = message.clock.sec + message.clock.nanosec * 1e-9
+            last_s, self._time_s = self._time_s, time_s
+            if isnan(last_s):
+                on_start()
+            elif time_s < last_s:
+                on_set_back()
+            else:
+                on_advance()
+
+        node = Node(NODE_NAME, use_global_arguments=False, enable_rosout=False)
+        node.create_subscription(ClockMessage, "/clock", take, CLOCK_QOS)
+        executor.add_node(node)
+
+
+class DeadlineClock:
+    """A clock a little ahead of another, for deadlines that shall be met in spite of rounding."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+
+    def now_s(self) -> float:
+        """Return the other clock's time and a microsecond."""
+        return self._clock.now_s() + ROUNDING_S
