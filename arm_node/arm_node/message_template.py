@@ -10,12 +10,12 @@ is assumed, so an encoding that does not keep numbers in aligned words is refuse
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from builtin_interfaces.msg import Time
+from builtin_interfaces.msg import Duration, Time
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message, serialize_message
@@ -49,7 +49,7 @@ class _Field:
 class MessageTemplate:
     """A message of fixed names and lengths with writable stamps and float64 values.
 
-    One thread at a time. Numbers other than stamps and float64 stay as in the prototype.
+    One thread at a time. Numbers other than times and float64 stay as in the prototype.
 
         template = MessageTemplate(JointState(name=names, position=[0.0] * len(names)))
         position = template.doubles("position")    # a view: write into it
@@ -77,9 +77,15 @@ class MessageTemplate:
         self._payload = self._storage[start : start + self._size]
         self._payload[:] = np.frombuffer(self._serialized, dtype=np.uint8)
         self._float64 = self._storage[8:].view(np.float64)
+        self._int32 = self._storage[8:].view(np.int32)
         stamps = self._locate(_stamp_fields, np.dtype(np.uint32), _TAGS_32, 20)
-        self._seconds = (self._storage[8:].view(np.int32), stamps[0::2])
+        self._seconds = (self._int32, stamps[0::2])
         self._nanoseconds = (self._storage[8:].view(np.uint32), stamps[1::2])
+
+    @property
+    def int32(self) -> NDArray[np.int32]:
+        """The whole body as int32 words; write only at what `time_indices` returns."""
+        return self._int32
 
     @property
     def float64(self) -> NDArray[np.float64]:
@@ -99,6 +105,19 @@ class MessageTemplate:
         """
         return self._locate(
             lambda message: _float64_fields(message, path), np.dtype(np.uint64), _TAGS_64, 32
+        )
+
+    def time_indices(self, path: str) -> NDArray[np.intp]:
+        """Return where in `int32` the seconds and the nanoseconds of a Time or Duration are.
+
+        Args:
+            path: fields parted by dots, as for `indices`: "points[0].time_from_start".
+
+        Raises:
+            MessageLayoutError: no such field, or not to be found in the bytes.
+        """
+        return self._locate(
+            lambda message: _time_fields(message, path), np.dtype(np.uint32), _TAGS_32, 20
         )
 
     def doubles(self, path: str) -> NDArray[np.float64]:
@@ -198,12 +217,25 @@ def _messages(value: Message | Sequence[Message]) -> Sequence[Message]:
 
 
 def _float64_fields(message: Message, path: str) -> Iterator[_Field]:
+    *steps, last = path.split(".")
+    for owner in _walk(message, steps):
+        yield from _numbers_at(owner, last)
+
+
+def _time_fields(message: Message, path: str) -> Iterator[_Field]:
+    for time in _walk(message, path.split(".")):
+        if not isinstance(time, Time | Duration):
+            raise MessageLayoutError(
+                f"'{path}' is {type(time).__name__}, neither time nor duration"
+            )
+        yield from (_Field(time, "sec"), _Field(time, "nanosec"))
+
+
+def _walk(message: Message, steps: Iterable[str]) -> list[Message]:
     owners = [message]
-    steps = path.split(".")
-    for step in steps[:-1]:
+    for step in steps:
         owners = [inner for owner in owners for inner in _messages_at(owner, step)]
-    for owner in owners:
-        yield from _numbers_at(owner, steps[-1])
+    return owners
 
 
 def _messages_at(owner: Message, step: str) -> list[Message]:

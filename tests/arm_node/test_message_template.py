@@ -12,7 +12,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, JointState
 from std_msgs.msg import Float64MultiArray, String
 from tf2_msgs.msg import TFMessage
-from trajectory_msgs.msg import JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_node.message_template import MessageLayoutError, MessageTemplate
 
@@ -177,6 +177,25 @@ def test_a_duration_is_no_stamp():
     template = MessageTemplate(point)
     template.set_stamps(STAMP_NS)
     assert written(template, JointTrajectoryPoint) == point
+
+
+def test_durations_and_times_are_found_by_their_path():
+    prototype = JointTrajectory(
+        joint_names=["a"], points=[JointTrajectoryPoint(positions=[0.0]) for _ in range(2)]
+    )
+    template = MessageTemplate(prototype)
+    template.int32[template.time_indices("points[1].time_from_start")] = (-1, 750_000_000)
+    template.int32[template.time_indices("header.stamp")] = (3, 4)
+    message = written(template, JointTrajectory)
+    first, second = (point.time_from_start for point in message.points)
+    assert (first.sec, first.nanosec) == (0, 0)
+    assert (second.sec, second.nanosec) == (-1, 750_000_000)
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (3, 4)
+
+
+def test_a_path_that_leads_to_no_time_is_refused():
+    with pytest.raises(MessageLayoutError, match="'header' is Header, neither time nor duration"):
+        MessageTemplate(joint_state(["a"])).time_indices("header")
 
 
 def test_a_message_that_is_only_text():

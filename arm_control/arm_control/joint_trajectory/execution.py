@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from arm_control.joint_trajectory.motion import RESOLUTION_S
 from arm_control.joint_trajectory.plans import Plan
+from arm_control.joint_trajectory.state import Progress
 from arm_control.joint_trajectory.tolerances import Tolerances
 
 
@@ -30,7 +31,11 @@ class Execution:
         tolerances: what to check meanwhile.
         serves_goal: whether a goal ends with it.
         is_stop: whether it only brings the joints to rest: in real time, without a time-out.
+        lead_s: how long after its own start the plan's trajectory begins; negative where the
+            trajectory should have begun before.
         elapsed_s: the plan's time.
+        age_s: the controller's time since the plan's start: ahead of `elapsed_s` where the speed
+            is scaled down.
         is_first: whether this is its first cycle.
     """
 
@@ -38,17 +43,25 @@ class Execution:
     tolerances: Tolerances
     serves_goal: bool = False
     is_stop: bool = False
+    lead_s: float = 0.0
     elapsed_s: float = 0.0
+    age_s: float = 0.0
     is_first: bool = True
 
     def advance(self, period_s: float, speed_scaling: float) -> None:
         """Let a period pass."""
         self.elapsed_s = self.elapsed_after(period_s, speed_scaling)
+        self.age_s += period_s
         self.is_first = False
 
     def elapsed_after(self, period_s: float, speed_scaling: float) -> float:
         """Return the plan's time when a period will have passed."""
         return self.elapsed_s + (period_s if self.is_stop else period_s * speed_scaling)
+
+    @property
+    def progress(self) -> Progress:
+        """How far it has got, in times since the start of its trajectory."""
+        return Progress(self.elapsed_s - self.lead_s, self.age_s - self.lead_s)
 
     @property
     def late_s(self) -> float:

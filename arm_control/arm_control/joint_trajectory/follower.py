@@ -80,6 +80,7 @@ class Follower:
         self._speed_scaling = speed_scaling
         self._sink = sink
         self._logger = logger
+        self._checked_rows = configuration.wiring.checked_rows
         self._commander = Commander(configuration, commands)
         self._state = ControllerState(StateLayout.of(configuration.wiring))
         self._state.speed_scaling = speed_scaling.factor
@@ -112,11 +113,13 @@ class Follower:
             self._execution.advance(period_s, state.speed_scaling)
         else:
             self._execution, self._next = self._next(), None
-        wanted = self._execution.plan.sample(self._execution.elapsed_s)
+        execution = self._execution
+        state.progress = execution.progress
+        wanted = execution.plan.sample(execution.elapsed_s)
         state.reference[:] = wanted[: len(state.reference)]
         error = self._compute_error()
         self._goals.give_feedback(state, period_s)
-        self._conclude(self._execution.judge(error), error)
+        self._conclude(execution.judge(error), error)
         self._command(period_s)
         if self._sink is not None:
             self._sink.publish_state(state)
@@ -142,7 +145,7 @@ class Follower:
     def _compute_error(self) -> NDArray[np.float64]:
         """Fill in the errors, and return the rows that count."""
         state, model = self._state, self._configuration.model
-        rows = self._configuration.wiring.checked_rows
+        rows = self._checked_rows
         error = np.subtract(state.reference[:rows], state.feedback[:rows], out=state.error[:rows])
         if model.turns:
             way = shortest_way(state.feedback[POSITION], state.reference[POSITION])
@@ -210,8 +213,12 @@ class Follower:
         self._next = begin
 
     def _follow(self, trajectory: Trajectory, goal: GoalRequest | None = None) -> Execution:
-        tolerances = self._tolerances(goal)
-        return Execution(self._plan(trajectory), tolerances, serves_goal=goal is not None)
+        return Execution(
+            self._plan(trajectory),
+            self._tolerances(goal),
+            serves_goal=goal is not None,
+            lead_s=trajectory.offset_s(self.time_s or 0.0),
+        )
 
     def _tolerances(self, goal: GoalRequest | None) -> Tolerances:
         tolerances = self._configuration.tolerances

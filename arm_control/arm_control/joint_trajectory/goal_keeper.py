@@ -45,7 +45,11 @@ class GoalKeeper:
         self._sink.publish_feedback(
             self.goal.id,
             Feedback(
-                state.time_s, state.reference.copy(), state.feedback.copy(), state.error.copy()
+                state.time_s,
+                state.progress,
+                state.reference.copy(),
+                state.feedback.copy(),
+                state.error.copy(),
             ),
         )
 

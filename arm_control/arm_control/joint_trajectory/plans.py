@@ -17,6 +17,7 @@ from arm_control.joint_trajectory.motion import (
     RESOLUTION_S,
     ROWS,
     VELOCITY,
+    at_rest,
 )
 from arm_control.joint_trajectory.spline import Spline
 
@@ -102,7 +103,7 @@ class StopPlan:
     A joint stops after |v| / a, having gone v |v| / (2 a).
     """
 
-    __slots__ = ("_deceleration", "_position", "_stop_s", "_velocity", "end_s")
+    __slots__ = ("_deceleration", "_position", "_rest", "_stop_s", "_velocity", "end_s")
 
     def __init__(self, position: Array, velocity: Array, deceleration: Array) -> None:
         """Take the state to stop from.
@@ -117,6 +118,7 @@ class StopPlan:
         self._deceleration = np.copysign(deceleration, velocity)
         self._stop_s = velocity / self._deceleration
         self.end_s = float(self._stop_s.max(initial=0.0))
+        self._rest = at_rest(position + 0.5 * velocity * self._stop_s)
 
     @classmethod
     def hold(cls, position: Array) -> "StopPlan":
@@ -125,6 +127,8 @@ class StopPlan:
 
     def sample(self, time_s: float) -> NDArray[np.float64]:
         """Return the motion at a time."""
+        if time_s >= self.end_s:
+            return self._rest.copy()
         t = np.minimum(self._stop_s, time_s)
         motion = np.zeros((ROWS, len(t)))
         motion[POSITION] = self._position + t * (self._velocity - 0.5 * t * self._deceleration)

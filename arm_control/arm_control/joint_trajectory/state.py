@@ -1,7 +1,7 @@
 """What the controller tells of itself in every cycle."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,26 @@ class StateLayout:
         )
 
 
+class Progress(NamedTuple):
+    """How far a trajectory has got, negative before its start; all that is `time_from_start`.
+
+    A hold and a stop count from their own start. A tuple, since there is one in every cycle.
+
+    Attributes:
+        reference_s: the trajectory's time, which the reference belongs to.
+        feedback_s: the controller's time since the trajectory's start; more than `reference_s`
+            where the speed was scaled down.
+    """
+
+    reference_s: float
+    feedback_s: float
+
+    @property
+    def error_s(self) -> float:
+        """How far the trajectory is ahead of the clock."""
+        return self.reference_s - self.feedback_s
+
+
 class ControllerState:
     """The present state: wanted, measured, commanded. Loop thread; copy what is to be kept.
 
@@ -57,6 +77,7 @@ class ControllerState:
         error: reference minus feedback.
         output: the commands.
         time_s: the controller's time.
+        progress: how far the trajectory has got.
         speed_scaling: how fast trajectory time runs.
     """
 
@@ -65,6 +86,7 @@ class ControllerState:
         "feedback",
         "layout",
         "output",
+        "progress",
         "reference",
         "speed_scaling",
         "time_s",
@@ -79,6 +101,7 @@ class ControllerState:
         self.values = np.zeros((int(ends[-1]), len(layout.joints)))
         self.reference, self.feedback, self.error, self.output = np.split(self.values, ends[:-1])
         self.time_s = 0.0
+        self.progress = Progress(0.0, 0.0)
         self.speed_scaling = 1.0
 
 
@@ -88,12 +111,14 @@ class Feedback:
 
     Attributes:
         time_s: the controller's time.
+        progress: how far the trajectory has got.
         desired: rows as `StateLayout.reference`, shape (k, n).
         actual: rows as `StateLayout.feedback`.
         error: rows as `StateLayout.error`.
     """
 
     time_s: float
+    progress: Progress
     desired: NDArray[np.float64]
     actual: NDArray[np.float64]
     error: NDArray[np.float64]

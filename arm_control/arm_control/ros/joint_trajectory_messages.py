@@ -28,9 +28,25 @@ FIELD_OF_QUANTITY: dict[str, str] = dict(zip(QUANTITIES, FIELDS, strict=True))
 """The field of a JointTrajectoryPoint that holds a quantity: 'positions' for 'position'."""
 
 
+SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0
+"""What a Duration can hold."""
+
+
 def seconds_of(time: Time | Duration) -> float:
     """Return a stamp or a duration in seconds; to the nanosecond where it is below some months."""
     return time.sec + time.nanosec * 1e-9
+
+
+def duration_parts(time_s: float) -> tuple[int, int]:
+    """Return seconds and nanoseconds of a Duration; the longest there is where it is longer."""
+    nanoseconds = round(min(max(time_s, SHORTEST_S), LONGEST_S) * 1e9)
+    return divmod(nanoseconds, 1_000_000_000)
+
+
+def duration_message(time_s: float) -> Duration:
+    """Return a time span as a message; the longest there is where it is longer."""
+    seconds, nanoseconds = duration_parts(time_s)
+    return Duration(sec=seconds, nanosec=nanoseconds)
 
 
 def trajectory_request(message: JointTrajectory) -> TrajectoryRequest:
@@ -76,6 +92,10 @@ def feedback_message(layout: StateLayout, feedback: Feedback) -> FollowJointTraj
         error=point_message(layout.error, feedback.error),
     )
     message.header.stamp = time_message(feedback.time_s)
+    progress = feedback.progress
+    message.desired.time_from_start = duration_message(progress.reference_s)
+    message.actual.time_from_start = duration_message(progress.feedback_s)
+    message.error.time_from_start = duration_message(progress.error_s)
     return message
 
 

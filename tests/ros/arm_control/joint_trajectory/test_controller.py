@@ -128,6 +128,8 @@ def test_the_state_has_what_is_wanted_measured_and_commanded(
     assert list(message.error.positions) == [0.0] * 4
     assert list(message.output.positions) == list(THERE)
     assert not message.output.velocities
+    parts = (message.reference, message.feedback)
+    assert [part.time_from_start.nanosec for part in parts] == [pytest.approx(100_000_000)] * 2
 
 
 def test_a_late_subscriber_gets_the_last_state_of_an_inactive_one(

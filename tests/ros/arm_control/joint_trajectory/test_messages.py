@@ -10,6 +10,7 @@ from arm_control.joint_trajectory import (
     Feedback,
     GoalResult,
     JointTolerance,
+    Progress,
     QueriedState,
     StateLayout,
 )
@@ -85,7 +86,13 @@ def test_a_result(messages: Any) -> None:
 
 
 def test_feedback(messages: Any) -> None:
-    feedback = Feedback(2.5, np.arange(6.0).reshape(3, 2), np.ones((2, 2)), np.full((2, 2), np.nan))
+    feedback = Feedback(
+        2.5,
+        Progress(0.75, 1.0),
+        np.arange(6.0).reshape(3, 2),
+        np.ones((2, 2)),
+        np.full((2, 2), np.nan),
+    )
     message = messages.feedback_message(LAYOUT, feedback)
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (2, 500_000_000)
     assert list(message.joint_names) == ["j0", "j1"]
@@ -94,6 +101,24 @@ def test_feedback(messages: Any) -> None:
     assert list(message.actual.velocities) == [1.0, 1.0]
     assert not message.actual.accelerations
     assert np.isnan(message.error.velocities).all()
+    parts = (message.desired, message.actual, message.error)
+    assert [messages.seconds_of(part.time_from_start) for part in parts] == [0.75, 1.0, -0.25]
+
+
+@pytest.mark.parametrize(
+    ("time_s", "parts"),
+    [
+        (1.5, (1, 500_000_000)),
+        (-0.25, (-1, 750_000_000)),
+        (1e12, (2**31 - 1, 0)),
+        (-1e12, (-(2**31), 0)),
+    ],
+)
+def test_a_duration_is_as_long_as_it_can_be(
+    messages: Any, time_s: float, parts: tuple[int, int]
+) -> None:
+    message = messages.duration_message(time_s)
+    assert (message.sec, message.nanosec) == parts
 
 
 def test_an_answer_of_a_controller_without_motion_has_no_names(messages: Any) -> None:
