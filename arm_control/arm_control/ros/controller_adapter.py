@@ -3,10 +3,12 @@
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
+from rclpy.executors import Executor
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller import Controller
+from arm_control.errors import ControllerError
 
 ControllerT = TypeVar("ControllerT", bound=Controller[Any])
 
@@ -28,6 +30,19 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
         self.controller = controller
         self.node = node
         self.loop = loop
+
+    @property
+    def executor(self) -> Executor:
+        """The executor that spins the node.
+
+        Raises:
+            ControllerError: there is none yet.
+        """
+        if self.node.executor is None:
+            raise ControllerError(
+                f"no executor spins the node of controller '{self.node.get_name()}'"
+            )
+        return self.node.executor
 
     @abstractmethod
     def on_configure(self, parameters: Any) -> None:

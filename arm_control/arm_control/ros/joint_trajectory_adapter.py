@@ -5,7 +5,6 @@ from typing import Any
 
 from control_msgs.msg import JointTrajectoryControllerState, SpeedScalingFactor
 from control_msgs.srv import QueryTrajectoryState
-from rclpy.executors import Executor
 from rclpy.publisher import Publisher
 from rclpy.qos import (
     DurabilityPolicy,
@@ -18,7 +17,7 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from trajectory_msgs.msg import JointTrajectory
 
-from arm_control.errors import ControllerError, LoopStoppedError
+from arm_control.errors import LoopStoppedError
 from arm_control.joint_trajectory import (
     ControllerState,
     Feedback,
@@ -55,10 +54,7 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
     def on_configure(self, parameters: JointTrajectoryParameters) -> None:
         """Create the end points."""
         node, default = self.node, QoSPresetProfiles.SYSTEM_DEFAULT.value
-        executor = node.executor
-        if executor is None:
-            raise ControllerError(f"no executor spins the node of controller '{node.get_name()}'")
-        self._executor: Executor = executor
+        self._executor = self.executor
         self._joints = parameters.joints
         self._publisher = node.create_publisher(
             JointTrajectoryControllerState, "~/controller_state", default
@@ -67,7 +63,7 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             self.controller,
             node,
             self.loop,
-            executor,
+            self._executor,
             lambda: bool(node.get_parameter("reject_with_reason").value),
         )
         news = JointTrajectoryNews(self._publisher, self._action)
