@@ -51,7 +51,6 @@ class SimulationSettings:
     render_backend: str
     seed: int
     headless: bool
-    headless: bool
 
 
 def read_settings(node: Node) -> SimulationSettings:
@@ -80,7 +79,6 @@ def read_settings(node: Node) -> SimulationSettings:
         package_path=values.folders("package_path", "for package:// and model://, with colons"),
         render_backend=values.choice("render_backend", "auto", PREFERENCES, "of the cameras"),
         seed=values.whole("seed", 0, "of the cameras' noise"),
-        headless=values.flag("headless", True, "false opens a window on the simulation"),
         headless=values.flag("headless", True, "false opens a window on the simulation"),
     )
 
