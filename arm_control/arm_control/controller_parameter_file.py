@@ -1,6 +1,6 @@
 """What a ROS parameter file says about one controller."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -34,11 +34,20 @@ class ControllerParameterFile:
             raise ParameterError(f"parameter file '{self.path}' holds no nodes")
         self._content: dict[str, Any] = content
 
+    def mentions(self, controller: str, namespace: str) -> bool:
+        """Return whether the file holds parameters of a controller's own node.
+
+        Raises:
+            ParameterError: as `lookup`.
+        """
+        return any(True for _ in self._entries_of_controller(controller, namespace))
+
     def lookup(self, controller: str, namespace: str, parameter: str) -> Any:
         """Return a parameter of a controller, None where the file does not have it.
 
         It may stand under the controller's name, alone, with its namespace or with `/**`; under
         `/**`; and, as that is where the controller manager looks, among the manager's parameters.
+        Of several places the one that names the controller most exactly counts.
 
         Args:
             controller: its name.
@@ -49,33 +58,48 @@ class ControllerParameterFile:
             ParameterError: an entry for the controller has no ros__parameters, or only one
                 without its namespace where it has one.
         """
-        own = self._own_parameters(controller, namespace)
-        if own is not None and parameter in own:
-            return own[parameter]
-        manager = self._content.get(_MANAGER, self._content.get(f"/{_MANAGER}"))
-        of_manager = manager.get(_PARAMETERS) if isinstance(manager, Mapping) else None
-        entry = of_manager.get(controller) if isinstance(of_manager, Mapping) else None
-        return entry.get(parameter) if isinstance(entry, Mapping) else None
-
-    def _own_parameters(self, controller: str, namespace: str) -> Mapping[str, Any] | None:
-        full_name = f"{namespace.rstrip('/')}/{controller}"
-        for key in (full_name, f"{_ANY}/{controller}"):
-            if key in self._content:
-                return self._parameters(self._content[key], key)
-        if controller in self._content:
-            if namespace != "/":
-                raise ParameterError(
-                    f"parameter file '{self.path}' has '{controller}' without its namespace: "
-                    f"write '{full_name}' or '{_ANY}/{controller}'"
-                )
-            return self._parameters(self._content[controller], controller)
-        if _ANY in self._content:
-            every = self._content[_ANY]
-            nested = every.get(controller) if isinstance(every, Mapping) else None
-            if nested is not None:
-                return self._parameters(nested, f"{_ANY}: {controller}")
-            return self._parameters(every, _ANY)
+        for parameters in self._entries_of_controller(controller, namespace):
+            if parameter in parameters:
+                return parameters[parameter]
+        for of_manager in self._entries(_MANAGER, namespace):
+            entry = of_manager.get(controller)
+            if isinstance(entry, Mapping) and parameter in entry:
+                return entry[parameter]
         return None
+
+    def _entries_of_controller(
+        self, controller: str, namespace: str
+    ) -> Iterator[Mapping[str, Any]]:
+        full_name = _full_name(controller, namespace)
+        if (
+            namespace != "/"
+            and controller in self._content
+            and not any(True for _ in self._entries_by_name(controller, namespace))
+        ):
+            raise ParameterError(
+                f"parameter file '{self.path}' has '{controller}' without its namespace: "
+                f"write '{full_name}' or '{_ANY}/{controller}'"
+            )
+        return self._entries(controller, namespace)
+
+    def _entries(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
+        """Yield the parameters that concern a node, those that name it most exactly first."""
+        yield from self._entries_by_name(node, namespace)
+        every = self._content.get(_ANY)
+        if isinstance(every, Mapping) and _PARAMETERS in every:
+            yield self._parameters(every, _ANY)
+
+    def _entries_by_name(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
+        full_name = _full_name(node, namespace)
+        bare = (node,) if namespace == "/" else ()
+        every = self._content.get(_ANY)
+        for place, where, keys in (
+            (self._content, "", (full_name, *bare, f"{_ANY}{full_name}", f"{_ANY}/{node}")),
+            (every if isinstance(every, Mapping) else {}, f"{_ANY}: ", (full_name, node)),
+        ):
+            for key in dict.fromkeys(keys):
+                if key in place:
+                    yield self._parameters(place[key], f"{where}{key}")
 
     def _parameters(self, entry: object, key: str) -> Mapping[str, Any]:
         parameters = entry.get(_PARAMETERS) if isinstance(entry, Mapping) else None
@@ -84,3 +108,7 @@ class ControllerParameterFile:
                 f"parameter file '{self.path}': '{key}' has no mapping {_PARAMETERS}"
             )
         return parameters
+
+
+def _full_name(node: str, namespace: str) -> str:
+    return f"{namespace.rstrip('/')}/{node}"

@@ -7,7 +7,10 @@ ArmControlError
 ├── ControllerError        a controller refuses a step of its life cycle
 ├── ControllerManagerError the manager refuses what was asked of it
 ├── UnhandledFailureError  a controller or component raised, and nobody is to catch it
-└── LoopStoppedError       a call to a control loop that runs no more
+├── LoopStoppedError       a call to a control loop that runs no more
+├── ManagerUnreachableError a controller manager that is not there, or does not answer
+├── SpawnError             a step of a spawner that failed
+└── WaitInterruptedError   a wait that was given up because the process is to end
 """
 
 
@@ -41,3 +44,15 @@ class UnhandledFailureError(ArmControlError):
 
 class LoopStoppedError(ArmControlError):
     """The control loop has ended, so it will not run the function handed to it."""
+
+
+class ManagerUnreachableError(ArmControlError):
+    """The controller manager is not there, or does not answer."""
+
+
+class SpawnError(ArmControlError):
+    """A step failed; the message says which."""
+
+
+class WaitInterruptedError(ArmControlError):
+    """The process was told to end while it waited."""

@@ -1,53 +1,31 @@
 """The executable `spawner`: loads, configures and activates controllers."""
 
 import sys
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from arm_control.spawner_options import (
-    SpawnerOptions,
-    parse_spawner_options,
-    split_ros_arguments,
-)
-from arm_node.process import NodeProcess, run_process
+from arm_control.manager_command_line import parameter_files, split_ros_arguments
+from arm_control.ros.manager_task import run_manager_task
+from arm_control.spawner_options import parse_spawner_options
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from arm_node.process import NodeProcess
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a spawner; return 0, 1 where a step failed, 2 for a wrong command line."""
-    arguments = list(sys.argv if argv is None else argv)
-    own, ros = split_ros_arguments(arguments[1:])
-    options = parse_spawner_options(own)
+    program, *arguments = sys.argv if argv is None else argv
+    own, ros = split_ros_arguments(arguments)
+    options = parse_spawner_options(own, parameter_files(ros))
 
-    @contextmanager
-    def application(process: NodeProcess) -> Iterator[None]:
-        yield from _spawn(process, options)
+    def task(node: "Node", process: "NodeProcess") -> int:
+        from arm_control.ros.spawner import spawn
 
-    return run_process(application, [arguments[0], *ros])
+        return spawn(node, process, options)
 
-
-def _spawn(process: NodeProcess, options: SpawnerOptions) -> Iterator[None]:
-    from rclpy.node import Node
-
-    from arm_control.ros.spawner import Spawner
-
-    node = Node(f"spawner_{options.names[0]}")
-    process.executor.add_node(node)
-    spawner = Spawner(node, options, lambda: process.stopping)
-    done: list[int] = []
-
-    def work() -> None:
-        done.append(spawner.run())
-        if done[0] or not options.unload_on_kill:
-            process.stop(done[0])
-
-    # The executor starts to spin only after the yield, so the work needs a thread of its own.
-    worker = threading.Thread(target=work, name="spawner", daemon=True)
-    worker.start()
-    yield
-    worker.join()
-    if options.unload_on_kill and done == [0]:
-        spawner.unload()
+    return run_manager_task(f"spawner_{options.controllers[0].name}", task, [program, *ros])
 
 
 if __name__ == "__main__":

@@ -3,6 +3,38 @@
 import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+from arm_control.manager_command_line import (
+    add_controller_manager,
+    add_controller_manager_timeout,
+    add_service_call_timeout,
+    add_switch_timeout,
+)
+
+_ROS_ARGUMENTS = "--controller-ros-args"
+_OF_CONTROLLER = ("param_files", "ros_args", "load_only", "inactive")
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerOptions:
+    """What a spawner is to do with one controller.
+
+    Attributes:
+        name: of the controller.
+        param_files: parameter files for it; a later one overrides an earlier one.
+        ros_args: ROS arguments for its node.
+        configure: whether to configure it once it is loaded.
+        activate: whether to activate it in the end.
+        unload_on_kill: whether to unload it when the spawner is ended.
+    """
+
+    name: str
+    param_files: tuple[str, ...] = ()
+    ros_args: tuple[str, ...] = ()
+    configure: bool = True
+    activate: bool = True
+    unload_on_kill: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -10,105 +42,144 @@ class SpawnerOptions:
     """What a spawner is to do.
 
     Attributes:
-        names: controllers, in the order to start them.
+        controllers: in the order to start them.
         controller_manager: node name of the manager, absolute or relative to the namespace.
-        param_files: parameter files for the controllers.
         namespace: of the controllers; empty for that of the spawner's own node.
-        load_only: whether to stop once they are loaded.
-        inactive: whether to stop once they are configured.
-        unload_on_kill: whether to go on running, and to unload them in the end.
+        unload_on_kill: whether to go on running, and to unload controllers in the end.
         controller_manager_timeout_s: how long to wait for the manager; 0 for ever.
         switch_timeout_s: how long the manager may take to switch; 0 for its default.
         service_call_timeout_s: how long to wait for an answer before asking again.
         activate_as_group: whether to activate all in one switch.
         switch_asap: passed on to the manager.
-        controller_ros_args: ROS arguments for the controllers' nodes.
     """
 
-    names: tuple[str, ...]
+    controllers: tuple[ControllerOptions, ...]
     controller_manager: str
-    param_files: tuple[str, ...]
     namespace: str
-    load_only: bool
-    inactive: bool
     unload_on_kill: bool
     controller_manager_timeout_s: float
     switch_timeout_s: float
     service_call_timeout_s: float
     activate_as_group: bool
     switch_asap: bool
-    controller_ros_args: tuple[str, ...]
 
 
-def split_ros_arguments(argv: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Part a command line, without the program's name, into its own and its ROS arguments."""
-    own: list[str] = []
-    ros: list[str] = []
-    inside = False
-    for argument in argv:
-        if argument == "--ros-args":
-            inside = True
-        if inside:
-            ros.append(argument)
-        else:
-            own.append(argument)
-        if argument == "--":
-            inside = False
-    return own, ros
+def parse_spawner_options(
+    arguments: Sequence[str], forwarded_files: Sequence[str] = ()
+) -> SpawnerOptions:
+    """Read the spawner's own arguments; a mistake ends the process with code 2, as usual.
 
-
-def parse_spawner_options(arguments: Sequence[str]) -> SpawnerOptions:
-    """Read the spawner's own arguments; a mistake ends the process with code 2, as usual."""
-    options = _parser().parse_args(arguments)
+    Args:
+        arguments: without the program's name and without ROS arguments.
+        forwarded_files: parameter files of the spawner's own node, which serve every controller
+            after those that are given to it.
+    """
+    parser = _parser()
+    # Intermixed, for options between the names.
+    options = parser.parse_intermixed_args(_with_values_joined(arguments))
+    drafts: list[dict[str, Any]] = options.drafts
+    if options.names and drafts:
+        parser.error("give the names of the controllers alone, or each after --controller")
+    if not options.names and not drafts:
+        parser.error("the following arguments are required: NAME or --controller NAME")
+    common = vars(options)
     return SpawnerOptions(
-        names=tuple(options.controller_names),
+        controllers=tuple(
+            _controller_options(draft, options, forwarded_files)
+            for draft in drafts or [{**common, "name": name} for name in options.names]
+        ),
         controller_manager=options.controller_manager,
-        param_files=tuple(options.param_file),
         namespace=options.namespace,
-        load_only=options.load_only,
-        inactive=options.inactive,
         unload_on_kill=options.unload_on_kill,
         controller_manager_timeout_s=options.controller_manager_timeout,
         switch_timeout_s=options.switch_timeout,
         service_call_timeout_s=options.service_call_timeout,
         activate_as_group=options.activate_as_group,
         switch_asap=options.switch_asap,
-        controller_ros_args=tuple(
-            word for words in options.controller_ros_args for word in words.split()
-        ),
     )
+
+
+class _BeginController(argparse.Action):
+    """Makes the options that follow those of this controller."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        common = {dest: getattr(namespace, dest) for dest in _OF_CONTROLLER}
+        namespace.drafts = [*namespace.drafts, {"name": values, **common}]
+
+
+class _OfController(argparse.Action):
+    """Keeps an option with the controller named last; before any, it holds for all."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        place = namespace.drafts[-1] if namespace.drafts else vars(namespace)
+        place[self.dest] = True if self.nargs == 0 else (*place[self.dest], values)
+
+
+def _controller_options(
+    draft: dict[str, Any], options: argparse.Namespace, forwarded_files: Sequence[str]
+) -> ControllerOptions:
+    stays = draft["load_only"] or draft["inactive"]
+    return ControllerOptions(
+        name=draft["name"],
+        param_files=(*draft["param_files"], *forwarded_files),
+        ros_args=tuple(word for words in draft["ros_args"] for word in words.split()),
+        configure=not draft["load_only"],
+        activate=not stays,
+        # Of controllers with options of their own, those left inactive outlive the spawner.
+        unload_on_kill=options.unload_on_kill and not (options.drafts and stays),
+    )
+
+
+def _with_values_joined(arguments: Sequence[str]) -> list[str]:
+    """Join `--controller-ros-args` and its value, which mostly looks like an option itself."""
+    joined: list[str] = []
+    for argument in arguments:
+        if joined and joined[-1] == _ROS_ARGUMENTS:
+            joined[-1] = f"{_ROS_ARGUMENTS}={argument}"
+        else:
+            joined.append(argument)
+    return joined
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="spawner", description="Load, configure and activate controllers."
+        prog="spawner",
+        usage="spawner [options] NAME [NAME ...]\n"
+        "       spawner [options] --controller NAME [options] [--controller NAME [options] ...]",
+        description="Load, configure and activate controllers.",
+        allow_abbrev=False,
     )
     parser.add_argument(
-        "controller_names", nargs="+", metavar="NAME", help="controllers to start, in this order"
+        "names", nargs="*", default=[], metavar="NAME", help="controllers to start, in this order"
     )
-    parser.add_argument(
-        "-c",
-        "--controller-manager",
-        default="controller_manager",
-        metavar="NODE",
-        help="name of the controller manager's node (default: %(default)s)",
-    )
-    parser.add_argument(
-        "-p",
-        "--param-file",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="parameter file of the controllers; may be given several times",
-    )
+    add_controller_manager(parser)
     parser.add_argument(
         "-n",
         "--namespace",
         default="",
         help="deprecated: give the namespace with --ros-args -r __ns:=/x",
     )
-    _add_extent(parser)
-    _add_timeouts(parser)
+    parser.add_argument(
+        "-u",
+        "--unload-on-kill",
+        action="store_true",
+        help="keep running; deactivate and unload the controllers when it is ended",
+    )
+    add_controller_manager_timeout(parser)
+    add_switch_timeout(parser)
+    add_service_call_timeout(parser)
     parser.add_argument(
         "--activate-as-group",
         action="store_true",
@@ -120,53 +191,43 @@ def _parser() -> argparse.ArgumentParser:
         default=True,
         help="passed on to the controller manager",
     )
-    parser.add_argument(
-        "--controller-ros-args",
-        action="append",
-        default=[],
-        metavar="ARGS",
-        help="ROS arguments for the nodes of the controllers; may be given several times",
-    )
+    _add_controller_options(parser)
     return parser
 
 
-def _add_extent(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--load-only", action="store_true", help="load, and do not configure")
-    parser.add_argument("--inactive", action="store_true", help="configure, and do not activate")
-    parser.add_argument(
-        "-u",
-        "--unload-on-kill",
-        action="store_true",
-        help="keep running; deactivate and unload the controllers when it is ended",
+def _add_controller_options(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group(
+        "options of a controller",
+        "After --controller NAME they hold for that controller only, else for all.",
     )
-
-
-def _add_timeouts(parser: argparse.ArgumentParser) -> None:
-    for flag, read, default, meaning in (
-        ("--controller-manager-timeout", _seconds, 0.0, "for the controller manager; 0 for ever"),
-        ("--switch-timeout", _seconds, 5.0, "for a switch; 0 for the manager's own default"),
-        ("--service-call-timeout", _positive_seconds, 10.0, "for an answer, before asking again"),
+    group.add_argument(
+        "--controller",
+        action=_BeginController,
+        dest="drafts",
+        default=[],
+        metavar="NAME",
+        help="a controller with options of its own",
+    )
+    for flags, dest, metavar, meaning in (
+        (
+            ("-p", "--param-file"),
+            "param_files",
+            "FILE",
+            "parameter file; may be given several times, a later one overrides",
+        ),
+        (
+            (_ROS_ARGUMENTS,),
+            "ros_args",
+            "ARGS",
+            "ROS arguments for the controller's node in one word, such as '-r ~/a:=/b'; "
+            "may be given several times",
+        ),
     ):
-        parser.add_argument(
-            flag,
-            type=read,
-            default=default,
-            metavar="SECONDS",
-            help=f"how long to wait {meaning} (default: %(default)s)",
+        group.add_argument(
+            *flags, action=_OfController, dest=dest, default=(), metavar=metavar, help=meaning
         )
-
-
-def _seconds(text: str) -> float:
-    """Read a time-out that may be 0."""
-    seconds = float(text)
-    if not 0.0 <= seconds < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be 0 or positive, not {text}")
-    return seconds
-
-
-def _positive_seconds(text: str) -> float:
-    """Read a time-out that may not."""
-    seconds = _seconds(text)
-    if seconds == 0.0:
-        raise argparse.ArgumentTypeError("must be positive, not 0")
-    return seconds
+    for flag, meaning in (
+        ("--load-only", "load, and do not configure"),
+        ("--inactive", "configure, and do not activate"),
+    ):
+        group.add_argument(flag, action=_OfController, nargs=0, default=False, help=meaning)

@@ -32,6 +32,11 @@ def lookup(path: Path, text: str, namespace: str = "/") -> object:
         "/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
         "{ctrl: {ros__parameters: {x: 1}}, "
         "controller_manager: {ros__parameters: {ctrl: {type: a/B}}}}",
+        "/**/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+        f"{{ctrl: {{ros__parameters: {{x: 1}}}}, /**: {TYPE}}}",
+        f"{{ctrl: {TYPE}, /**: {{ros__parameters: {{type: c/D}}}}}}",
+        f"{{/**/ctrl: {{ros__parameters: {{x: 1}}}}, /**: {{ctrl: {TYPE}}}}}",
+        f"/**: {{other: {{no: parameters}}, ctrl: {TYPE}}}",
     ],
 )
 def test_it_is_found(path: Path, text: str) -> None:
@@ -39,7 +44,16 @@ def test_it_is_found(path: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", [f"/ns/ctrl: {TYPE}", f"/**/ctrl: {TYPE}", f"/**: {{ctrl: {TYPE}}}", f"/**: {TYPE}"]
+    "text",
+    [
+        f"/ns/ctrl: {TYPE}",
+        f"/**/ctrl: {TYPE}",
+        f"/**/ns/ctrl: {TYPE}",
+        f"/**: {{ctrl: {TYPE}}}",
+        f"/**: {TYPE}",
+        f"{{ctrl: {{ros__parameters: {{}}}}, /ns/ctrl: {TYPE}}}",
+        "/ns/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+    ],
 )
 def test_it_is_found_in_a_namespace(path: Path, text: str) -> None:
     assert lookup(path, text, "/ns") == "a/B"
@@ -53,6 +67,22 @@ def test_the_own_entry_wins_over_the_managers(path: Path) -> None:
 @pytest.mark.parametrize("text", [f"other: {TYPE}", f"/other/ctrl: {TYPE}"])
 def test_what_is_not_there_is_none(path: Path, text: str) -> None:
     assert lookup(path, text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "mentioned"),
+    [
+        (f"ctrl: {TYPE}", True),
+        ("/**: {ros__parameters: {}}", True),
+        (f"other: {TYPE}", False),
+        ("controller_manager: {ros__parameters: {ctrl: {type: a/B}}}", False),
+    ],
+)
+def test_only_parameters_of_its_own_node_mention_a_controller(
+    path: Path, text: str, mentioned: bool
+) -> None:
+    path.write_text(text)
+    assert ControllerParameterFile(str(path)).mentions("ctrl", "/") is mentioned
 
 
 def test_a_bare_name_does_not_serve_in_a_namespace(path: Path) -> None:

@@ -3,12 +3,29 @@
 import subprocess
 import sys
 
+import pytest
+
 import arm_control
 
 
 def test_every_public_name_exists() -> None:
     assert sorted(arm_control.__all__) == arm_control.__all__
     assert all(hasattr(arm_control, name) for name in arm_control.__all__)
+    assert set(arm_control.__all__) <= set(dir(arm_control))
+
+
+def test_a_wrong_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'Contoller'"):
+        _ = arm_control.Contoller
+
+
+def test_what_starts_often_imports_little() -> None:
+    code = (
+        "import sys, arm_control.spawner_node, arm_control.unspawner_node, "
+        "arm_control.hardware_spawner_node; "
+        "sys.exit(bool({'numpy', 'lxml', 'arm_description', 'rclpy', 'yaml'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_the_core_needs_neither_ros_nor_mujoco() -> None:

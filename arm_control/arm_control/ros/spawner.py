@@ -1,102 +1,102 @@
 """Starts controllers through the services of a controller manager."""
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.node import Node
 
 from arm_control.controller_parameter_file import ControllerParameterFile
-from arm_control.errors import ArmControlError, ParameterError
-from arm_control.ros.manager_client import InterruptedCallError, ManagerClient
-from arm_control.spawner_options import SpawnerOptions
-from arm_node.process import EXIT_FAILED, EXIT_OK
+from arm_control.errors import ParameterError, SpawnError
+from arm_control.manager_command_line import absolute_name
+from arm_control.ros.manager_client import ManagerClient
+from arm_control.ros.unspawner import unload_controllers
+from arm_control.spawner_lock import spawner_lock, spawner_lock_path
+from arm_control.spawner_options import ControllerOptions, SpawnerOptions
+from arm_node.process import EXIT_OK, NodeProcess
 
 UNLOAD_TIMEOUT_S = 2.0
-
-
-class SpawnError(ArmControlError):
-    """A step failed; the message says which."""
 
 
 class Spawner:
     """Loads, configures and activates what its options name. Not on an executor's thread."""
 
-    def __init__(
-        self, node: Node, options: SpawnerOptions, interrupted: Callable[[], bool]
-    ) -> None:
+    def __init__(self, node: Node, process: NodeProcess, options: SpawnerOptions) -> None:
         """Prepare.
 
         Args:
             node: for the service clients; served by a spinning executor.
+            process: says when to give up.
             options: what to do.
-            interrupted: says whether to give up.
+
+        Raises:
+            SpawnError: a namespace is given in two ways.
+            ParameterError: a parameter file cannot be read.
         """
         self._node = node
+        self._process = process
         self._options = options
-        self._log = logging.getLogger(node.get_name())
-        self._namespace = options.namespace or node.get_namespace()
-        if not self._namespace.startswith("/"):
-            self._namespace = f"/{self._namespace}"
-        manager = options.controller_manager
-        if not manager.startswith("/"):
-            manager = f"{self._namespace.rstrip('/')}/{manager}"
-        self._manager_name = manager
-        self._manager = ManagerClient(node, manager, options.service_call_timeout_s, interrupted)
+        self._log = logging.getLogger(node.get_logger().name)
+        self._namespace = f"/{self._chosen_namespace().strip('/')}"
+        self._manager_name = absolute_name(options.controller_manager, self._namespace)
+        self._files = {
+            path: ControllerParameterFile(path)
+            for controller in options.controllers
+            for path in controller.param_files
+        }
+        self._manager = ManagerClient(
+            node, self._manager_name, options.service_call_timeout_s, lambda: process.stopping
+        )
 
     def run(self) -> int:
-        """Do it all; return the process's exit code."""
-        try:
-            files = [ControllerParameterFile(path) for path in self._options.param_files]
-            self._manager.wait_for_manager(self._options.controller_manager_timeout_s)
-            self._start(files)
-        except InterruptedCallError:
+        """Do it all; return the process's exit code.
+
+        Raises:
+            ArmControlError: a step failed.
+        """
+        self._manager.wait_for_manager(self._options.controller_manager_timeout_s)
+        # Not before there is a manager: who waits for one would keep the whole machine waiting.
+        with spawner_lock(spawner_lock_path(), self._process.wait):
+            self._start()
+        if not self._options.unload_on_kill:
             return EXIT_OK
-        except ArmControlError as error:
-            self._log.critical("%s", error)
-            return EXIT_FAILED
-        return EXIT_OK
+        self._log.info("Waiting until interrupt to unload controllers")
+        self._process.wait()
+        return self._unload()
 
-    def unload(self) -> None:
-        """Deactivate and unload what was started, as far as that is possible."""
-        names = self._options.names
-        self._log.info("unloading %s", " ".join(names))
+    def _unload(self) -> int:
+        names = [c.name for c in self._options.controllers if c.unload_on_kill]
+        # A manager of its own for the end: that of the start is interrupted.
         manager = ManagerClient(self._node, self._manager_name, UNLOAD_TIMEOUT_S)
-        try:
-            if not self._options.inactive and not self._options.load_only:
-                manager.deactivate(names, UNLOAD_TIMEOUT_S)
-            for name in names:
-                if manager.unload(name):
-                    self._log.info("Unloaded %s", name)
-                else:
-                    self._log.error("Failed to unload controller %s", name)
-        except ArmControlError as error:
-            self._log.error("the controllers were not unloaded: %s", error)
+        return unload_controllers(manager, names, UNLOAD_TIMEOUT_S, self._log)
 
-    def _start(self, files: Sequence[ControllerParameterFile]) -> None:
+    def _start(self) -> None:
         options = self._options
-        for name in options.names:
-            self._load(name, files)
-            if options.load_only:
+        for controller in options.controllers:
+            self._load(controller)
+            if not controller.configure:
                 continue
+            name = controller.name
             if not self._manager.configure(name):
                 raise SpawnError(f"Failed to configure controller {name}; {self._see_log()}")
-            if options.inactive:
+            if not controller.activate:
                 self._log.info("Configured %s", name)
             elif not options.activate_as_group:
                 self._activate([name])
                 self._log.info("Configured and activated %s", name)
-        if options.activate_as_group and not (options.load_only or options.inactive):
-            self._activate(options.names)
-            self._log.info("Configured and activated all the parsed controllers list!")
+        group = [controller.name for controller in options.controllers if controller.activate]
+        if options.activate_as_group and group:
+            self._activate(group)
+            self._log.info("Configured and activated all the parsed controllers list : %s!", group)
 
-    def _load(self, name: str, files: Sequence[ControllerParameterFile]) -> None:
+    def _load(self, controller: ControllerOptions) -> None:
+        name = controller.name
         if name in self._manager.states():
             self._log.warning(
                 "Controller already loaded, skipping load_controller: %s keeps its parameters", name
             )
             return
-        parameters = self._manager_parameters(name, files)
+        parameters = self._manager_parameters(controller)
         if parameters:
             reason = self._manager.set_parameters(parameters)
             if reason:
@@ -114,22 +114,23 @@ class Spawner:
                 f"Failed to activate controller : {' '.join(names)}; {self._see_log()}"
             )
 
-    def _manager_parameters(
-        self, name: str, files: Sequence[ControllerParameterFile]
-    ) -> dict[str, str | Sequence[str]]:
+    def _manager_parameters(self, controller: ControllerOptions) -> dict[str, str | Sequence[str]]:
         """Return what the manager must know before it loads the controller."""
+        name = controller.name
         parameters: dict[str, str | Sequence[str]] = {}
-        if self._options.controller_ros_args:
-            parameters[f"{name}.node_options_args"] = self._options.controller_ros_args
-        if files:
-            parameters[f"{name}.params_file"] = [str(file.path) for file in files]
+        if controller.ros_args:
+            parameters[f"{name}.node_options_args"] = controller.ros_args
+        files = [self._files[path] for path in dict.fromkeys(controller.param_files)]
+        paths = [str(file.path) for file in files if file.mentions(name, self._namespace)]
+        if paths:
+            parameters[f"{name}.params_file"] = paths
         type_name = self._from_files(name, files, "type")
         if type_name is not None:
             if not isinstance(type_name, str):
                 raise ParameterError(f"the type of controller '{name}' is {type_name!r}")
             parameters[f"{name}.type"] = type_name
         fallbacks = self._from_files(name, files, "fallback_controllers")
-        if fallbacks is not None:
+        if fallbacks:
             if not isinstance(fallbacks, list) or not all(isinstance(f, str) for f in fallbacks):
                 raise ParameterError(
                     f"fallback_controllers of controller '{name}' must be a list of names, "
@@ -144,5 +145,27 @@ class Spawner:
         values = (file.lookup(name, self._namespace, parameter) for file in files)
         return next((value for value in values if value is not None), None)
 
+    def _chosen_namespace(self) -> str:
+        own, given = self._node.get_namespace(), self._options.namespace
+        if not given:
+            return own
+        if own != "/":
+            raise SpawnError(
+                f"the namespace is given twice, by --namespace {given} and by __ns:={own}"
+            )
+        self._log.warning(
+            "--namespace is deprecated; write --ros-args -r __ns:=/%s", given.strip("/")
+        )
+        return given
+
     def _see_log(self) -> str:
         return f"the reason is in the log of {self._manager_name}"
+
+
+def spawn(node: Node, process: NodeProcess, options: SpawnerOptions) -> int:
+    """Do what the options say; return the process's exit code. Not on an executor's thread.
+
+    Raises:
+        ArmControlError: a step failed.
+    """
+    return Spawner(node, process, options).run()

@@ -45,6 +45,8 @@ class Program:
             env={
                 **os.environ,
                 "ROS_LOG_DIR": str(log_directory),
+                # Spawners lock the machine there: not that of other sessions.
+                "ROS_HOME": str(log_directory.parent),
                 "FASTRTPS_DEFAULT_PROFILES_FILE": str(ROOT / "launch_py/config/dds_profile.xml"),
             },
         )

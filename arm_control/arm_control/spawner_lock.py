@@ -1,0 +1,90 @@
+"""The lock that lets one spawner of a machine work at a time."""
+
+import fcntl
+import logging
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from arm_control.clock import Clock, MonotonicClock
+from arm_control.errors import SpawnError, WaitInterruptedError
+
+logger = logging.getLogger(__name__)
+
+ATTEMPTS = 5
+ATTEMPT_S = 20.0
+RETRY_DELAY_S = 3.0
+_POLL_S = 0.05
+
+
+def spawner_lock_path(environ: Mapping[str, str] = os.environ) -> Path:
+    """Return the file that ros2_control's own spawners lock, too."""
+    home = environ.get("ROS_HOME") or Path("~/.ros").expanduser()
+    return Path(home, "locks", "ros2-control-controller-spawner.lock")
+
+
+@contextmanager
+def spawner_lock(
+    path: Path, wait: Callable[[float], bool], clock: Clock | None = None
+) -> Iterator[None]:
+    """Hold the machine's spawner lock.
+
+    The mechanism is that of ros2_control's spawner, flock(2) on the open file, so the two keep
+    each other waiting. Where the file cannot be made, a warning says so and the work goes on:
+    the lock keeps output in order, it is no condition of success.
+
+    Args:
+        path: the file, made with its folder where it is missing.
+        wait: waits for so many seconds; returns early with True where the process is to end.
+        clock: for the time-outs.
+
+    Raises:
+        SpawnError: another process has held it for all the attempts.
+        WaitInterruptedError: the process is to end.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+    except OSError as error:
+        logger.warning("going on without the spawner lock: %s", error)
+        yield
+        return
+    try:
+        _lock(file, path, wait, clock or MonotonicClock())
+        yield
+    finally:
+        os.close(file)
+
+
+def _lock(file: int, path: Path, wait: Callable[[float], bool], clock: Clock) -> None:
+    for attempt in range(1, ATTEMPTS + 1):
+        deadline_s = clock.now_s() + ATTEMPT_S
+        while clock.now_s() < deadline_s:
+            if _try_lock(file):
+                return
+            _pause(wait, _POLL_S)
+        logger.warning(
+            "another spawner has held %s for %g s (attempt %d of %d)",
+            path,
+            ATTEMPT_S,
+            attempt,
+            ATTEMPTS,
+        )
+        _pause(wait, RETRY_DELAY_S)
+    raise SpawnError(
+        f"another spawner holds {path} and does not end; `fuser {path}` tells its process id"
+    )
+
+
+def _try_lock(file: int) -> bool:
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _pause(wait: Callable[[float], bool], seconds: float) -> None:
+    if wait(seconds):
+        raise WaitInterruptedError("interrupted while waiting for the spawner lock")
