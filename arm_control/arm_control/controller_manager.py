@@ -15,6 +15,7 @@ from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
 from arm_control.manager_policy import ManagerPolicy
 from arm_control.resource_manager import ResourceManager, Trouble
+from arm_control.run_record import RunRecord
 from arm_control.run_supervision import RunSupervision
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
 
@@ -158,6 +159,15 @@ class ControllerManager:
         """Return every component."""
         return self.resources.list_components(self.update_rate_hz)
 
+    def component_runs(self) -> tuple[tuple[HardwareComponentStatus, RunRecord, RunRecord], ...]:
+        """Return every component with the records of its reads and its writes."""
+        return tuple(
+            (status, component.reads, component.writes)
+            for status, component in zip(
+                self.list_hardware_components(), self.resources.components.values(), strict=True
+            )
+        )
+
     def list_hardware_interfaces(
         self,
     ) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
@@ -169,6 +179,10 @@ class ControllerManager:
     def list_controllers(self) -> tuple[ControllerStatus, ...]:
         """Return every loaded controller, the newest first."""
         return tuple(c.status() for c in reversed(self._controllers.values()))
+
+    def controller_runs(self) -> tuple[tuple[ControllerStatus, RunRecord], ...]:
+        """Return every loaded controller with the record of its updates, the newest first."""
+        return tuple((c.status(), c.runs) for c in reversed(self._controllers.values()))
 
     def load_controller(
         self, controller: Controller[Any], type_name: str, fallback_names: Sequence[str] = ()

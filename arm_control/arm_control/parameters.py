@@ -20,6 +20,8 @@ _SCALARS = (bool, int, float, str)
 class _Rules:
     description: str
     read_only: bool
+    above: float | None = None
+    one_of: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,8 @@ class ParameterSpec:
         default: its value where none is given.
         description: for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
+        above: what its value must exceed; None for no such bound.
+        one_of: what its value must be; empty for anything.
     """
 
     name: str
@@ -41,6 +45,15 @@ class ParameterSpec:
     default: Any
     description: str
     read_only: bool
+    above: float | None = None
+    one_of: tuple[str, ...] = ()
+
+    @property
+    def constraint(self) -> str:
+        """What its value must be beyond its type, in words; empty for anything."""
+        if self.one_of:
+            return f"one of {', '.join(self.one_of)}"
+        return "" if self.above is None else f"above {self.above:g}"
 
     def convert(self, value: object) -> Any:
         """Return the value in the parameter's own type; an integer serves as a float.
@@ -57,26 +70,40 @@ class ParameterSpec:
             for i, item in enumerate(value)  # pyright: ignore[reportArgumentType]
         )
 
-    def _convert_scalar(self, value: object, name: str) -> Any:
+    def _convert_scalar(self, value: Any, name: str) -> Any:
         if self.type is float and isinstance(value, int) and not isinstance(value, bool):
-            return float(value)
+            value = float(value)
         if type(value) is not self.type:
             raise ParameterError(
                 f"parameter '{name}' must be of type {self.type.__name__}, not {value!r}"
             )
+        # Not `value <= above`: a NaN is above nothing.
+        too_low = self.above is not None and not value > self.above
+        if too_low or (self.one_of and value not in self.one_of):
+            raise ParameterError(f"parameter '{name}' must be {self.constraint}, but is {value!r}")
         return value
 
 
-def parameter(default: Any, description: str, *, read_only: bool = False) -> Any:
+def parameter(
+    default: Any,
+    description: str,
+    *,
+    read_only: bool = False,
+    above: float | None = None,
+    one_of: tuple[str, ...] = (),
+) -> Any:
     """Describe a field of a parameters dataclass.
 
     Args:
         default: its value where none is given; an empty tuple for a list.
         description: one line for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
+        above: what its value, or each element, must exceed.
+        one_of: what its value, or each element, must be.
     """
     return dataclasses.field(
-        default=default, metadata={_METADATA_KEY: _Rules(description, read_only)}
+        default=default,
+        metadata={_METADATA_KEY: _Rules(description, read_only, above, one_of)},
     )
 
 
@@ -99,7 +126,16 @@ def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpe
                 "the types bool, int, float, str, or a tuple[..., ...] of one of them"
             )
         specs.append(
-            ParameterSpec(name, element, is_list, field.default, rules.description, rules.read_only)
+            ParameterSpec(
+                name,
+                element,
+                is_list,
+                field.default,
+                rules.description,
+                rules.read_only,
+                rules.above,
+                rules.one_of,
+            )
         )
     return tuple(specs)
 

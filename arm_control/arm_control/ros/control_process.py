@@ -130,7 +130,7 @@ def _hardware(description: str) -> list[Hardware]:
 
 def _manager(hardware: Sequence[Hardware], node: ControllerManagerNode) -> ControllerManager:
     settings = node.settings
-    manager = ControllerManager(hardware, settings.update_rate)
+    manager = ControllerManager(hardware, settings.update_rate, settings.policy)
     manager.bring_up(
         settings.hardware_components_initial_state.unconfigured,
         settings.hardware_components_initial_state.inactive,

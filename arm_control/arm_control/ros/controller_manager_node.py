@@ -1,11 +1,16 @@
 """The node /controller_manager and its parameters."""
 
+import dataclasses
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
 
 from arm_control.controller_switch import Strictness
 from arm_control.errors import ParameterError
-from arm_control.parameters import build_parameters, specs_of
+from arm_control.parameters import ParameterSpec, build_parameters, specs_of
+from arm_control.ros.health_publisher import HealthPublisher
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.node_arguments import manager_arguments
 from arm_control.ros.parameter_node import ParameterNode
@@ -21,7 +26,8 @@ class ControllerManagerNode(ParameterNode):
 
     Attributes:
         arguments: ROS arguments of the process.
-        settings: the node's parameters at its start.
+        settings: the node's parameters as they are now; replaced as a whole, any thread may read.
+        health: publishes /diagnostics from the node's beginning to its end.
     """
 
     def __init__(
@@ -48,28 +54,51 @@ class ControllerManagerNode(ParameterNode):
             cli_args=manager_arguments(self.arguments),
             use_global_arguments=False,
             allow_undeclared_parameters=True,
+            enable_logger_service=True,
         )
-        specs = specs_of(ManagerSettings)
-        self.declare_specs(specs)
+        self._specs = tuple(self._adapted(specs_of(ManagerSettings)))
+        self.declare_specs(self._specs)
         self.declare_rest()
-        self.settings: ManagerSettings = build_parameters(ManagerSettings, self.values_of(specs))
-        if self.settings.update_rate < 1:
-            raise ParameterError(
-                f"parameter 'update_rate' of /{name} must be positive, "
-                f"but is {self.settings.update_rate}"
-            )
-        self.default_strictness()
+        self.settings = self._read_settings()
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(self._take)
+        self.health = HealthPublisher(self)
+        self.health.start()
+
+    def destroy_node(self) -> None:
+        """End the publishing, then the node."""
+        self.health.stop()
+        super().destroy_node()
 
     def default_strictness(self) -> Strictness:
-        """Return the strictness of a switch request that names none.
+        """Return the strictness of a switch request that names none."""
+        return _STRICTNESS[self.settings.defaults.switch_controller.strictness]
 
-        Raises:
-            ParameterError: the parameter is neither of the two words.
-        """
-        parameter = "defaults.switch_controller.strictness"
-        word = self.get_parameter(parameter).value
-        if word not in _STRICTNESS:
-            raise ParameterError(
-                f"parameter '{parameter}' must be one of {', '.join(_STRICTNESS)}, but is {word!r}"
-            )
-        return _STRICTNESS[word]
+    def _adapted(self, specs: Iterable[ParameterSpec]) -> Iterator[ParameterSpec]:
+        """Yield the parameters, with the defaults that follow from another's value."""
+        for spec in specs:
+            if spec.name == "overruns.print_warnings":
+                # The pace of a simulation's clock is not this process's doing.
+                yield dataclasses.replace(
+                    spec, default=not self.get_parameter("use_sim_time").value
+                )
+            else:
+                yield spec
+
+    def _read_settings(self) -> ManagerSettings:
+        return build_parameters(ManagerSettings, self.values_of(self._specs))
+
+    def _check(self, changed: Sequence[Parameter]) -> SetParametersResult:
+        """Refuse values that make no sense, with the reason."""
+        specs = {spec.name: spec for spec in self._specs}
+        try:
+            for parameter in changed:
+                if parameter.name in specs:
+                    specs[parameter.name].convert(parameter.value)
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _take(self, changed: Sequence[Parameter]) -> None:
+        """Let the new values count."""
+        self.settings = self._read_settings()

@@ -23,6 +23,7 @@ from arm_control.controller_manager import ControllerManager
 from arm_control.controller_switch import Strictness, SwitchRequest
 from arm_control.errors import ArmControlError
 from arm_control.lifecycle import LifecycleState
+from arm_control.refusals import Refusals
 from arm_control.registry import controller_types
 from arm_control.ros.control_plane import ControlPlane
 from arm_control.ros.controller_manager_node import ControllerManagerNode
@@ -47,11 +48,16 @@ class ManagerServices:
     """Creates the services on a node and answers them; they may block its executor."""
 
     def __init__(
-        self, node: ControllerManagerNode, plane: ControlPlane, manager: ControllerManager
+        self,
+        node: ControllerManagerNode,
+        plane: ControlPlane,
+        manager: ControllerManager,
+        refusals: Refusals,
     ) -> None:
         self._node = node
         self._plane = plane
         self._manager = manager
+        self._refusals = refusals
         for type_, name, answer in (
             (ListControllers, "list_controllers", self._list_controllers),
             (ListControllerTypes, "list_controller_types", self._list_controller_types),
@@ -71,20 +77,25 @@ class ManagerServices:
         ):
             node.create_service(type_, f"~/{name}", answer, qos_profile=SERVICE_QOS)
 
-    @staticmethod
-    def _by_name(action: Callable[[str], None]) -> Callable[[Any, Any], Any]:
+    def _by_name(self, action: Callable[[str], None]) -> Callable[[Any, Any], Any]:
         """Return the answer of a service that takes a name and says whether it worked."""
 
         def answer(request: Any, response: Any) -> Any:
-            try:
-                action(request.name)
-                response.ok = True
-            except ArmControlError as error:
-                logger.error("%s", error)
-                response.ok = False
+            response.ok = self._worked(action.__name__, request.name, lambda: action(request.name))
             return response
 
         return answer
+
+    def _worked(self, request: str, name: str, action: Callable[[], object]) -> bool:
+        """Do what was asked for; where it is refused, keep the reason for who wants to know."""
+        try:
+            action()
+        except ArmControlError as error:
+            logger.error("%s", error)
+            self._refusals.note(request, name, str(error))
+            return False
+        self._refusals.settle(request, name)
+        return True
 
     def _list_controllers(
         self, _request: ListControllers.Request, response: ListControllers.Response
@@ -119,6 +130,10 @@ class ManagerServices:
             request.timeout.sec + request.timeout.nanosec * 1e-9,
         )
         response.ok, response.message = result.ok, result.message
+        if result.ok:
+            self._refusals.settle("switch_controller", "")
+        else:
+            self._refusals.note("switch_controller", "", result.message)
         return response
 
     def _reload(
@@ -126,12 +141,11 @@ class ManagerServices:
         request: ReloadControllerLibraries.Request,
         response: ReloadControllerLibraries.Response,
     ) -> ReloadControllerLibraries.Response:
-        try:
-            self._plane.unload_all(force=request.force_kill)
-            response.ok = True
-        except ArmControlError as error:
-            logger.error("%s", error)
-            response.ok = False
+        response.ok = self._worked(
+            "reload_controller_libraries",
+            "",
+            lambda: self._plane.unload_all(force=request.force_kill),
+        )
         return response
 
     def _list_interfaces(
@@ -155,15 +169,14 @@ class ManagerServices:
         response: SetHardwareComponentState.Response,
     ) -> SetHardwareComponentState.Response:
         target = request.target_state
-        try:
+
+        def set_state() -> None:
             state = _target_state(target.id, target.label)
             self._plane.on_loop(
                 lambda: self._manager.set_hardware_component_state(request.name, state)
             )
-            response.ok = True
-        except ArmControlError as error:
-            logger.error("%s", error)
-            response.ok = False
+
+        response.ok = self._worked("set_hardware_component_state", request.name, set_state)
         for status in self._plane.on_loop(self._manager.list_hardware_components):
             if status.name == request.name:
                 response.state = state_message(status.state)

@@ -102,7 +102,11 @@ class ParameterNode(Node):
         self.declare_parameter(
             spec.name,
             list(value) if spec.is_list else value,
-            ParameterDescriptor(description=spec.description, read_only=spec.read_only),
+            ParameterDescriptor(
+                description=spec.description,
+                read_only=spec.read_only,
+                additional_constraints=spec.constraint,
+            ),
             ignore_override=True,
         )
 

@@ -61,6 +61,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         process.executor.add_node(node)
         settings = read_settings(node)
         manager_node = ControllerManagerNode(arguments)
+        nodes.callback(manager_node.destroy_node)
         timing = physics_timing(manager_node.settings.update_rate, settings.physics_step_s)
         hardware_info = _hardware_info(settings)
         sensors = parse_cameras(settings.robot_description)
@@ -87,6 +88,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             process.executor,
             robot_description=settings.robot_description,
         )
+        nodes.pop_all()
         nodes.callback(server.destroy_nodes)
         ending.callback(server.shutdown)
         server.start_controllers(settings.spawn)
@@ -143,7 +145,7 @@ def _build(
 
 
 def _manager(hardware: Sequence[SimulatedHardware], settings: ManagerSettings) -> ControllerManager:
-    manager = ControllerManager(hardware, settings.update_rate)
+    manager = ControllerManager(hardware, settings.update_rate, settings.policy)
     manager.bring_up(
         settings.hardware_components_initial_state.unconfigured,
         settings.hardware_components_initial_state.inactive,

@@ -51,7 +51,7 @@ def main(argv: Sequence[str]) -> int:
         hardware = fake_hardware(
             JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
         )
-        manager = ControllerManager([hardware], rate_hz)
+        manager = ControllerManager([hardware], rate_hz, node.settings.policy)
         manager.bring_up()
         period_s = 1.0 / rate_hz
         time_s = 0.0

@@ -122,7 +122,7 @@ def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> N
 @pytest.mark.parametrize(
     ("parameters", "reason"),
     [
-        ({"update_rate": 0}, "parameter 'update_rate' of /controller_manager must be positive"),
+        ({"update_rate": 0}, "parameter 'update_rate' must be above 0, but is 0"),
         ({"update_rate": "fast"}, "parameter 'update_rate' must be of type int, not 'fast'"),
         (
             {"defaults": {"switch_controller": {"strictness": "lax"}}},

@@ -1,0 +1,235 @@
+"""Judges the health of a controller manager, as ros2_control does on /diagnostics."""
+
+from arm_control.control_loop import ControlLoop
+from arm_control.controller_manager import ControllerManager
+from arm_control.diagnostic_thresholds import (
+    DiagnosticThresholds,
+    ExecutionTimeThresholds,
+    PeriodicityThresholds,
+    RunThresholds,
+)
+from arm_control.health_report import HealthReport, Level
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.refusals import Refusals
+from arm_control.run_record import RunRecord, Spread
+from arm_control.status import ControllerStatus
+
+STUCK_S = 1.0
+"""A loop this late is not slow, it is stuck in somebody's code."""
+
+CONTROLLERS = "Controllers Activity"
+COMPONENTS = "Hardware Components Activity"
+MANAGER = "Controller Manager Activity"
+
+
+class ManagerDiagnostics:
+    """Watches a manager from a thread of its own, whatever the control loop is doing.
+
+    It observes the manager (`ManagerObserver`, loop thread) for who is in which state, and reads
+    the records of their runs; `reports` may be called from any other thread, even while the loop
+    is stuck.
+    """
+
+    def __init__(self, manager: ControllerManager, loop: ControlLoop, refusals: Refusals) -> None:
+        """Take the first look; loop thread.
+
+        Args:
+            manager: the core.
+            loop: runs it.
+            refusals: of the requests that came to it.
+        """
+        self._manager = manager
+        self._loop = loop
+        self._refusals = refusals
+        self.activity_changed()
+
+    def controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """Do nothing: `activity_changed` follows."""
+
+    def activity_changed(self) -> None:
+        """Note who is in which state; loop thread."""
+        self._controllers = self._manager.controller_runs()
+        self._components = self._manager.component_runs()
+
+    def reports(self, thresholds: DiagnosticThresholds) -> tuple[HealthReport, ...]:
+        """Return how controllers, hardware components and the loop are."""
+        return (
+            self._report_controllers(thresholds.controllers),
+            self._report_components(thresholds.hardware_components),
+            self._report_loop(thresholds.controller_manager.periodicity),
+        )
+
+    def _report_controllers(self, thresholds: RunThresholds) -> HealthReport:
+        report = HealthReport(CONTROLLERS)
+        controllers = self._controllers
+        active = [pair for pair in controllers if pair[0].state is LifecycleState.ACTIVE]
+        if not any(s.state is LifecycleState.ACTIVE for s, _, _ in self._components):
+            report.merge(
+                Level.ERROR,
+                "No hardware components are currently active to activate controllers",
+            )
+        elif not controllers:
+            report.merge(Level.WARN, "No controllers are currently loaded")
+        else:
+            report.merge(Level.OK, _how_many(len(active), len(controllers), "controllers"))
+        judge = _RunJudge(report, thresholds)
+        for status, _ in controllers:
+            report.values[f"{status.name}.state"] = status.state.label
+        for status, runs in active:
+            judge.look_at(status.name, runs, status.update_rate_hz, self._own_pace(status))
+        judge.conclude("Controllers")
+        report.values.update(self._refusals.reasons())
+        return report
+
+    def _report_components(self, thresholds: RunThresholds) -> HealthReport:
+        report = HealthReport(COMPONENTS)
+        components = self._components
+        active = sum(status.state is LifecycleState.ACTIVE for status, _, _ in components)
+        if not components:
+            report.merge(Level.ERROR, "No hardware components are loaded!")
+        elif not active:
+            report.merge(Level.WARN, "No hardware components are currently active")
+        else:
+            report.merge(Level.OK, _how_many(active, len(components), "hardware components"))
+        judge = _RunJudge(report, thresholds)
+        for status, reads, writes in components:
+            report.values[f"{status.name}.state"] = status.state.label
+            if status.state is LifecycleState.ACTIVE:
+                rate_hz = status.read_write_rate_hz
+                judge.look_at(f"{status.name}.read_cycle", reads, rate_hz, judged=True)
+                judge.look_at(f"{status.name}.write_cycle", writes, rate_hz, judged=True)
+        judge.conclude("Hardware Components")
+        return report
+
+    def _report_loop(self, thresholds: PeriodicityThresholds) -> HealthReport:
+        report = HealthReport(MANAGER)
+        loop, pacer = self._loop, self._loop.pacer
+        figures = pacer.statistics
+        report.values |= {
+            "update_rate": str(self._manager.update_rate_hz),
+            "real_time_factor": f"{pacer.real_time_factor:g}",
+            "overruns": str(figures.overruns),
+            "max_lag": f"{1e3 * figures.max_lag_s:.2f} ms",
+        }
+        if not loop.running:
+            report.merge(Level.ERROR, "The control loop has ended")
+        elif loop.paused:
+            report.merge(Level.OK, "Controller Manager is paused")
+        elif pacer.remaining_s() < -STUCK_S:
+            report.merge(
+                Level.ERROR,
+                f"The control loop has been stuck for {-pacer.remaining_s():.1f} s",
+            )
+        else:
+            report.merge(Level.OK, "Controller Manager is running")
+        self._judge_pace(report, thresholds)
+        return report
+
+    def _judge_pace(self, report: HealthReport, thresholds: PeriodicityThresholds) -> None:
+        """Compare the wall time between ticks with what it should be, where it should be any."""
+        pacer = self._loop.pacer
+        statistics = pacer.runs.statistics()
+        if statistics is None:
+            return
+        report.values["execution_time"] = _in_words(statistics.execution_time_us, "us")
+        rate = statistics.periodicity_hz
+        if rate is None:
+            return
+        report.values |= {
+            "periodicity.average": f"{rate.mean:.2f}",
+            "periodicity.standard_deviation": f"{rate.standard_deviation:.2f}",
+            "periodicity.min": f"{rate.minimum:.2f}",
+            "periodicity.max": f"{rate.maximum:.2f}",
+        }
+        expected_hz = self._manager.update_rate_hz * pacer.real_time_factor
+        if not expected_hz or self._loop.paused:
+            return
+        level = _rate_level(rate, expected_hz, thresholds)
+        if level is not Level.OK:
+            report.merge(
+                level,
+                f"Controller Manager has bad periodicity : {rate.mean:.2f} Hz. "
+                f"Expected consistent {expected_hz:g} Hz",
+            )
+
+    def _own_pace(self, status: ControllerStatus) -> bool:
+        """Whether the controller has a pace of its own; else it shares the loop's."""
+        return status.update_rate_hz != self._manager.update_rate_hz
+
+
+class _RunJudge:
+    """Writes the figures of one kind of runs into a report, and collects who is out of bounds."""
+
+    def __init__(self, report: HealthReport, thresholds: RunThresholds) -> None:
+        self._report = report
+        self._thresholds = thresholds
+        self._slow: dict[str, Level] = {}
+        self._irregular: dict[str, Level] = {}
+
+    def look_at(self, name: str, runs: RunRecord, rate_hz: int, judged: bool) -> None:
+        """Write one record down; `judged` says whether its periodicity can be blamed on it."""
+        statistics = runs.statistics()
+        if statistics is None:
+            return
+        values = self._report.values
+        values[f"{name}.execution_time"] = _in_words(statistics.execution_time_us, "us")
+        level = _time_level(statistics.execution_time_us, self._thresholds.execution_time)
+        if level is not Level.OK:
+            self._slow[name] = level
+        rate = statistics.periodicity_hz
+        if rate is None:
+            return
+        values[f"{name}.periodicity"] = f"{_in_words(rate, 'Hz')} -> Desired : {rate_hz} Hz"
+        level = _rate_level(rate, rate_hz, self._thresholds.periodicity)
+        if judged and level is not Level.OK:
+            self._irregular[name] = level
+
+    def conclude(self, kind: str) -> None:
+        """Name those out of bounds in the report's message."""
+        for culprits, what in (
+            (self._slow, "high execution time"),
+            (self._irregular, "bad periodicity"),
+        ):
+            if culprits:
+                names = " ".join(culprits)
+                self._report.merge(max(culprits.values()), f"{kind} with {what} : [ {names} ]")
+
+
+def waiting_reports() -> tuple[HealthReport, ...]:
+    """Return the reports of a manager that has no hardware yet."""
+    return tuple(
+        HealthReport(task, Level.WARN, "Waiting for robot description....")
+        for task in (CONTROLLERS, COMPONENTS, MANAGER)
+    )
+
+
+def _how_many(active: int, there_are: int, what: str) -> str:
+    return f"{'All' if active == there_are else 'Not all'} {what} are active"
+
+
+def _rate_level(rate: Spread, expected_hz: float, thresholds: PeriodicityThresholds) -> Level:
+    error_hz = abs(rate.mean - expected_hz)
+    mean, deviation = thresholds.mean_error, thresholds.standard_deviation
+    if error_hz > mean.error or rate.standard_deviation > deviation.error:
+        return Level.ERROR
+    if error_hz > mean.warn or rate.standard_deviation > deviation.warn:
+        return Level.WARN
+    return Level.OK
+
+
+def _time_level(time_us: Spread, thresholds: ExecutionTimeThresholds) -> Level:
+    mean, deviation = thresholds.mean_error, thresholds.standard_deviation
+    if time_us.mean > mean.error or time_us.standard_deviation > deviation.error:
+        return Level.ERROR
+    if time_us.mean > mean.warn or time_us.standard_deviation > deviation.warn:
+        return Level.WARN
+    return Level.OK
+
+
+def _in_words(spread: Spread, unit: str) -> str:
+    return (
+        f"Avg: {spread.mean:.2f} [{spread.minimum:.2f} - {spread.maximum:.2f}] {unit}, "
+        f"StdDev: {spread.standard_deviation:.2f}"
+    )
