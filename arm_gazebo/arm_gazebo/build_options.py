@@ -22,6 +22,7 @@ class BuildOptions:
         self_collide: whether links of the robot touch each other, as in Gazebo off by default.
         strict: a mesh that is missing or unreadable is an error, not a box and a warning.
         package_path: folders searched for package:// and model:// after the installed packages.
+        mesh_cache: folder where meshes that were read are kept for the next time; None for none.
     """
 
     step_s: float = LARGEST_STEP_S
@@ -30,3 +31,4 @@ class BuildOptions:
     self_collide: bool = False
     strict: bool = False
     package_path: tuple[Path, ...] = ()
+    mesh_cache: Path | None = None

@@ -12,8 +12,9 @@ from arm_description.transforms import quaternion_from_rpy
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.collision_policy import CollisionMasks
 from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import Color, MeshData
+from arm_gazebo.mesh_data import Color
 from arm_gazebo.mesh_library import MeshLibrary
+from arm_gazebo.mesh_part import MeshPart
 
 VISUAL_GROUP = 2
 COLLISION_GROUP = 3
@@ -127,6 +128,7 @@ class LinkGeometry:
         except MeshError as error:
             yield self._stand_in(geometry, error, link)
             return
+        self._report_simplified(geometry, link)
         for asset in assets:
             yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name, rgba=asset.rgba)
 
@@ -140,7 +142,7 @@ class LinkGeometry:
         except MeshError as error:
             yield self._stand_in(geometry, error, link)
             return
-        for part, asset in zip(parts, self._meshes.assets(geometry), strict=True):
+        for part, asset in zip(parts, self._meshes.hulls(geometry), strict=True):
             if part.is_flat():
                 self._report.warn(
                     f"link '{link.name}'",
@@ -165,6 +167,17 @@ class LinkGeometry:
         # Mass comes from the link's inertial alone.
         geom.mass = 0.0
         return geom
+
+    def _report_simplified(self, mesh: Mesh, link: Link) -> None:
+        parts = self._meshes.parts(mesh)
+        given, drawn = sum(p.triangles for p in parts), sum(len(p.drawn.faces) for p in parts)
+        if drawn < given and mesh.uri not in self._reported:
+            self._reported.add(mesh.uri)
+            self._report.inform(
+                f"link '{link.name}'",
+                f"its mesh {mesh.uri} has {given} triangles; {drawn} are drawn",
+                link.line,
+            )
 
     def _stand_in(self, mesh: Mesh, error: MeshError, link: Link) -> _Shape:
         element = f"link '{link.name}'"
@@ -201,7 +214,7 @@ def _sizes(*sizes: float) -> tuple[float, float, float]:
     return (padded[0], padded[1], padded[2])
 
 
-def _box_around(part: MeshData) -> _Shape:
+def _box_around(part: MeshPart) -> _Shape:
     low, high = part.bounds
     half = np.maximum((high - low) / 2, THINNEST_M).tolist()
     middle = ((low + high) / 2).tolist()

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from arm_gazebo.errors import MeshError
 
 FEWEST_VERTICES = 4
-FLAT = 1e-9
-"""Thickness over size below which a mesh has no convex hull."""
 Color = tuple[float, float, float, float]
+Scale = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +26,7 @@ class MeshData:
     faces: NDArray[np.int32]
     rgba: Color | None = None
 
-    def scaled(self, scale: tuple[float, float, float]) -> "MeshData":
+    def scaled(self, scale: Scale) -> "MeshData":
         """Return the mesh scaled along its axes; a mirrored one keeps its outside outside."""
         faces = self.faces[:, ::-1] if np.prod(scale) < 0 else self.faces
         return MeshData(self.vertices * scale, faces, self.rgba)
@@ -36,12 +35,6 @@ class MeshData:
     def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lowest and highest coordinates, shapes (3,)."""
         return self.vertices.min(axis=0), self.vertices.max(axis=0)
-
-    def is_flat(self) -> bool:
-        """Whether all vertices lie in one plane, so that there is no convex hull."""
-        spread = self.vertices - self.vertices.mean(axis=0)
-        eigenvalues = np.linalg.eigvalsh(spread.T @ spread / len(spread))
-        return bool(np.sqrt(max(eigenvalues[0], 0.0)) <= FLAT + 1e-6 * np.sqrt(eigenvalues[2]))
 
     def check(self) -> None:
         """Raise a MeshError that says why MuJoCo could not draw this mesh."""

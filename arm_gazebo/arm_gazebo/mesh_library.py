@@ -1,20 +1,30 @@
 """The meshes of one model: each file read once, each part an asset of the MjSpec."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri
 from arm_description.robot import Mesh
 from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import Color, MeshData
+from arm_gazebo.mesh_cache import MeshCache
+from arm_gazebo.mesh_data import Color, MeshData, Scale
+from arm_gazebo.mesh_part import MeshPart
 from arm_gazebo.scene_file import read_scene
 from arm_gazebo.stl_file import read_stl
 
+STL_SUFFIX = ".stl"
 SCENE_SUFFIXES = (".obj", ".dae", ".glb", ".gltf", ".ply", ".off", ".3mf")
+SCATTERED_SUFFIXES = (".gltf",)
+"""Formats whose data lie in other files, so that one file's content does not tell all."""
+LARGEST_BYTES = 500_000_000
+MATERIALS = re.compile(rb"^\s*mtllib\s+(\S.*?)\s*$", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,15 +36,27 @@ class MeshAsset:
 
 
 class MeshLibrary:
-    """Reads mesh files and adds them to a specification, each file and scale once."""
+    """Reads mesh files and adds them to a specification, each file and scale once.
 
-    def __init__(self, spec: mujoco.MjSpec, package_path: Sequence[Path] = ()) -> None:
+    Args:
+        spec: gets the meshes.
+        package_path: folders searched after the installed packages.
+        cache: what was read by earlier runs; None to read everything anew.
+    """
+
+    def __init__(
+        self,
+        spec: mujoco.MjSpec,
+        package_path: Sequence[Path] = (),
+        cache: MeshCache | None = None,
+    ) -> None:
         self._spec = spec
         self._package_path = package_path
-        self._parts: dict[Path, tuple[MeshData, ...]] = {}
-        self._assets: dict[tuple[Path, tuple[float, float, float]], tuple[MeshAsset, ...]] = {}
+        self._cache = cache
+        self._parts: dict[Path, tuple[MeshPart, ...]] = {}
+        self._assets: dict[tuple[Path, Scale, Callable[..., str]], tuple[MeshAsset, ...]] = {}
 
-    def parts(self, mesh: Mesh) -> tuple[MeshData, ...]:
+    def parts(self, mesh: Mesh) -> tuple[MeshPart, ...]:
         """Return the parts of a mesh in m, in its own frame, scaled.
 
         Raises:
@@ -43,42 +65,50 @@ class MeshLibrary:
         return tuple(part.scaled(mesh.scale) for part in self._read(self._resolve(mesh)))
 
     def assets(self, mesh: Mesh) -> tuple[MeshAsset, ...]:
-        """Return the assets of a mesh, added to the specification where they are not yet.
+        """Return the parts of a mesh to be drawn, added to the specification if they are new.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.
         """
+        return self._added(mesh, self._add_drawn)
+
+    def hulls(self, mesh: Mesh) -> tuple[MeshAsset, ...]:
+        """Return the parts of a mesh to be touched, added to the specification if they are new.
+
+        Raises:
+            MeshError: the file cannot be found or read; the message names it.
+        """
+        if all(part.is_small() for part in self._read(self._resolve(mesh))):
+            return self.assets(mesh)
+        return self._added(mesh, self._add_hull)
+
+    def _added(self, mesh: Mesh, add: Callable[[str, MeshPart], str]) -> tuple[MeshAsset, ...]:
         path = self._resolve(mesh)
-        key = (path, mesh.scale)
+        key = (path, mesh.scale, add)
         if key not in self._assets:
             parts = [part.scaled(mesh.scale) for part in self._read(path)]
-            self._assets[key] = tuple(self._add(path, part) for part in parts)
+            self._assets[key] = tuple(
+                MeshAsset(add(path.stem, part), part.drawn.rgba) for part in parts
+            )
         return self._assets[key]
 
-    def _resolve(self, mesh: Mesh) -> Path:
-        try:
-            return resolve_uri(mesh.uri, self._package_path).resolve()
-        except ResourceNotFoundError as error:
-            raise MeshError(str(error)) from error
+    def _add_drawn(self, stem: str, part: MeshPart) -> str:
+        return self._add(stem, part.drawn.vertices, part.drawn.faces.ravel())
 
-    def _read(self, path: Path) -> tuple[MeshData, ...]:
-        if path not in self._parts:
-            try:
-                self._parts[path] = _usable(_read_parts(path))
-            except (MeshError, OSError) as error:
-                raise MeshError(f"cannot use the mesh {path}: {error}") from error
-        return self._parts[path]
+    def _add_hull(self, stem: str, part: MeshPart) -> str:
+        # Without triangles of its own a mesh is drawn as its hull.
+        return self._add(f"{stem}_hull", part.hull, np.empty(0, np.int32))
 
-    def _add(self, path: Path, part: MeshData) -> MeshAsset:
-        name = self._free_name(path.stem)
+    def _add(self, stem: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
+        name = self._free_name(stem)
         self._spec.add_mesh(
             name=name,
-            uservert=part.vertices.ravel(),
-            userface=part.faces.ravel(),
+            uservert=vertices.ravel(),
+            userface=faces,
             # Links bring their own inertia; this one takes open and flat meshes too.
             inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
         )
-        return MeshAsset(name, part.rgba)
+        return name
 
     def _free_name(self, stem: str) -> str:
         name, number = stem, 1
@@ -87,15 +117,61 @@ class MeshLibrary:
             name = f"{stem}_{number}"
         return name
 
+    def _resolve(self, mesh: Mesh) -> Path:
+        try:
+            return resolve_uri(mesh.uri, self._package_path).resolve()
+        except ResourceNotFoundError as error:
+            raise MeshError(str(error)) from error
 
-def _usable(parts: Sequence[MeshData]) -> tuple[MeshData, ...]:
+    def _read(self, path: Path) -> tuple[MeshPart, ...]:
+        if path not in self._parts:
+            try:
+                self._parts[path] = self._read_or_remember(path)
+            except (MeshError, OSError) as error:
+                raise MeshError(f"cannot use the mesh {path}: {error}") from error
+        return self._parts[path]
+
+    def _read_or_remember(self, path: Path) -> tuple[MeshPart, ...]:
+        _check_file(path)
+        if self._cache is None or path.suffix.lower() in SCATTERED_SUFFIXES:
+            return _usable(_read_parts(path))
+        key = self._cache.key(path.suffix.lower(), _contents(path))
+        parts = self._cache.load(key)
+        if parts is None:
+            parts = _usable(_read_parts(path))
+            self._cache.store(key, parts)
+        return parts
+
+
+def _check_file(path: Path) -> None:
+    """Refuse what is no mesh before it is read: devices, folders, files of other kinds."""
+    suffix = path.suffix.lower()
+    if suffix not in (STL_SUFFIX, *SCENE_SUFFIXES):
+        raise MeshError(f"'{suffix}' is not one of {STL_SUFFIX}, {', '.join(SCENE_SUFFIXES)}")
+    if not path.is_file():
+        raise MeshError("it is no file")
+    size = path.stat().st_size
+    if size > LARGEST_BYTES:
+        raise MeshError(f"it has {size} bytes; at most {LARGEST_BYTES} are read")
+
+
+def _contents(path: Path) -> Iterator[bytes]:
+    """Yield the bytes of a mesh file, and of the materials' files that an .obj names."""
+    content = path.read_bytes()
+    yield content
+    for name in MATERIALS.findall(content) if path.suffix.lower() == ".obj" else ():
+        materials = path.parent / name.decode("utf-8", "replace")
+        # A file that is not there is a content, too: it may come later.
+        yield materials.read_bytes() if materials.is_file() else b""
+
+
+def _usable(meshes: Sequence[MeshData]) -> tuple[MeshPart, ...]:
     """Return the parts that can be drawn; exporters leave empty ones behind."""
     usable = []
     problem = MeshError("nothing in it")
-    for part in parts:
+    for mesh in meshes:
         try:
-            part.check()
-            usable.append(part)
+            usable.append(MeshPart.of(mesh))
         except MeshError as error:
             problem = error
     if not usable:
@@ -104,9 +180,6 @@ def _usable(parts: Sequence[MeshData]) -> tuple[MeshData, ...]:
 
 
 def _read_parts(path: Path) -> tuple[MeshData, ...]:
-    suffix = path.suffix.lower()
-    if suffix == ".stl":
+    if path.suffix.lower() == STL_SUFFIX:
         return (read_stl(path.read_bytes()),)
-    if suffix in SCENE_SUFFIXES:
-        return read_scene(path)
-    raise MeshError(f"'{suffix}' is not one of .stl, {', '.join(SCENE_SUFFIXES)}")
+    return read_scene(path)

@@ -26,6 +26,7 @@ from arm_gazebo.errors import ModelError
 from arm_gazebo.footing import Footing
 from arm_gazebo.initial_state import initial_positions
 from arm_gazebo.link_geometry import LinkGeometry
+from arm_gazebo.mesh_cache import MeshCache
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mimic_joints import add_equalities, followings
 from arm_gazebo.robot_joint import RobotJoint
@@ -97,8 +98,9 @@ def _add_links(
     report: BuildReport,
 ) -> dict[str, mujoco.MjsBody]:
     """Add links, joints and shapes of a robot to a world; return the bodies by link name."""
+    cache = None if options.mesh_cache is None else MeshCache(options.mesh_cache)
     geometry = LinkGeometry(
-        MeshLibrary(spec, options.package_path),
+        MeshLibrary(spec, options.package_path, cache),
         default,
         masks_for(options.self_collide),
         options.strict,

@@ -61,5 +61,5 @@ def test_a_file_without_controllers_is_refused(file, content, reason):
 
 
 def test_a_missing_file_is_named(file):
-    with pytest.raises(SettingsError, match=r"cannot read the controllers' file .*controllers\.yaml"):
+    with pytest.raises(SettingsError, match=r"cannot read .*controllers\.yaml"):
         startable_controllers(file, TYPES)
