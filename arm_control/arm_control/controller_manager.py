@@ -53,6 +53,7 @@ class ControllerManager:
     Attributes:
         update_rate_hz: ticks per second.
         resources: the components, and the arrays of states and commands.
+        updates: its latest updates, in its own time.
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class ControllerManager:
             samples=STATISTICS_S * update_rate_hz,
             on_exception=log_failure if policy.handle_exceptions else raise_failure,
         )
+        self.updates = self._supervision.record()
         self.resources = ResourceManager(
             hardware,
             self._supervision,
@@ -99,9 +101,11 @@ class ControllerManager:
 
     def update(self, time_s: float, period_s: float) -> None:
         """Run the controllers that command something."""
+        began_s = self._supervision.now_s()
         failed = [c for c in self._commanding if not c.run(time_s, period_s)]
         if failed:
             self._replace_failed(failed)
+        self.updates.add(time_s, self._supervision.now_s() - began_s)
 
     def write(self, time_s: float, period_s: float) -> None:
         """Hand the commands to the hardware."""
@@ -182,7 +186,7 @@ class ControllerManager:
 
     def controller_runs(self) -> tuple[tuple[ControllerStatus, RunRecord], ...]:
         """Return every loaded controller with the record of its updates, the newest first."""
-        return tuple((c.status(), c.runs) for c in reversed(self._controllers.values()))
+        return tuple((s, self._controllers[s.name].runs) for s in self.list_controllers())
 
     def load_controller(
         self, controller: Controller[Any], type_name: str, fallback_names: Sequence[str] = ()

@@ -17,6 +17,9 @@ from arm_control.status import ControllerStatus
 STUCK_S = 1.0
 """A loop this late is not slow, it is stuck in somebody's code."""
 
+LEAST_PACE = 0.9
+"""Share of the real-time factor below which a loop is too slow to pass over in silence."""
+
 CONTROLLERS = "Controllers Activity"
 COMPONENTS = "Hardware Components Activity"
 MANAGER = "Controller Manager Activity"
@@ -106,13 +109,6 @@ class ManagerDiagnostics:
     def _report_loop(self, thresholds: PeriodicityThresholds) -> HealthReport:
         report = HealthReport(MANAGER)
         loop, pacer = self._loop, self._loop.pacer
-        figures = pacer.statistics
-        report.values |= {
-            "update_rate": str(self._manager.update_rate_hz),
-            "real_time_factor": f"{pacer.real_time_factor:g}",
-            "overruns": str(figures.overruns),
-            "max_lag": f"{1e3 * figures.max_lag_s:.2f} ms",
-        }
         if not loop.running:
             report.merge(Level.ERROR, "The control loop has ended")
         elif loop.paused:
@@ -124,17 +120,36 @@ class ManagerDiagnostics:
             )
         else:
             report.merge(Level.OK, "Controller Manager is running")
-        self._judge_pace(report, thresholds)
+            self._judge_pace(report)
+        self._judge_periodicity(report, thresholds)
         return report
 
-    def _judge_pace(self, report: HealthReport, thresholds: PeriodicityThresholds) -> None:
-        """Compare the wall time between ticks with what it should be, where it should be any."""
+    def _judge_pace(self, report: HealthReport) -> None:
+        """Compare the pace in wall time with the one asked for, if any."""
         pacer = self._loop.pacer
+        figures, asked = pacer.statistics, pacer.real_time_factor
+        report.values |= {
+            "real_time_factor": f"{figures.achieved_factor:.2f}",
+            "overruns": str(figures.overruns),
+            "max_lag": f"{1e3 * figures.max_lag_s:.2f} ms",
+        }
         statistics = pacer.runs.statistics()
-        if statistics is None:
-            return
-        report.values["execution_time"] = _in_words(statistics.execution_time_us, "us")
-        rate = statistics.periodicity_hz
+        if statistics is not None:
+            report.values["execution_time"] = _in_words(statistics.execution_time_us, "us")
+        # Nothing is known of the pace before the first second is over.
+        if 0.0 < figures.achieved_factor < LEAST_PACE * asked:
+            report.merge(
+                Level.WARN,
+                "The control loop cannot keep its pace: real-time factor "
+                f"{figures.achieved_factor:.2f} instead of {asked:g}",
+            )
+
+    def _judge_periodicity(self, report: HealthReport, thresholds: PeriodicityThresholds) -> None:
+        """Compare the manager's own rate, in its own time, with what it should be."""
+        expected_hz = self._manager.update_rate_hz
+        report.values["update_rate"] = str(expected_hz)
+        statistics = self._manager.updates.statistics()
+        rate = statistics.periodicity_hz if statistics is not None else None
         if rate is None:
             return
         report.values |= {
@@ -143,15 +158,12 @@ class ManagerDiagnostics:
             "periodicity.min": f"{rate.minimum:.2f}",
             "periodicity.max": f"{rate.maximum:.2f}",
         }
-        expected_hz = self._manager.update_rate_hz * pacer.real_time_factor
-        if not expected_hz or self._loop.paused:
-            return
         level = _rate_level(rate, expected_hz, thresholds)
         if level is not Level.OK:
             report.merge(
                 level,
                 f"Controller Manager has bad periodicity : {rate.mean:.2f} Hz. "
-                f"Expected consistent {expected_hz:g} Hz",
+                f"Expected consistent {expected_hz} Hz",
             )
 
     def _own_pace(self, status: ControllerStatus) -> bool:
