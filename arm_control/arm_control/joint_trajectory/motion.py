@@ -16,6 +16,10 @@ QUANTITIES = ("position", "velocity", "acceleration", "effort")
 RESOLUTION_S = 1e-9
 """Times nearer to each other than this are the same: ROS has nothing finer."""
 
+LARGEST = 1e15
+"""No number of a client may be greater: a float64 does not even tell one radian from the next
+there, and polynomials through such numbers could overflow."""
+
 
 def at_rest(position: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the motion of joints that stand at `position`, shape (n,), and exert nothing."""

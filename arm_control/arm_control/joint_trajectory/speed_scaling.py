@@ -1,8 +1,8 @@
 """How fast trajectory time runs."""
 
 import logging
-from math import isfinite
 
+from arm_control.joint_trajectory.motion import LARGEST
 from arm_control.joint_trajectory.parameters import SpeedScalingParameters
 
 
@@ -35,7 +35,7 @@ class SpeedScaling:
 
     def request(self, factor: float) -> bool:
         """Ask for a factor; any thread. Return whether it was taken."""
-        if not (isfinite(factor) and factor >= 0.0):
+        if not _is_factor(factor):
             self._logger.warning(
                 "Scaling factor has to be greater or equal to 0.0 - Ignoring input! (%g)", factor
             )
@@ -53,5 +53,9 @@ class SpeedScaling:
         """Bring the requested factor into force, or the one that the hardware measured."""
         factor = self.requested if measured is None else measured
         # Hardware that is still starting has no valid factor; what there is stays in force.
-        if isfinite(factor) and factor >= 0.0:
+        if _is_factor(factor):
             self.factor = factor
+
+
+def _is_factor(value: float) -> bool:
+    return 0.0 <= value <= LARGEST

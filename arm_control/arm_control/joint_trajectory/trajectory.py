@@ -10,7 +10,7 @@ from arm_control.joint_trajectory.angles import nearest_turn
 from arm_control.joint_trajectory.completion import hold_joints, integrate
 from arm_control.joint_trajectory.motion import POSITION, ROWS
 from arm_control.joint_trajectory.plans import JoinedPlan, Plan, SplinePlan, StepPlan
-from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest
+from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest, as_rows
 from arm_control.joint_trajectory.spline import Spline
 
 
@@ -57,7 +57,7 @@ class Trajectory:
             given = [(i, values) for i, values in given if len(values)]
             if given:
                 where = np.ix_([i for i, _ in given], columns)
-                self.motions[:, row][where] = [values for _, values in given]
+                self.motions[:, row][where] = as_rows([v for _, v in given], len(columns))
         self.missing = np.ones(len(joints), dtype=np.bool_)
         self.missing[columns] = False
         self._interpolation = interpolation

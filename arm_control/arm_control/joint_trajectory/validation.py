@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from arm_control.joint_trajectory.motion import EFFORT
-from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest
+from arm_control.joint_trajectory.motion import EFFORT, LARGEST
+from arm_control.joint_trajectory.requests import FIELDS, TrajectoryRequest, as_rows
 from arm_control.joint_trajectory.results import ErrorCode, Refusal
 
 STANDSTILL = float(np.finfo(np.float32).eps)
@@ -139,8 +139,11 @@ def _number_faults(request: TrajectoryRequest) -> Iterator[str]:
         given = [(i, getattr(point, field)) for i, point in enumerate(request.points)]
         given = [(i, values) for i, values in given if len(values)]
         # One look at all numbers: a trajectory without fault may have thousands of points.
-        finite = np.isfinite([values for _, values in given])
-        for row, column in np.argwhere(~finite):
-            i, values = given[row]
-            name = request.joint_names[column]
-            yield f"The {field} of joint {name} at point #{i} are not finite: {values[column]}."
+        numbers = as_rows([values for _, values in given], len(request.joint_names))
+        for row, column in np.argwhere(~(np.abs(numbers) <= LARGEST)):
+            number = numbers[row, column]
+            fault = "too large" if math.isfinite(number) else "not finite"
+            yield (
+                f"The {field} of joint {request.joint_names[column]} at point #{given[row][0]} "
+                f"are {fault}: {number}."
+            )

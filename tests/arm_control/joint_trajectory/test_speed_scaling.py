@@ -26,7 +26,7 @@ def test_setting_scaling_factor_works_correctly(make_rig: MakeRig):
     assert rig.sink.state.speed_scaling == 2.0
 
 
-@pytest.mark.parametrize("factor", [-0.1, np.nan, np.inf])
+@pytest.mark.parametrize("factor", [-0.1, np.nan, np.inf, 1e300])
 def test_what_is_no_factor_is_ignored(
     make_rig: MakeRig, factor: float, caplog: pytest.LogCaptureFixture
 ):

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from arm_control.joint_trajectory.angles import nearest_turn, shortest_way
 from arm_control.joint_trajectory.completion import integrate
+from arm_control.joint_trajectory.motion import LARGEST, RESOLUTION_S
 from arm_control.joint_trajectory.plans import JoinedPlan, SplinePlan, StopPlan
 from arm_control.joint_trajectory.spline import Spline
 
@@ -103,6 +104,26 @@ def test_a_sample_does_not_depend_on_the_samples_before(plan: SplinePlan, times:
 @given(plans(), st.floats(0.0, 30.0))
 def test_nothing_is_left_open(plan: SplinePlan, time_s: float):
     assert np.isfinite(plan.sample(time_s)).all()
+
+
+@unhurried
+@given(
+    st.lists(
+        st.lists(st.floats(-LARGEST, LARGEST), min_size=6, max_size=6), min_size=2, max_size=4
+    ),
+    st.sampled_from([RESOLUTION_S, 1e-3, 1.0, 2.0**31]),
+    st.floats(0.0, 1.0),
+)
+def test_no_number_that_is_taken_overflows(
+    points: list[list[float]], gap_s: float, fraction: float
+):
+    motions_there = np.full((len(points), 4, JOINTS), np.nan)
+    motions_there[:, :3] = np.reshape(points, (-1, 3, JOINTS))
+    times = np.array([gap_s * (1 + i) for i in range(len(points))])
+    first = float(times[0])
+    plan = SplinePlan(-motions_there[0], motions_there[0], Spline(times, motions_there), first, 0.0)
+
+    assert np.isfinite(plan.sample(fraction * float(times[-1]))).all()
 
 
 @unhurried

@@ -166,6 +166,12 @@ class TestBeyondUpstream:
         )
         assert fault.code is ErrorCode.INVALID_GOAL
 
+    @pytest.mark.parametrize("field", ["positions", "velocities", "accelerations"])
+    def test_numbers_that_polynomials_could_overflow_with_are_refused(self, field: str):
+        assert message(with_first(**{field: [0.0, -1e300, 0.0]})) == (
+            f"The {field} of joint j1 at point #0 are too large: -1e+300."
+        )
+
     def test_efforts_that_are_not_finite_are_refused(self):
         taking_efforts = replace(RULES, takes_effort=True)
 
