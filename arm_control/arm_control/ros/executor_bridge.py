@@ -53,6 +53,10 @@ def run_on_executor(executor: Executor, function: Callable[[], None]) -> None:
     For what must not happen while the executor gathers the entities to wait for, such as the end
     of an action server. Where the executor does not spin the function runs here.
     """
+    if not executor.get_nodes():
+        # One that was shut down has let go of its nodes, and takes no tasks any more.
+        function()
+        return
     done = threading.Event()
 
     def run() -> None:

@@ -117,3 +117,19 @@ def test_a_function_runs_though_the_executor_does_not(bridge: Any, client: Any) 
     bridge.run_on_executor(idle, lambda: ran.append(threading.get_ident()))
     assert ran == [threading.get_ident()]
     idle.shutdown()
+
+
+def test_an_executor_that_was_shut_down_is_not_needed(bridge: Any) -> None:
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+
+    context = Context()
+    context.init()
+    executor = SingleThreadedExecutor(context=context)
+    executor.shutdown()
+    threads: list[str] = []
+
+    bridge.run_on_executor(executor, lambda: threads.append(threading.current_thread().name))
+
+    context.try_shutdown()
+    assert threads == [threading.current_thread().name]
