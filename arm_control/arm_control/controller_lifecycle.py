@@ -30,7 +30,11 @@ class ControllerLifecycle:
         reason = self._run(
             managed, Transition.CONFIGURE, lambda: managed.controller.on_configure(parameters)
         )
-        reason = reason or self.resolve(managed)
+        if not reason:
+            reason = self._export(managed) or self.resolve(managed)
+            if reason:
+                failure_of(managed.controller.on_cleanup, f"on_cleanup of '{managed.name}'")
+                self._resources.exported.remove(managed.name)
         return self._arrive(managed, Transition.CONFIGURE, reason)
 
     def resolve(self, managed: ManagedController) -> str:
@@ -49,6 +53,7 @@ class ControllerLifecycle:
         """Let the controller forget; it counts as unconfigured even where its own part failed."""
         reason = self._run(managed, Transition.CLEANUP, managed.controller.on_cleanup)
         managed.forget_interfaces()
+        self._resources.exported.remove(managed.name)
         self._arrive(managed, Transition.CLEANUP, "")
         return reason
 
@@ -60,6 +65,7 @@ class ControllerLifecycle:
             self._resources.loan_states(managed.states),
         )
         managed.restart_cadence()
+        managed.forget_references()
         reason = self._run(managed, Transition.ACTIVATE, managed.controller.on_activate)
         if reason:
             self._take_interfaces(managed)
@@ -82,6 +88,12 @@ class ControllerLifecycle:
         reason = self._run(managed, Transition.SHUTDOWN, managed.controller.on_shutdown)
         self._arrive(managed, Transition.SHUTDOWN, "")
         return reason
+
+    def _export(self, managed: ManagedController) -> str:
+        return failure_of(
+            lambda: self._resources.exported.add(managed),
+            f"the interface export of controller '{managed.name}'",
+        )
 
     def _run(
         self, managed: ManagedController, transition: Transition, step: Callable[[], None]

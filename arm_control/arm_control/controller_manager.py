@@ -1,16 +1,18 @@
 """Loads, configures, switches and updates controllers on top of hardware components."""
 
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 from arm_control.controller import Controller
+from arm_control.controller_chain import ControllerChain
 from arm_control.controller_lifecycle import ControllerLifecycle
 from arm_control.controller_switch import SwitchRequest, SwitchResult
 from arm_control.controller_switcher import ControllerSwitcher
 from arm_control.errors import ControllerManagerError
 from arm_control.guarded import log_failure, raise_failure
 from arm_control.hardware import Hardware, HardwareReturn
+from arm_control.hardware_component import HardwareComponent
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
 from arm_control.manager_policy import ManagerPolicy
@@ -90,7 +92,10 @@ class ControllerManager:
         self._commanding: tuple[ManagedController, ...] = ()
         self._broadcasting: tuple[ManagedController, ...] = ()
         self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
-        self._switcher = ControllerSwitcher(self._controllers, self.resources, self._lifecycle)
+        self._chain = ControllerChain(self._controllers, self.resources.exported)
+        self._switcher = ControllerSwitcher(
+            self._controllers, self.resources, self._lifecycle, self._chain
+        )
         self._observers: list[ManagerObserver] = []
 
     def add_observer(self, observer: ManagerObserver) -> None:
@@ -130,6 +135,9 @@ class ControllerManager:
     def bring_up(self, unconfigured: Iterable[str] = (), inactive: Iterable[str] = ()) -> None:
         """Activate every component but those named, which stop at the state named; read once.
 
+        Components of one group are all configured before the first of them is activated; where
+        one of them fails, all go back.
+
         Raises:
             ControllerManagerError: a name is unknown, or a component did not get there and the
                 policy does not let that pass.
@@ -137,9 +145,11 @@ class ControllerManager:
         targets = dict.fromkeys(self.resources.components, LifecycleState.ACTIVE)
         targets.update(dict.fromkeys(inactive, LifecycleState.INACTIVE))
         targets.update(dict.fromkeys(unconfigured, LifecycleState.UNCONFIGURED))
-        for name, target in targets.items():
+        for name in targets:
+            self._component(name)
+        for members in self.resources.groups():
             try:
-                self.set_hardware_component_state(name, target)
+                self._bring_up_together({name: targets[name] for name in members})
             except ControllerManagerError as error:
                 if self._policy.end_on_initial_state_failure:
                     raise
@@ -148,10 +158,7 @@ class ControllerManager:
 
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
         """Walk a component to a state; controllers stop where their interfaces vanish."""
-        component = self.resources.components.get(name)
-        if component is None:
-            known = ", ".join(self.resources.components) or "no component"
-            raise ControllerManagerError(f"no hardware component '{name}'; there is {known}")
+        self._component(name)
         if target in (LifecycleState.UNCONFIGURED, LifecycleState.FINALIZED):
             self._deactivate(self._users_of({name}))
         reason = self.resources.set_component_state(name, target)
@@ -181,8 +188,8 @@ class ControllerManager:
     # Controllers
 
     def list_controllers(self) -> tuple[ControllerStatus, ...]:
-        """Return every loaded controller, the newest first."""
-        return tuple(c.status() for c in reversed(self._controllers.values()))
+        """Return every loaded controller, the newest first, but along the chains."""
+        return tuple(c.status(self._chain.connections(c)) for c in self._chain.in_order())
 
     def controller_runs(self) -> tuple[tuple[ControllerStatus, RunRecord], ...]:
         """Return every loaded controller with the record of its updates, the newest first."""
@@ -260,7 +267,7 @@ class ControllerManager:
 
     def shutdown(self) -> None:
         """Deactivate and finalize every controller, then every component."""
-        self._deactivate([c for c in self._controllers.values() if c.is_active])
+        self._deactivate([c for c in self._chain.in_order() if c.is_active])
         for controller in self._controllers.values():
             if controller.state is LifecycleState.INACTIVE:
                 self._lifecycle.clean_up(controller)
@@ -272,6 +279,26 @@ class ControllerManager:
                 if reason:
                     logger.error("%s", reason)
         self._activity_changed()
+
+    def _component(self, name: str) -> HardwareComponent:
+        component = self.resources.components.get(name)
+        if component is None:
+            known = ", ".join(self.resources.components) or "no component"
+            raise ControllerManagerError(f"no hardware component '{name}'; there is {known}")
+        return component
+
+    def _bring_up_together(self, targets: Mapping[str, LifecycleState]) -> None:
+        try:
+            for step in (LifecycleState.INACTIVE, LifecycleState.ACTIVE):
+                for name, target in targets.items():
+                    if target >= step:
+                        self.set_hardware_component_state(name, step)
+        except ControllerManagerError:
+            if len(targets) > 1:
+                for name in targets:
+                    self.resources.set_component_state(name, LifecycleState.UNCONFIGURED)
+                self._hardware_changed()
+            raise
 
     def _find(self, name: str, action: str) -> ManagedController:
         controller = self._controllers.get(name)
@@ -311,26 +338,32 @@ class ControllerManager:
 
     def _users_of(
         self, components: set[str], *, commanding_only: bool = False
-    ) -> list[ManagedController]:
-        return [
+    ) -> Sequence[ManagedController]:
+        """Return the active controllers that use one of these, and those that command them."""
+        return self._chain.with_preceding(
             c
             for c in self._controllers.values()
             if c.is_active
             and self.resources.components_of(() if commanding_only else c.states, c.commands)
             & components
-        ]
+        )
 
     def _hardware_changed(self) -> None:
+        self._resolve_inactive()
+        self._activity_changed()
+
+    def _resolve_inactive(self) -> None:
         """Let configured controllers see what is available now."""
         for controller in self._controllers.values():
             if controller.state is LifecycleState.INACTIVE:
                 self._lifecycle.resolve(controller)
-        self._activity_changed()
 
     def _select_active(self) -> None:
-        active = [c for c in reversed(self._controllers.values()) if c.is_active]
+        active = [c for c in self._chain.in_order() if c.is_active]
         self._commanding = tuple(c for c in active if c.commands)
         self._broadcasting = tuple(c for c in active if not c.commands)
+        if self.resources.exported.states():
+            self._resolve_inactive()
         self._activity_changed()
 
     def _controller_transitioned(

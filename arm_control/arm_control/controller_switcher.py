@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Iterable, Mapping, Sequence
 
+from arm_control.controller_chain import ControllerChain
 from arm_control.controller_lifecycle import ControllerLifecycle
 from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
 from arm_control.managed_controller import ManagedController
@@ -31,6 +32,7 @@ class ControllerSwitcher:
         controllers: Mapping[str, ManagedController],
         resources: ResourceManager,
         lifecycle: ControllerLifecycle,
+        chain: ControllerChain,
     ) -> None:
         """Watch over the manager's controllers.
 
@@ -38,15 +40,17 @@ class ControllerSwitcher:
             controllers: by name; the manager goes on adding and removing.
             resources: the hardware.
             lifecycle: takes a single controller from state to state.
+            chain: tells who commands whom.
         """
         self._controllers = controllers
         self._resources = resources
         self._lifecycle = lifecycle
+        self._chain = chain
 
     def switch(self, request: SwitchRequest) -> SwitchResult:
         """Do what was asked, as far as its strictness and the state of things allow."""
         try:
-            plan = SwitchPlanner(self._controllers, self._resources, request).plan()
+            plan = SwitchPlanner(self._controllers, self._resources, self._chain, request).plan()
         except SwitchRefusedError as error:
             logger.error("no controller is switched: %s %s", str(error).rstrip(), error.hint)
             return SwitchResult(False, str(error))
@@ -69,9 +73,14 @@ class ControllerSwitcher:
         self._leave_modes(controllers)
         for controller in controllers:
             self._lifecycle.deactivate(controller)
+        self._set_chained_modes()
 
     def replace_failed(self, failed: Sequence[ManagedController]) -> None:
-        """Deactivate controllers whose update failed, and let their fallbacks take over."""
+        """Deactivate controllers whose update failed, and let their fallbacks take over.
+
+        What hangs together with them by commands or exported states goes with them.
+        """
+        failed = self._chain.with_group(failed)
         names = " ".join(controller.name for controller in failed)
         logger.error(
             "Deactivating controllers : [ %s ] as their update resulted in an error!", names
@@ -97,8 +106,10 @@ class ControllerSwitcher:
 
     def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
         stuck = [c for c in plan.deactivate if self._lifecycle.deactivate(c)]
+        self._set_chained_modes(plan.activate)
         refused = [c for c in plan.activate if self._lifecycle.activate(c)]
         if refused:
+            self._set_chained_modes()
             self._leave_modes(refused)
             if request.is_strict:
                 self.deactivate([c for c in plan.activate if c.is_active])
@@ -111,6 +122,17 @@ class ControllerSwitcher:
         reason = self._resources.perform_mode_switch((), stop)
         if reason:
             logger.error("Error while performing mode switch: %s", reason)
+
+    def _set_chained_modes(self, activated: Sequence[ManagedController] = ()) -> None:
+        """Let references follow commands where somebody commands them, and topics elsewhere.
+
+        Args:
+            activated: controllers that count as active already.
+        """
+        every = tuple(self._controllers.values())
+        commanding = [c for c in every if c.is_active or c in activated]
+        for controller in every:
+            controller.set_chained(self._chain.is_commanded(controller, commanding))
 
     def _is_active(self, name: str) -> bool:
         controller = self._controllers.get(name)

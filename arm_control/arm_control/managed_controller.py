@@ -1,13 +1,15 @@
 """A loaded controller in the manager's care: its state, its rate, its interfaces."""
 
 import logging
+from math import nan
 from typing import Any
 
+from arm_control.chainable_controller import ChainableController
 from arm_control.controller import Controller, ReturnType
 from arm_control.lifecycle import LifecycleState
 from arm_control.resource_manager import ResourceManager
 from arm_control.run_supervision import RunSupervision
-from arm_control.status import ControllerStatus
+from arm_control.status import ChainConnection, ControllerStatus
 
 logger = logging.getLogger(__name__)
 
@@ -58,6 +60,17 @@ class ManagedController:
         """Whether it is being updated."""
         return self.state is LifecycleState.ACTIVE
 
+    @property
+    def is_chained(self) -> bool:
+        """Whether another controller commands its references."""
+        controller = self.controller
+        return isinstance(controller, ChainableController) and controller.is_chained
+
+    def set_chained(self, is_chained: bool) -> None:
+        """Say whether another controller commands its references; for a chainable one."""
+        if isinstance(self.controller, ChainableController):
+            self.controller.is_chained = is_chained
+
     def set_update_rate(self, requested_hz: int) -> None:
         """Choose the rate nearest to the one asked for that divides the manager's; 0 = that."""
         rate_hz = self._manager_rate_hz
@@ -95,6 +108,11 @@ class ManagedController:
         """Ask for nothing any more."""
         self.commands = self.states = ()
 
+    def forget_references(self) -> None:
+        """Let a chainable controller begin with nothing to follow."""
+        if isinstance(self.controller, ChainableController):
+            self.controller.references[:] = nan
+
     def restart_cadence(self) -> None:
         """Let the next cycle be the first: it runs at once, with the nominal period."""
         self._last_update_s = None
@@ -116,8 +134,13 @@ class ManagedController:
         self.runs.add(time_s, self._now_s() - began_s)
         return outcome is ReturnType.OK
 
-    def status(self) -> ControllerStatus:
-        """Return a snapshot for the list services."""
+    def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:
+        """Return a snapshot for the list services.
+
+        Args:
+            connections: the references of others that it commands.
+        """
+        exports = self._exports()
         return ControllerStatus(
             name=self.name,
             type_name=self.type_name,
@@ -126,7 +149,18 @@ class ManagedController:
             claimed_interfaces=self.commands if self.is_active else (),
             required_command_interfaces=self.commands,
             required_state_interfaces=self.states,
+            is_chainable=isinstance(self.controller, ChainableController),
+            is_chained=self.is_chained,
+            reference_interfaces=exports.reference_names() if exports else (),
+            exported_state_interfaces=exports.exported_state_names() if exports else (),
+            chain_connections=connections,
         )
+
+    def _exports(self) -> ChainableController[Any] | None:
+        """Return the controller where it is chainable and configured."""
+        configured = self.state in (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
+        controller = self.controller
+        return controller if configured and isinstance(controller, ChainableController) else None
 
     def _due_period_s(self, time_s: float, tick_s: float) -> float:
         """Return the period to update with, 0 where a later tick is nearer to the own period."""

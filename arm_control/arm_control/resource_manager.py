@@ -5,11 +5,12 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from arm_control.errors import ControllerManagerError
+from arm_control.exported_interfaces import ExportedInterfaces, Place
 from arm_control.guarded import failure_of
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.hardware_component import HardwareComponent
 from arm_control.lifecycle import LifecycleState
-from arm_control.loaned_interfaces import LoanedInterfaces
+from arm_control.loaned_interfaces import LoanedInterfaces, loan
 from arm_control.run_supervision import RunSupervision
 from arm_control.status import HardwareComponentStatus, InterfaceStatus
 
@@ -26,6 +27,7 @@ class ResourceManager:
         states: shape (number of state interfaces,); NaN where nothing was read yet.
         commands: shape (number of command interfaces,); NaN where nothing was commanded yet.
         components: by name, in the order given.
+        exported: the interfaces of chainable controllers; they count as commands and states, too.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class ResourceManager:
         self._read_only_states.setflags(write=False)
         self._state_index = {name: i for i, name in enumerate(self._state_owner)}
         self._command_index = {name: i for i, name in enumerate(self._command_owner)}
+        self.exported = ExportedInterfaces()
         self._claims: dict[str, str] = {}
         self._commandable = {LifecycleState.ACTIVE}
         if command_inactive:
@@ -65,22 +68,32 @@ class ResourceManager:
         self._bind()
 
     def available_states(self) -> tuple[str, ...]:
-        """Full names of the state interfaces of configured components."""
-        return tuple(name for name, owner in self._state_owner.items() if owner.is_available)
+        """Full names of the state interfaces of configured components and active controllers."""
+        return (
+            *(name for name, owner in self._state_owner.items() if owner.is_available),
+            *filter(self.exported.is_state_available, self.exported.states()),
+        )
 
     def available_commands(self) -> tuple[str, ...]:
-        """Full names of the command interfaces of configured components."""
-        return tuple(name for name, owner in self._command_owner.items() if owner.is_available)
+        """Full names of the command interfaces of configured components, and references in use."""
+        return (
+            *(name for name, owner in self._command_owner.items() if owner.is_available),
+            *filter(self.exported.is_reference_available, self.exported.references()),
+        )
 
     def is_state_available(self, name: str) -> bool:
-        """Whether the state interface exists and its component is configured."""
+        """Whether the state interface exists and its owner provides it."""
         owner = self._state_owner.get(name)
-        return owner is not None and owner.is_available
+        if owner is None:
+            return self.exported.is_state_available(name)
+        return owner.is_available
 
     def is_command_available(self, name: str) -> bool:
-        """Whether the command interface exists and its component is configured."""
+        """Whether the command interface exists and its owner takes it."""
         owner = self._command_owner.get(name)
-        return owner is not None and owner.is_available
+        if owner is None:
+            return self.exported.is_reference_available(name)
+        return owner.is_available
 
     def claimant(self, command: str) -> str | None:
         """Name of the controller that holds a command interface, None where nobody does."""
@@ -96,19 +109,17 @@ class ResourceManager:
 
     def loan_commands(self, names: Sequence[str]) -> LoanedInterfaces:
         """Open a window on these commands."""
-        return LoanedInterfaces(names, self.commands, [self._command_index[n] for n in names])
+        return loan(names, [self._command_place(name) for name in names])
 
     def loan_states(self, names: Sequence[str]) -> LoanedInterfaces:
         """Open a read-only window on these states."""
-        return LoanedInterfaces(
-            names, self._read_only_states, [self._state_index[n] for n in names]
-        )
+        return loan(names, [self._state_place(name) for name in names])
 
     def components_of(self, states: Iterable[str], commands: Iterable[str]) -> frozenset[str]:
         """Names of the components that these interfaces belong to."""
-        owners = [self._state_owner[name] for name in states]
-        owners += [self._command_owner[name] for name in commands]
-        return frozenset(owner.name for owner in owners)
+        owners = [self._state_owner.get(name) for name in states]
+        owners += [self._command_owner.get(name) for name in commands]
+        return frozenset(owner.name for owner in owners if owner is not None)
 
     def prepare_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
         """Ask each component concerned; return why one refuses, or nothing."""
@@ -152,6 +163,14 @@ class ResourceManager:
                 trouble.append((component, outcome))
         return trouble
 
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """Names of the components that start together; most stand alone."""
+        groups: dict[tuple[str, str], list[str]] = {}
+        for name, component in self.components.items():
+            group = component.hardware.info.group
+            groups.setdefault((group, "" if group else name), []).append(name)
+        return tuple(map(tuple, groups.values()))
+
     def set_component_state(self, name: str, target: LifecycleState) -> str:
         """Walk a component to a state; return why it stopped short, or nothing."""
         reason = self.components[name].go_to(target)
@@ -167,9 +186,12 @@ class ResourceManager:
         self,
     ) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
         """Return the command and the state interfaces, each sorted by name."""
+        exported = self.exported
         return (
-            tuple(self._command_status(name) for name in sorted(self._command_owner)),
-            tuple(self._state_status(name) for name in sorted(self._state_owner)),
+            tuple(
+                map(self._command_status, sorted((*self._command_owner, *exported.references())))
+            ),
+            tuple(map(self._state_status, sorted((*self._state_owner, *exported.states())))),
         )
 
     def list_components(self, rate_hz: int) -> tuple[HardwareComponentStatus, ...]:
@@ -197,6 +219,16 @@ class ResourceManager:
     def _state_status(self, name: str) -> InterfaceStatus:
         return InterfaceStatus(name, self.is_state_available(name), is_claimed=False)
 
+    def _command_place(self, name: str) -> Place:
+        index = self._command_index.get(name)
+        return self.exported.reference_place(name) if index is None else (self.commands, index)
+
+    def _state_place(self, name: str) -> Place:
+        index = self._state_index.get(name)
+        if index is None:
+            return self.exported.state_place(name)
+        return self._read_only_states, index
+
     def _concerned(
         self, start: Sequence[str], stop: Sequence[str]
     ) -> list[tuple[HardwareComponent, tuple[str, ...], tuple[str, ...]]]:
@@ -204,8 +236,8 @@ class ResourceManager:
         split = [
             (
                 component,
-                tuple(name for name in start if self._command_owner[name] is component),
-                tuple(name for name in stop if self._command_owner[name] is component),
+                tuple(name for name in start if self._command_owner.get(name) is component),
+                tuple(name for name in stop if self._command_owner.get(name) is component),
             )
             for component in self.components.values()
         ]

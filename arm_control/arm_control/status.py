@@ -34,6 +34,19 @@ class HardwareComponentStatus:
 
 
 @dataclass(frozen=True, slots=True)
+class ChainConnection:
+    """References of one controller that another one commands.
+
+    Attributes:
+        name: of the controller that exports them.
+        reference_interfaces: without its name.
+    """
+
+    name: str
+    reference_interfaces: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ControllerStatus:
     """A loaded controller.
 
@@ -45,6 +58,12 @@ class ControllerStatus:
         claimed_interfaces: command interfaces it holds; empty unless active.
         required_command_interfaces: what it asks for; empty unless inactive or active.
         required_state_interfaces: what it asks for; empty unless inactive or active.
+        is_chainable: whether others may command it.
+        is_chained: whether another one does.
+        reference_interfaces: what it exports for that, without its name; empty unless inactive
+            or active, like the two below.
+        exported_state_interfaces: what it exports for others to read, without its name.
+        chain_connections: the references of others that it commands.
     """
 
     name: str
@@ -54,3 +73,8 @@ class ControllerStatus:
     claimed_interfaces: tuple[str, ...]
     required_command_interfaces: tuple[str, ...]
     required_state_interfaces: tuple[str, ...]
+    is_chainable: bool = False
+    is_chained: bool = False
+    reference_interfaces: tuple[str, ...] = ()
+    exported_state_interfaces: tuple[str, ...] = ()
+    chain_connections: tuple[ChainConnection, ...] = ()

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from arm_control.controller_chain import ControllerChain
 from arm_control.controller_switch import SwitchRequest
 from arm_control.errors import ControllerManagerError
 from arm_control.lifecycle import LifecycleState
@@ -50,10 +51,12 @@ class SwitchPlanner:
         self,
         controllers: Mapping[str, ManagedController],
         resources: ResourceManager,
+        chain: ControllerChain,
         request: SwitchRequest,
     ) -> None:
         self._controllers = controllers
         self._resources = resources
+        self._chain = chain
         self._request = request
 
     def plan(self) -> SwitchPlan:
@@ -66,9 +69,29 @@ class SwitchPlanner:
         activate = self._known(self._request.activate, "activate")
         activate = self._accepted(activate, self._why_not_activate)
         deactivate = self._accepted(deactivate, self._why_not_deactivate)
-        plan = SwitchPlan(tuple(activate), tuple(deactivate))
+        plan = self._keep_chains(SwitchPlan(tuple(activate), tuple(deactivate)))
         self._check_interfaces(plan)
         return plan
+
+    def _keep_chains(self, plan: SwitchPlan) -> SwitchPlan:
+        """Leave out what would break a chain, until nothing would; return the rest as it runs."""
+        while True:
+            activate = self._accepted(plan.activate, lambda c, p=plan: self._why_not_lead(c, p))
+            deactivate = self._accepted(
+                plan.deactivate, lambda c, p=plan: self._why_not_leave(c, p)
+            )
+            kept = SwitchPlan(tuple(activate), tuple(deactivate))
+            if kept == plan:
+                break
+            plan = kept
+        if not any(map(self._chain.following, (*plan.activate, *plan.deactivate))):
+            return plan
+        # A controller stops before those that it commands, and starts after them.
+        order = [controller.name for controller in self._chain.in_order()]
+        return SwitchPlan(
+            tuple(sorted(plan.activate, key=lambda c: -order.index(c.name))),
+            tuple(sorted(plan.deactivate, key=lambda c: order.index(c.name))),
+        )
 
     def _known(self, names: Sequence[str], action: str) -> list[ManagedController]:
         """Return the controllers of these names, each once; unknown names end it or are dropped."""
@@ -134,6 +157,34 @@ class SwitchPlanner:
             "since it is not active."
         )
 
+    def _why_not_lead(self, controller: ManagedController, plan: SwitchPlan) -> str:
+        """Say which of the controllers that follow would not be active."""
+        for follower in self._chain.following(controller):
+            if follower in plan.activate:
+                continue
+            if not follower.is_active:
+                trouble = "is not active and will not be activated"
+            elif follower in plan.deactivate:
+                trouble = "will be deactivated"
+            else:
+                continue
+            return (
+                f"Controller with name '{controller.name}' can not be activated since "
+                f"the following controller with name '{follower.name}' {trouble}."
+            )
+        return ""
+
+    def _why_not_leave(self, controller: ManagedController, plan: SwitchPlan) -> str:
+        """Say which of the controllers that precede would still be active."""
+        for leader in self._chain.preceding(controller):
+            if leader.is_active and leader not in plan.deactivate:
+                return (
+                    f"Controller with name '{controller.name}' can not be deactivated since "
+                    f"the preceding controller with name '{leader.name}' is active "
+                    "and will not be deactivated."
+                )
+        return ""
+
     def _why_not_fall_back(self, controller: ManagedController) -> str:
         """Say why the controller's fallbacks could not take over, before they are needed."""
         for name in controller.fallback_names:
@@ -155,12 +206,24 @@ class SwitchPlanner:
 
     def _first_missing(self, controller: ManagedController) -> str:
         for name in controller.commands:
-            if not self._resources.is_command_available(name):
+            if not self._will_take(name):
                 return name
         for name in controller.states:
-            if not self._resources.is_state_available(name):
+            if not self._will_provide(name):
                 return name
         return ""
+
+    def _will_take(self, command: str) -> bool:
+        """Whether a command can be claimed; references always, once the chains are checked."""
+        if self._resources.exported.reference_owner(command) is not None:
+            return True
+        return self._resources.is_command_available(command)
+
+    def _will_provide(self, state: str) -> bool:
+        """Whether a state can be read; exported ones always, once the chains are checked."""
+        if self._resources.exported.state_owner(state) is not None:
+            return True
+        return self._resources.is_state_available(state)
 
     def _check_interfaces(self, plan: SwitchPlan) -> None:
         """Refuse the whole plan, strict or not, where an interface is missing or taken."""
@@ -169,7 +232,7 @@ class SwitchPlanner:
         for controller in plan.activate:
             for name in controller.commands:
                 claimant = self._resources.claimant(name)
-                if not self._resources.is_command_available(name):
+                if not self._will_take(name):
                     trouble = "is not available."
                     hint = f"(available: {', '.join(self._resources.available_commands())})"
                 elif claimant is not None and claimant not in released:
@@ -183,7 +246,7 @@ class SwitchPlanner:
                     continue
                 raise _unusable(controller, f"command interface '{name}' {trouble}", hint)
             for name in controller.states:
-                if not self._resources.is_state_available(name):
+                if not self._will_provide(name):
                     hint = f"(available: {', '.join(self._resources.available_states())})"
                     raise _unusable(controller, f"state interface '{name}' is not available.", hint)
 

@@ -3,7 +3,7 @@
 import pytest
 
 from arm_control.errors import HardwareInfoError
-from arm_control.hardware_info import HardwareInfo, parse_hardware_info
+from arm_control.hardware_info import HardwareInfo, MimicInfo, parse_hardware_info
 
 
 def robot(*blocks: str) -> str:
@@ -113,3 +113,30 @@ def test_the_line_is_that_of_the_element() -> None:
     text = robot("\n\n", block("\n<joint name='a'/>\n<joint name='a'/>"))
     with pytest.raises(HardwareInfoError, match=r"^line 5:"):
         parse_hardware_info(text)
+
+
+def test_the_group_of_a_component() -> None:
+    (info,) = parse_hardware_info(
+        "<robot><ros2_control name='H' type='system'><hardware><plugin>p/P</plugin>"
+        "<group> arms </group></hardware></ros2_control></robot>"
+    )
+    assert info.group == "arms"
+    assert parse_one("").group == ""
+
+
+def test_what_a_joint_mimics_comes_from_the_urdf() -> None:
+    joints = "<joint name='a'/><joint name='b'/><joint name='c' mimic='false'/>"
+    (info,) = parse_hardware_info(
+        "<robot><joint name='b'><mimic joint='a' multiplier='0' offset='0.5'/></joint>"
+        f"<joint name='c'><mimic joint='a'/></joint>{block(joints)}</robot>"
+    )
+    assert [joint.mimic for joint in info.joints] == [None, MimicInfo("a", 0.0, 0.5), None]
+
+
+def test_a_mimic_that_is_no_number_is_named_with_its_line() -> None:
+    with pytest.raises(
+        HardwareInfoError, match="line 2: 'multiplier' of <mimic> in <joint name='b"
+    ):
+        parse_hardware_info(
+            "<robot>\n<joint name='b'><mimic joint='a' multiplier='x'/></joint></robot>"
+        )

@@ -1,5 +1,6 @@
 """Components in the manager's care: start, states, failures."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 
 from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
 from arm_control.hardware import HardwareReturn
-from arm_control.testing import fake_hardware
+from arm_control.manager_policy import ManagerPolicy
+from arm_control.testing import FakeHardware, fake_hardware
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 
@@ -43,6 +45,34 @@ def test_bring_up_says_which_step_failed() -> None:
     hardware.refused.add("on_activate")
     with pytest.raises(ControllerManagerError, match="on_activate of hardware component 'FakeSys"):
         ControllerManager([hardware], 100).bring_up()
+
+
+def grouped(*names: str) -> list[FakeHardware]:
+    """Return components of one group that write their steps into one list, and one outside."""
+    steps: list[str] = []
+    components = [fake_hardware((f"{name}1",), name=name) for name in (*names, "Alone")]
+    for component in components:
+        group = "" if component.info.name == "Alone" else "arms"
+        component.info = dataclasses.replace(component.info, group=group)
+        component.events = steps
+    return components
+
+
+def test_a_group_is_configured_before_any_of_it_is_activated() -> None:
+    hardware = grouped("A", "B")
+    ControllerManager(hardware, 100).bring_up()
+    configure, activate = "on_configure", "on_activate"
+    assert hardware[0].events == [configure, configure, activate, activate, configure, activate]
+
+
+def test_where_one_of_a_group_fails_all_go_back() -> None:
+    hardware = grouped("A", "B")
+    hardware[1].refused.add("on_activate")
+    policy = ManagerPolicy(end_on_initial_state_failure=False)
+    manager = ControllerManager(hardware, 100, policy)
+    manager.bring_up()
+    states = [c.state.label for c in manager.list_hardware_components()]
+    assert states == ["unconfigured", "unconfigured", "active"]
 
 
 def test_the_update_rate_must_be_positive() -> None:

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arm_control.loaned_interfaces import LoanedInterfaces
+from arm_control.loaned_interfaces import loan as scattered
 
 
 def loan(array: np.ndarray, positions: list[int]) -> LoanedInterfaces:
@@ -37,3 +38,23 @@ def test_one_value_is_written_to_all() -> None:
 
 def test_its_length_is_the_number_of_interfaces() -> None:
     assert (len(loan(np.zeros(4), [3, 0])), len(loan(np.zeros(4), []))) == (2, 0)
+
+
+def test_interfaces_of_several_arrays_are_one_window() -> None:
+    first, second = np.arange(3.0), np.array([10.0, 20.0])
+    window = scattered(["a", "b", "c", "d"], [(first, 2), (second, 1), (first, 0), (second, 0)])
+    assert window.read().tolist() == [2.0, 20.0, 0.0, 10.0]
+    window.write([1.0, 2.0, 3.0, 4.0])
+    assert (first.tolist(), second.tolist()) == ([3.0, 1.0, 1.0], [4.0, 2.0])
+    window.write(0.0)
+    assert (first.tolist(), second.tolist()) == ([0.0, 1.0, 0.0], [0.0, 0.0])
+
+
+def test_interfaces_of_one_array_are_read_without_a_copy() -> None:
+    array = np.arange(4.0)
+    window = scattered(["a", "b"], [(array, 1), (array, 2)])
+    assert np.shares_memory(window.read(), array)
+
+
+def test_no_interfaces_are_an_empty_window() -> None:
+    assert scattered([], []).read().tolist() == []

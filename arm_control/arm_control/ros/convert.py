@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from builtin_interfaces.msg import Time
 from controller_manager_msgs.msg import (
+    ChainConnection,
     ControllerManagerActivity,
     ControllerState,
     HardwareComponentState,
@@ -38,6 +39,14 @@ def controller_message(status: ControllerStatus) -> ControllerState:
         claimed_interfaces=list(status.claimed_interfaces),
         required_command_interfaces=list(status.required_command_interfaces),
         required_state_interfaces=list(status.required_state_interfaces),
+        is_chainable=status.is_chainable,
+        is_chained=status.is_chained,
+        reference_interfaces=list(status.reference_interfaces),
+        exported_state_interfaces=list(status.exported_state_interfaces),
+        chain_connections=[
+            ChainConnection(name=c.name, reference_interfaces=list(c.reference_interfaces))
+            for c in status.chain_connections
+        ],
     )
 
 

@@ -1,0 +1,137 @@
+"""Who commands whom, and so who runs before whom."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from arm_control.exported_interfaces import ExportedInterfaces
+from arm_control.managed_controller import ManagedController
+from arm_control.status import ChainConnection
+
+
+class ControllerChain:
+    """The relations between the loaded controllers, as they are configured now. Loop thread only.
+
+    A controller *precedes* those whose references it commands or whose exported states it reads;
+    these *follow* it.
+    """
+
+    def __init__(
+        self, controllers: Mapping[str, ManagedController], exported: ExportedInterfaces
+    ) -> None:
+        """Watch over the manager's controllers.
+
+        Args:
+            controllers: by name; the manager goes on adding and removing.
+            exported: what they export.
+        """
+        self._controllers = controllers
+        self._exported = exported
+
+    def commanded_by(self, controller: ManagedController) -> tuple[ManagedController, ...]:
+        """Return the controllers whose references it commands."""
+        return self._named(map(self._exported.reference_owner, controller.commands))
+
+    def read_by(self, controller: ManagedController) -> tuple[ManagedController, ...]:
+        """Return the controllers whose exported states it reads."""
+        return self._named(map(self._exported.state_owner, controller.states))
+
+    def following(self, controller: ManagedController) -> tuple[ManagedController, ...]:
+        """Return the controllers that follow it directly."""
+        both = (*self.commanded_by(controller), *self.read_by(controller))
+        return tuple(dict.fromkeys(both))
+
+    def preceding(self, controller: ManagedController) -> tuple[ManagedController, ...]:
+        """Return the controllers that precede it directly."""
+        return tuple(c for c in self._controllers.values() if controller in self.following(c))
+
+    def is_commanded(self, controller: ManagedController, by: Iterable[ManagedController]) -> bool:
+        """Return whether one of these commands the controller's references."""
+        return any(controller in self.commanded_by(other) for other in by)
+
+    def connections(self, controller: ManagedController) -> tuple[ChainConnection, ...]:
+        """Return the references that a controller commands, by the controller that exports them."""
+        return tuple(
+            ChainConnection(
+                other.name,
+                tuple(
+                    name.removeprefix(f"{other.name}/")
+                    for name in controller.commands
+                    if self._exported.reference_owner(name) == other.name
+                ),
+            )
+            for other in self.commanded_by(controller)
+        )
+
+    def in_order(self) -> tuple[ManagedController, ...]:
+        """Return all controllers as they are to run: the newest first, but along the chains.
+
+        Who commands runs before who is commanded. Who exports states runs before who reads them,
+        except where the reader commands it.
+        """
+        ordered: dict[str, ManagedController] = {}
+        visited: set[str] = set()
+
+        def visit(controller: ManagedController) -> None:
+            if controller.name in visited:
+                return
+            visited.add(controller.name)
+            for earlier in self._earlier(controller):
+                visit(earlier)
+            ordered[controller.name] = controller
+
+        for controller in self._newest_first():
+            visit(controller)
+        return tuple(ordered.values())
+
+    def with_preceding(
+        self, controllers: Iterable[ManagedController]
+    ) -> tuple[ManagedController, ...]:
+        """Return these and all active ones that precede them, as they run."""
+        return self._closure(controllers, self.preceding)
+
+    def with_group(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
+        """Return these and all active ones that they hang together with, as they run."""
+        return self._closure(controllers, lambda c: (*self.preceding(c), *self.following(c)))
+
+    def _newest_first(self) -> tuple[ManagedController, ...]:
+        return tuple(self._controllers.values())[::-1]
+
+    def _earlier(self, controller: ManagedController) -> Iterator[ManagedController]:
+        for other in self._newest_first():
+            if controller in self.commanded_by(other):
+                yield other
+        for other in self.read_by(controller):
+            if not self._leads_to(controller, other):
+                yield other
+
+    def _leads_to(self, controller: ManagedController, goal: ManagedController) -> bool:
+        """Return whether commands of the one reach the other, along however many controllers."""
+        waiting, seen = [controller], {controller.name}
+        while waiting:
+            for other in self.commanded_by(waiting.pop()):
+                if other is goal:
+                    return True
+                if other.name not in seen:
+                    seen.add(other.name)
+                    waiting.append(other)
+        return False
+
+    def _closure(
+        self,
+        controllers: Iterable[ManagedController],
+        neighbours: Callable[[ManagedController], Iterable[ManagedController]],
+    ) -> tuple[ManagedController, ...]:
+        reached = {controller.name for controller in controllers}
+        waiting = [self._controllers[name] for name in reached]
+        while waiting:
+            for other in neighbours(waiting.pop()):
+                if other.is_active and other.name not in reached:
+                    reached.add(other.name)
+                    waiting.append(other)
+        return tuple(c for c in self.in_order() if c.name in reached)
+
+    def _named(self, names: Iterable[str | None]) -> tuple[ManagedController, ...]:
+        return tuple(
+            self._controllers[name]
+            for name in dict.fromkeys(names)
+            if name is not None and name in self._controllers
+        )
