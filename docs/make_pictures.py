@@ -43,8 +43,8 @@ def draw_arm(path: Path, width: int = 960, height: int = 720) -> None:
     model, data = built.model, mujoco.MjData(built.model)
     model.vis.global_.offwidth, model.vis.global_.offheight = width * 2, height * 2
     # The cameras render without shadows, which cost most of a software frame; a picture has time.
-    model.vis.quality.shadowsize = 4096
-    model.light_castshadow[:] = True
+    model.vis.quality.shadowsize = 8192
+    model.vis.headlight.diffuse[:] = 0.5
     data.qpos[:] = built.qpos
     mujoco.mj_forward(model, data)
     view = mujoco.MjvCamera()

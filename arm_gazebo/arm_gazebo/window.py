@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from mujoco.viewer import Handle
 
 JOIN_TIMEOUT_S = 2.0
+SHADOW_SIZE = 2048
+"""Side of the shadow map, in pixels: the model has a small one, for cameras on a processor."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -79,7 +81,9 @@ def _first_scene(channel: CameraEnd) -> Scene | None:
         models = [message for message in messages if isinstance(message, ModelMessage)]
         if models:
             with open(models[-1].file, "rb") as file:
-                return Scene(file.fileno())
+                scene = Scene(file.fileno())
+            scene.model.vis.quality.shadowsize = SHADOW_SIZE
+            return scene
     return None
 
 

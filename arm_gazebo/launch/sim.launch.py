@@ -31,6 +31,16 @@ SIMULATION_ARGUMENTS = {
     "self_collide": ("false", "links of the robot touch each other"),
     "strict": ("false", "a missing mesh is an error, not a box and a warning"),
     "render_backend": ("auto", "of the cameras", ["auto", "egl", "osmesa", "raycast"]),
+    "headless": ("true", "false opens a window on the simulation", ["true", "false"]),
+}
+
+NODE_ARGUMENTS = {
+    "log_level": (
+        "info",
+        "from which on the simulation logs",
+        ["info", "warn", "error", "fatal"],
+    ),
+    "use_sim_time": ("true", "the state publisher's clock is the simulation's", ["true", "false"]),
 }
 
 
@@ -47,12 +57,23 @@ def declared(arguments: dict) -> list[DeclareLaunchArgument]:
     ]
 
 
+def take_gz_args(context: LaunchContext) -> None:
+    """Let Gazebo's words stand for the arguments of this file that nobody has given."""
+    from arm_gazebo.gz_arguments import launch_arguments
+
+    for name, value in launch_arguments(context.launch_configurations["gz_args"]).items():
+        context.launch_configurations.setdefault(name, value)
+
+
 def simulate(context: LaunchContext) -> list:
     """Return the robot's nodes, and what was made up for it."""
     # Here, so that --show-args needs nothing but this file.
+    from arm_gazebo.display import check_display
     from arm_gazebo.robot_setup import set_up_robot
 
     words = context.launch_configurations
+    if words["headless"] == "false":
+        check_display()
     setup = set_up_robot(
         words["model"],
         words["model_args"],
@@ -71,6 +92,7 @@ def simulate(context: LaunchContext) -> list:
         executable="arm_gazebo_node",
         namespace=words["namespace"],
         parameters=[setup.controllers, {"arm_gazebo": {"ros__parameters": settings}}],
+        ros_arguments=["--log-level", LaunchConfiguration("log_level")],
         ready=Notified(),
         on_exit=Shutdown(),
     )
@@ -78,7 +100,12 @@ def simulate(context: LaunchContext) -> list:
         package="arm_description",
         executable="robot_state_publisher",
         namespace=words["namespace"],
-        parameters=[{"robot_description": setup.description, "use_sim_time": True}],
+        parameters=[
+            {
+                "robot_description": setup.description,
+                "use_sim_time": LaunchConfiguration("use_sim_time"),
+            }
+        ],
         ready=Notified(),
     )
     return [*(LogInfo(msg=remark) for remark in setup.remarks), simulation, state_publisher]
@@ -89,8 +116,15 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             DeclareLaunchArgument("model", description="URDF or xacro file"),
+            DeclareLaunchArgument(
+                "gz_args",
+                default_value="",
+                description='Gazebo\'s words for the same: "-r -v 4 objects.sdf"',
+            ),
+            OpaqueFunction(function=take_gz_args),
             *declared(ROBOT_ARGUMENTS),
             *declared(SIMULATION_ARGUMENTS),
+            *declared(NODE_ARGUMENTS),
             OpaqueFunction(function=simulate),
         ]
     )

@@ -81,14 +81,24 @@ def test_an_unknown_joint_in_the_controllers_file_is_named(launch, tmp_path):
         (["world:=/no/such/world.xml"], ["/no/such/world.xml", "empty", "objects"]),
         (["physics_step:=0.003"], ["0.003", "0.01"]),
         (["controllers:=/no/such.yaml"], ["/no/such.yaml"]),
+        (["headless:=false"], ["DISPLAY is not set", "headless:=false"]),
+        (["gz_args:=-r -v 1 house.sdf"], ["'house'", "empty", "objects"]),
+        (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], ["/no/such/lab.xml"]),
+        (["gz_args:=objects.sdf"], ["lacks -r"]),
     ],
 )
 def test_nonsense_is_refused_with_a_sentence(launch, arguments, words):
-    launched = launch("camera:=none", *arguments)
+    launched = launch("camera:=none", *arguments, DISPLAY="", WAYLAND_DISPLAY="")
     assert launched.wait() != 0
     assert "Traceback" not in launched.output
     for word in words:
         assert word in launched.output
+
+
+def test_gazebos_words_reach_the_simulation(launch):
+    launched = launch("arm_gazebo", "arm_gazebo.launch.py", "gz_args:=-r -v 1 empty.sdf", "--print")
+    assert launched.wait() == 0, launched.output
+    assert "--log-level error" in launched.output
 
 
 def test_an_update_rate_of_zero_is_refused(launch, tmp_path):
