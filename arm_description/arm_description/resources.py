@@ -25,6 +25,9 @@ def resolve_uri(
     * `file:///PATH` and an absolute path: that file.
     * a relative path: in each folder of the search path, then in the working folder.
 
+    `..` may lead to another of the given folders, and not out of them or of a package: a
+    description that comes from anywhere names its own files.
+
     Args:
         uri: what the URDF says.
         search_path: folders; for package:// they hold packages, or are the package itself.
@@ -66,16 +69,26 @@ def _candidates(
     elif os.path.isabs(rest):
         yield Path(rest)
     else:
-        yield from (folder / rest for folder in search_path)
-        yield Path.cwd() / rest
+        yield from _in_folders(rest, [*search_path, Path.cwd()])
+
+
+def _in_folders(rest: str, folders: Sequence[Path]) -> Iterator[Path]:
+    roots = [os.path.abspath(folder) for folder in folders]
+    paths = [Path(os.path.normpath(os.path.join(root, rest))) for root in roots]
+    inside = [path for path in paths if any(path.is_relative_to(root) for root in roots)]
+    if not inside:
+        raise ResourceNotFoundError(f"'{rest}' leads out of {', '.join(dict.fromkeys(roots))}")
+    yield from inside
 
 
 def _in_packages(
     scheme: str, rest: str, search_path: Sequence[Path], environ: Mapping[str, str]
 ) -> Iterator[Path]:
     name, _, inside = rest.partition("/")
-    if not name:
+    if name in ("", ".", ".."):
         raise ResourceNotFoundError(f"'{scheme}{rest}' names no package")
+    if os.path.normpath(inside or ".").split(os.sep)[0] == "..":
+        raise ResourceNotFoundError(f"'{scheme}{rest}' leads out of the package '{name}'")
     if scheme == "model://":
         for variable in MODEL_PATH_VARIABLES:
             for folder in filter(None, environ.get(variable, "").split(os.pathsep)):

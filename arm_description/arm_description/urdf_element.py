@@ -1,18 +1,28 @@
 """Reading one element's attributes, with errors that name the element and its line."""
 
-import logging
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import lxml.etree as etree
 
 from arm_description.errors import UrdfError
 from arm_description.robot import Pose, Vector
 
-_logger = logging.getLogger(__name__)
-
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What is wrong with an element, but does not keep the robot from being one."""
+
+    line: int
+    element: str
+    problem: str
+
+    def __str__(self) -> str:
+        return f"line {self.line}: {self.element} {self.problem}"
 
 
 class UrdfElement:
@@ -21,14 +31,18 @@ class UrdfElement:
     Every method raises UrdfError where something needed is missing or is not what it must be.
     """
 
-    def __init__(self, element: etree._Element, owner: str = "") -> None:
+    def __init__(
+        self, element: etree._Element, remark: Callable[[Remark], None], owner: str = ""
+    ) -> None:
         """Wrap an element.
 
         Args:
             element: the XML element.
+            remark: is told what is wrong with it or with its parts, and no error.
             owner: the named element that it is part of, as messages say it: "joint 'j0'".
         """
         self._element = element
+        self._remark = remark
         self._owner = owner
         self._label = f"<{self.tag}> of {owner}" if owner else f"<{self.tag}>"
 
@@ -44,7 +58,7 @@ class UrdfElement:
 
     def named(self, name: str) -> "UrdfElement":
         """Return the same element, which messages about it and its parts call by this name."""
-        element = UrdfElement(self._element, f"{self.tag} '{name}'")
+        element = UrdfElement(self._element, self._remark, f"{self.tag} '{name}'")
         element._label = element._owner
         return element
 
@@ -53,14 +67,14 @@ class UrdfElement:
         return UrdfError(f"line {self.line}: {self._label} {problem}")
 
     def warn(self, problem: str) -> None:
-        """Log what is wrong with the element, but does not keep the robot from being one."""
-        _logger.warning("%s", self.error(problem))
+        """Tell what is wrong with the element, but does not keep the robot from being one."""
+        self._remark(Remark(self.line, self._label, problem))
 
     def children(self, tag: str) -> Iterator["UrdfElement"]:
         """Yield the children with this tag."""
         for child in self._element:
             if written_name(child) == tag:
-                yield UrdfElement(child, self._owner)
+                yield UrdfElement(child, self._remark, self._owner)
 
     def child(self, tag: str) -> "UrdfElement | None":
         """Return the first child with this tag, or None; a second one is warned about."""

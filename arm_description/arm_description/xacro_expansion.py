@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr
@@ -10,6 +11,8 @@ from typing import Any
 
 from arm_description.errors import XacroError
 
+_COMMENT = re.compile("<!--.*?-->", re.DOTALL)
+_DOCTYPE = "<!DOCTYPE"
 _XACRO_NAMESPACE = "ros.org/wiki/xacro"
 
 
@@ -35,6 +38,8 @@ def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -
         raise XacroError(f"cannot read {file}: {_first_line(error)}") from error
     if file.suffix == ".urdf" and _XACRO_NAMESPACE not in text:
         return text
+    if _DOCTYPE in _COMMENT.sub("", text):
+        raise XacroError(f"{file} has a DOCTYPE, which is not accepted; remove it")
     return _process(file, {name: str(value) for name, value in (arguments or {}).items()})
 
 

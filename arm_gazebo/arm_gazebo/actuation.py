@@ -81,10 +81,10 @@ def _drive(joint: Joint, report: BuildReport) -> Drive:
     if not (math.isfinite(velocity) and velocity > 0):
         velocity = DEFAULT_SPEED[joint.type]
         unit = "m/s" if joint.type == "prismatic" else "rad/s"
-        report.warn(element, f"it has no velocity limit; {velocity:g} {unit} is used", joint.line)
+        report.repair(element, f"it has no velocity limit; {velocity:g} {unit} is used", joint.line)
     if not (math.isfinite(effort) and effort > 0):
         effort = math.inf
-        report.warn(
+        report.repair(
             element, "it has no effort limit; its drive is as strong as need be", joint.line
         )
     return Drive(joint.name, velocity, effort)

@@ -108,12 +108,12 @@ class BodyTree:
         if inertial is not None and (inertial.mass > 0 or moves):
             inertia = repair_inertia(inertial, self._doubtful_box(inertial, link))
             for remark in inertia.remarks:
-                self._report.warn(f"link '{link.name}'", remark, link.line)
+                self._report.repair(f"link '{link.name}'", remark, link.line)
         elif moves and not self._carries_mass(link.name):
             box = self._geometry.bounds(link)
             inertia = missing_inertia(box)
             reason = "it has no shape to go by" if box is None else "going by its size"
-            self._report.warn(
+            self._report.repair(
                 f"link '{link.name}'",
                 f"it moves but has no mass; {inertia.mass:.3g} kg is used, {reason}",
                 link.line,

@@ -1,17 +1,35 @@
-"""What making a model changed, repaired or dropped, for the user to read."""
+"""What making a model repaired or dropped, for the user to read."""
 
 import logging
 from dataclasses import dataclass
 from enum import Enum
 
 
-class Severity(Enum):
-    """How much a finding matters; the value is the level to log it at."""
+class Outcome(Enum):
+    """What became of an element; the word is for the user."""
 
-    INFO = logging.INFO
+    NOTED = "note"
     """The model differs from the description, as it must."""
-    WARNING = logging.WARNING
-    """Something was repaired or left out; the simulation may differ from what was meant."""
+    DROPPED = "dropped"
+    """The simulation does without it, and nobody should miss it."""
+    REPAIRED = "repaired"
+    """It could not be as described, and something else takes its place."""
+    DOUBTFUL = "warning"
+    """It is as described, or left out, and probably not what was meant."""
+    FAILED = "error"
+    """There is no model because of it."""
+
+    @property
+    def level(self) -> int:
+        """The level to log it at."""
+        return _LEVELS.get(self, logging.WARNING)
+
+
+_LEVELS = {
+    Outcome.NOTED: logging.INFO,
+    Outcome.DROPPED: logging.INFO,
+    Outcome.FAILED: logging.ERROR,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,13 +37,13 @@ class Finding:
     """One remark about one element of the description.
 
     Attributes:
-        severity: how much it matters.
+        outcome: what became of it.
         element: for example "link 'wrist'".
         message: what is wrong and what was done.
         line: of the element in the description, 0 if unknown.
     """
 
-    severity: Severity
+    outcome: Outcome
     element: str
     message: str
     line: int = 0
@@ -49,17 +67,29 @@ class BuildReport:
     @property
     def warnings(self) -> tuple[Finding, ...]:
         """The findings that a user should look at."""
-        return tuple(f for f in self._findings if f.severity is Severity.WARNING)
+        return tuple(f for f in self._findings if f.outcome.level >= logging.WARNING)
+
+    def add(self, *findings: Finding) -> None:
+        """Add what was found elsewhere."""
+        self._findings.extend(findings)
 
     def inform(self, element: str, message: str, line: int = 0) -> None:
         """Add a remark."""
-        self._findings.append(Finding(Severity.INFO, element, message, line))
+        self.add(Finding(Outcome.NOTED, element, message, line))
+
+    def drop(self, element: str, message: str, line: int = 0) -> None:
+        """Add what the simulation does without."""
+        self.add(Finding(Outcome.DROPPED, element, message, line))
+
+    def repair(self, element: str, message: str, line: int = 0) -> None:
+        """Add what was replaced."""
+        self.add(Finding(Outcome.REPAIRED, element, message, line))
 
     def warn(self, element: str, message: str, line: int = 0) -> None:
-        """Add a warning."""
-        self._findings.append(Finding(Severity.WARNING, element, message, line))
+        """Add what is probably not as it was meant."""
+        self.add(Finding(Outcome.DOUBTFUL, element, message, line))
 
     def log(self, logger: logging.Logger) -> None:
-        """Write every finding to a logger, warnings as warnings."""
+        """Write every finding to a logger, each at its level."""
         for finding in self._findings:
-            logger.log(finding.severity.value, "%s", finding)
+            logger.log(finding.outcome.level, "%s", finding)

@@ -50,7 +50,7 @@ def _within_limits(joint: Joint, given: Mapping[str, float], report: BuildReport
     position = min(max(wanted, joint.limit.lower), joint.limit.upper)
     if not math.isclose(position, wanted, abs_tol=1e-9):
         source = "its initial_value" if joint.name in given else "its zero"
-        report.warn(
+        report.repair(
             f"joint '{joint.name}'",
             f"{source} of {wanted:g} is outside its limits of {joint.limit.lower:g} and "
             f"{joint.limit.upper:g}; it starts at {position:g}",

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
 from arm_description.transforms import quaternion_from_rpy
 from arm_gazebo.build_report import BuildReport
-from arm_gazebo.collision_policy import CollisionMasks
+from arm_gazebo.collision_policy import masks_for
 from arm_gazebo.errors import MeshError
+from arm_gazebo.gazebo_tags import GazeboTags
 from arm_gazebo.mesh_data import Color
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mesh_part import MeshPart
@@ -21,6 +22,8 @@ COLLISION_GROUP = 3
 """Groups as in MuJoCo's own models: its viewers show 0 to 2."""
 DEFAULT_COLOR: Color = (0.7, 0.7, 0.7, 1.0)
 STAND_IN_COLOR: Color = (0.9, 0.2, 0.7, 1.0)
+DEFAULT_FRICTION = 1.0
+"""MuJoCo's, and Gazebo's."""
 STAND_IN_SIDE_M = 0.05
 """Side of the box that stands for a mesh that cannot be had: small, and of no usual colour."""
 THINNEST_M = 1e-4
@@ -44,7 +47,8 @@ class LinkGeometry:
     Args:
         meshes: the model's meshes.
         default: values of what is not set: the world file's own defaults are for the world.
-        masks: what collisions touch.
+        tags: what the description says about friction, colours and self-collision.
+        self_collide: whether links touch each other, whatever the tags say.
         strict: whether a mesh that cannot be had is an error.
         report: gets a warning for every shape that is replaced.
     """
@@ -53,13 +57,15 @@ class LinkGeometry:
         self,
         meshes: MeshLibrary,
         default: mujoco.MjsDefault,
-        masks: CollisionMasks,
+        tags: GazeboTags,
+        self_collide: bool,
         strict: bool,
         report: BuildReport,
     ) -> None:
         self._meshes = meshes
         self._default = default
-        self._masks = masks
+        self._tags = tags
+        self._self_collide = self_collide
         self._strict = strict
         self._report = report
         self._reported: set[str] = set()
@@ -70,6 +76,8 @@ class LinkGeometry:
         Raises:
             MeshError: strict, and a mesh cannot be had.
         """
+        tags = self._tags.link(link.name)
+        masks = masks_for(self._self_collide or tags.self_collide)
         for visual in link.visuals:
             shapes = tuple(self._shapes(visual.geometry, link))
             # A file of several colours knows better than the one colour of the URDF.
@@ -78,12 +86,15 @@ class LinkGeometry:
                 geom = self._add_geom(body, visual.origin, shape)
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
-                geom.rgba = (shape.rgba if colorful else _color(visual, shape)) or DEFAULT_COLOR
+                own = shape.rgba if colorful else _color(visual, shape)
+                geom.rgba = tags.rgba or own or DEFAULT_COLOR
         for collision in link.collisions:
             for shape in self._hulls(collision.geometry, link):
                 geom = self._add_geom(body, collision.origin, shape)
                 geom.group = COLLISION_GROUP
-                geom.contype, geom.conaffinity = self._masks.contype, self._masks.conaffinity
+                geom.contype, geom.conaffinity = masks.contype, masks.conaffinity
+                if tags.friction is not None:
+                    _set_friction(geom, tags.friction)
 
     def bounds(self, link: Link) -> NDArray[np.float64] | None:
         """Return lowest and highest corner of the link's shapes in its frame, shape (2, 3).
@@ -144,7 +155,7 @@ class LinkGeometry:
             return
         for part, asset in zip(parts, self._meshes.hulls(geometry), strict=True):
             if part.is_flat():
-                self._report.warn(
+                self._report.repair(
                     f"link '{link.name}'",
                     f"its collision mesh {geometry.uri} is flat; its bounding box is used",
                     link.line,
@@ -185,9 +196,20 @@ class LinkGeometry:
             raise MeshError(f"{element} (line {link.line}): {error}") from error
         if mesh.uri not in self._reported:
             self._reported.add(mesh.uri)
-            self._report.warn(element, f"{error}\na box of 5 cm takes its place", link.line)
+            self._report.repair(element, f"{error}\na box of 5 cm takes its place", link.line)
         half = STAND_IN_SIDE_M / 2
         return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=STAND_IN_COLOR)
+
+
+def _set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
+    """Give a shape its sliding friction; a slippery one slides on whatever it touches.
+
+    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo the higher one, unless
+    one of them has priority.
+    """
+    geom.friction = [friction, *geom.friction[1:]]
+    if friction < DEFAULT_FRICTION:
+        geom.priority = 1
 
 
 def _shapes_of(link: Link) -> Iterator[tuple[Pose, Geometry]]:

@@ -87,7 +87,7 @@ def _free_from_limits(
     if lower - FITS_WITHIN <= reached[0] and reached[1] <= upper + FITS_WITHIN:
         return
     spec.joint(joint.name).limited = mujoco.mjtLimited.mjLIMITED_FALSE
-    report.warn(
+    report.repair(
         f"joint '{joint.name}'",
         f"'{leader.name}' drives it from {reached[0]:.4g} to {reached[1]:.4g}, past its own "
         f"limits of {lower:.4g} and {upper:.4g}; those are not enforced",

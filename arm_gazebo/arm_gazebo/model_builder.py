@@ -21,9 +21,10 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.camera_mount import add_cameras
 from arm_gazebo.camera_sensor import CameraSensor
-from arm_gazebo.collision_policy import leave_out_neighbours, masks_for
+from arm_gazebo.collision_policy import leave_out_neighbours
 from arm_gazebo.errors import ModelError
 from arm_gazebo.footing import Footing
+from arm_gazebo.gazebo_tags import GazeboTags
 from arm_gazebo.initial_state import initial_positions
 from arm_gazebo.link_geometry import LinkGeometry
 from arm_gazebo.mesh_cache import MeshCache
@@ -33,6 +34,7 @@ from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.world_file import check_world, load_world
 
 DEFAULT_OPTIONS = BuildOptions()
+NO_TAGS = GazeboTags()
 
 
 def build_model(
@@ -41,6 +43,7 @@ def build_model(
     cameras: Sequence[CameraSensor] = (),
     world: str | Path = "empty",
     options: BuildOptions = DEFAULT_OPTIONS,
+    tags: GazeboTags = NO_TAGS,
 ) -> BuiltModel:
     """Return the model of a robot in a world.
 
@@ -50,18 +53,25 @@ def build_model(
         cameras: become cameras of the model, of the same names.
         world: name of a shipped world or path of a MuJoCo XML file.
         options: the user's choices.
+        tags: what the description's <gazebo> elements say.
 
     Raises:
         WorldError: the world is missing or unusable.
         ModelError: the robot cannot be simulated as described; MeshError for its meshes.
     """
     report = BuildReport()
+    report.add(*tags.findings)
+    self_collide = options.self_collide or tags.self_collide
     spec = load_world(world)
     _check_names(spec, robot, world)
     free = options.base == "free" and robot.root != WORLD_LINK
     # Values of what is not set: the world file's own defaults are meant for the world.
     plain = mujoco.MjSpec()
-    bodies = _add_links(spec, plain.default, robot, free, options, report)
+    cache = None if options.mesh_cache is None else MeshCache(options.mesh_cache)
+    meshes = MeshLibrary(spec, options.package_path, cache)
+    geometry = LinkGeometry(meshes, plain.default, tags, self_collide, options.strict, report)
+    tree = TreeOptions(options.step_s, plain.default, free, options.spawn or Pose())
+    bodies = BodyTree(spec, robot, geometry, tree, report).add()
     follow = followings(robot, report)
     add_equalities(spec, robot, follow, options.step_s, report)
     driven = drives(robot, hardware, follow, report)
@@ -73,7 +83,7 @@ def build_model(
     qpos = _initial_qpos(model, start)
     if free:
         _stand(model, qpos, robot.root, options.spawn, report)
-    if options.self_collide:
+    if self_collide or any(link.self_collide for link in tags.links.values()):
         links = [name for name in bodies if name != WORLD_LINK]
         leave_out_neighbours(spec, model, qpos, links, report)
         model = _compile(spec, robot, world)
@@ -87,27 +97,6 @@ def build_model(
         qpos=qpos,
         report=report,
     )
-
-
-def _add_links(
-    spec: mujoco.MjSpec,
-    default: mujoco.MjsDefault,
-    robot: Robot,
-    free: bool,
-    options: BuildOptions,
-    report: BuildReport,
-) -> dict[str, mujoco.MjsBody]:
-    """Add links, joints and shapes of a robot to a world; return the bodies by link name."""
-    cache = None if options.mesh_cache is None else MeshCache(options.mesh_cache)
-    geometry = LinkGeometry(
-        MeshLibrary(spec, options.package_path, cache),
-        default,
-        masks_for(options.self_collide),
-        options.strict,
-        report,
-    )
-    tree = TreeOptions(options.step_s, default, free, options.spawn or Pose())
-    return BodyTree(spec, robot, geometry, tree, report).add()
 
 
 def _check_names(spec: mujoco.MjSpec, robot: Robot, world: str | Path) -> None:

@@ -2,7 +2,7 @@
 
 import os
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,7 +67,7 @@ def set_up_robot(
             robot.
     """
     file = model_file(model)
-    description = expand_xacro(file, model_arguments(model_args))
+    description = expand_xacro(file, model_arguments(_words(model_args)))
     remarks: list[str] = []
     commanded: tuple[str, ...] | None = None
     if not has_hardware(description) or not controllers:
@@ -91,22 +91,26 @@ def model_file(model: str) -> Path:
     return resolve_uri(model) if "://" in model else Path(model).expanduser()
 
 
-def model_arguments(words: str) -> dict[str, str]:
-    """Return xacro arguments by name.
+def model_arguments(words: Iterable[str]) -> dict[str, str]:
+    """Return the xacro arguments of words NAME:=VALUE.
 
     Raises:
-        SettingsError: a word that is not NAME:=VALUE.
+        SettingsError: a word that is none.
     """
     arguments: dict[str, str] = {}
-    try:
-        for word in shlex.split(words):
-            name, assignment, value = word.partition(ASSIGNMENT)
-            if not (name and assignment):
-                raise ValueError(f"'{word}' is not NAME:=VALUE")
-            arguments[name] = value
-    except ValueError as error:
-        raise SettingsError(f"model_args {words!r}: {error}") from error
+    for word in words:
+        name, assignment, value = word.partition(ASSIGNMENT)
+        if not (name and assignment):
+            raise SettingsError(f"the xacro argument {word!r} is not NAME:=VALUE")
+        arguments[name] = value
     return arguments
+
+
+def _words(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise SettingsError(f"model_args {text!r}: {error}") from error
 
 
 def folders(path: str) -> tuple[Path, ...]:

@@ -17,7 +17,7 @@ torque of gravity. From those follow:
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -136,6 +136,17 @@ def tune(
         followers=largest - own.max(axis=0),
         coupling=coupling,
     )
+
+
+def too_weak(joints: Sequence[RobotJoint], tuning: ServoTuning) -> Iterator[tuple[str, str]]:
+    """Yield the driven joints that cannot carry the robot, and what is wrong with each."""
+    for joint, gravity in zip(joints, tuning.gravity.tolist(), strict=True):
+        if gravity > joint.effort:
+            yield (
+                joint.name,
+                f"its effort limit of {joint.effort:.4g} is below the {gravity:.4g} that gravity "
+                "asks for in some poses; there it will sink",
+            )
 
 
 def _rotor(efforts: Array, step_s: float) -> Array:

@@ -11,7 +11,7 @@ from arm_gazebo.drive_mode import DriveMode
 from arm_gazebo.errors import TimingError
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.servo import Servo
-from arm_gazebo.servo_tuning import tune
+from arm_gazebo.servo_tuning import too_weak, tune
 
 logger = logging.getLogger(__name__)
 
@@ -47,15 +47,8 @@ class Simulation:
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
         tuning = tune(self.model, driven, built.qpos, timing.period_s)
-        for joint, gravity in zip(driven, tuning.gravity.tolist(), strict=True):
-            if gravity > joint.effort:
-                logger.warning(
-                    "joint '%s': its effort limit of %.4g is below the %.4g that gravity asks for "
-                    "in some poses; there it will sink",
-                    joint.name,
-                    joint.effort,
-                    gravity,
-                )
+        for name, problem in too_weak(driven, tuning):
+            logger.warning("joint '%s': %s", name, problem)
         self.servo = Servo(self.model, self.data, driven, tuning, timing)
         self._restart(built.qpos, 0.0)
         self._gate = ContactGate(self.model, self.data, timing.period_s)

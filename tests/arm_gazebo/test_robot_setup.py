@@ -94,17 +94,17 @@ def test_xacro_arguments_are_passed_on(tmp_path):
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="side" '
         'default="left"/><link name="$(arg side)_hand"/></robot>'
     )
-    assert "right_hand" in set_up_robot(str(file), "side:=right").description
+    assert "a hand" in set_up_robot(str(file), "side:='a hand'").description.replace("_", " ")
 
 
-def test_arguments_are_read_like_words_of_a_shell():
-    assert model_arguments("a:=1 b:='two words' c:=") == {"a": "1", "b": "two words", "c": ""}
+def test_arguments_are_words_of_name_and_value():
+    assert model_arguments(["a:=1", "b:=two words", "c:="]) == {"a": "1", "b": "two words", "c": ""}
 
 
 @pytest.mark.parametrize("words", ["a", "a=1", ":=1", "a:='1"])
-def test_what_is_no_argument_is_refused(words):
-    with pytest.raises(SettingsError, match="model_args"):
-        model_arguments(words)
+def test_what_is_no_argument_is_refused(bare, words):
+    with pytest.raises(SettingsError, match=r"NAME:=VALUE|No closing quotation"):
+        set_up_robot(str(bare), words)
 
 
 def test_a_missing_model_is_named():

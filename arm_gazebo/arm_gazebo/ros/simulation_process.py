@@ -26,6 +26,8 @@ from arm_gazebo.camera_feed import CameraFeed
 from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
 from arm_gazebo.display import check_display
 from arm_gazebo.errors import SettingsError
+from arm_gazebo.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.mesh_cache import cache_folder
 from arm_gazebo.model_builder import build_model
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
@@ -138,7 +140,9 @@ def _build(
             self_collide=settings.self_collide,
             strict=settings.strict,
             package_path=settings.package_path,
+            mesh_cache=cache_folder(),
         ),
+        parse_gazebo_tags(settings.robot_description),
     )
     built.report.log(logger)
     return built

@@ -1,0 +1,79 @@
+"""What a description says that no part of the simulation reads."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from arm_description.urdf_element import written_name
+from arm_description.xml_document import parse_xml
+from arm_gazebo.build_report import Finding, Outcome
+
+_SHAPES = {
+    "origin": {},
+    "geometry": {"box": {}, "cylinder": {}, "sphere": {}, "capsule": {}, "mesh": {}},
+}
+_MATERIAL = {"color": {}, "texture": {}}
+# A tree of the elements that are read; what is below a None is somebody else's to read.
+_READ: dict[str, Any] = {
+    "material": _MATERIAL,
+    "link": {
+        "inertial": {"origin": {}, "mass": {}, "inertia": {}},
+        "visual": {**_SHAPES, "material": _MATERIAL},
+        "collision": _SHAPES,
+    },
+    "joint": {
+        "origin": {},
+        "parent": {},
+        "child": {},
+        "axis": {},
+        "limit": {},
+        "dynamics": {},
+        "mimic": {},
+        "safety_controller": {},
+    },
+    "gazebo": None,
+    "ros2_control": None,
+    "transmission": None,
+}
+
+
+def leftovers(urdf_xml: str, source: str = "robot_description") -> tuple[Finding, ...]:
+    """Return what is left unread, and what is read but has no meaning in a simulation.
+
+    Raises:
+        XmlError: the text is not XML.
+    """
+    root = parse_xml(urdf_xml, source)
+    return (*_unknown(root, _READ, "<robot>"), *_meaningless(root))
+
+
+def _unknown(element: Any, read: dict[str, Any], owner: str) -> Iterator[Finding]:
+    for child in element.iterchildren(tag="*"):
+        name = written_name(child)
+        if name not in read:
+            yield Finding(
+                Outcome.DROPPED,
+                f"<{name}> in {owner}",
+                "it is not part of a URDF",
+                int(child.sourceline or 0),
+            )
+        elif read[name] is not None:
+            called = child.get("name")
+            here = f"{name} '{called}'" if called and element.getparent() is None else owner
+            yield from _unknown(child, read[name], here)
+
+
+def _meaningless(root: Any) -> Iterator[Finding]:
+    for element in root.findall("transmission"):
+        yield Finding(
+            Outcome.DROPPED,
+            f"transmission '{element.get('name')}'",
+            "joints are driven directly; what is commanded stands in <ros2_control>",
+            int(element.sourceline or 0),
+        )
+    for element in root.iterfind("joint/safety_controller"):
+        yield Finding(
+            Outcome.DROPPED,
+            f"<safety_controller> of joint '{element.getparent().get('name')}'",
+            "the joint stops at its <limit>; soft limits narrow the sliders only",
+            int(element.sourceline or 0),
+        )
