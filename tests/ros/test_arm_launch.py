@@ -100,6 +100,24 @@ def test_a_signal_ends_everything_with_exit_code_0(launch, number):
     assert [file for file in files if launched.is_abandoned(file)] == []
 
 
+def test_a_simulation_killed_with_its_cameras_leaves_no_shared_memory(launch, client):
+    """What the simulation and its cameras share has no name; the middleware's files are removed."""
+    from sensor_msgs.msg import Image
+
+    launched = launch()
+    launched.wait_until_ready()
+    client.subscribe(Image, "/videocamera").wait_for(1)
+    files = launched.shared_memory()
+    assert files
+    programs = ("arm_gazebo.camera_node", "arm_gazebo_node")
+    victims = [p for p in launched.descendants() if any(n in str(p.cmdline()) for n in programs)]
+    assert len(victims) == 2
+    for victim in victims:
+        victim.kill()
+    assert launched.wait() == 128 + signal.SIGKILL, launched.output
+    assert [file for file in files if launched.is_abandoned(file)] == []
+
+
 def test_the_initial_pose_is_a_launch_argument(launch, client):
     from sensor_msgs.msg import JointState
 

@@ -1,0 +1,59 @@
+"""A start that fails somewhere on its way ends what it had begun."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.ros
+
+PROGRAM = """
+import sys, threading
+from unittest import mock
+
+import psutil
+
+from arm_control.errors import ArmControlError
+from arm_gazebo import arm_gazebo_node
+from arm_gazebo.ros import simulation_process
+
+broken = mock.patch.object(
+    simulation_process, sys.argv.pop(1), side_effect=ArmControlError("not today")
+)
+with broken:
+    code = arm_gazebo_node.main()
+threads = [thread.name for thread in threading.enumerate() if thread is not threading.main_thread()]
+print(code, threads, psutil.Process().children())
+"""
+
+
+@pytest.fixture(scope="module")
+def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file that makes the simulation of the arm with its front camera."""
+    from arm_description.resources import resolve_uri
+    from arm_description.xacro_expansion import expand_xacro
+
+    arm = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")
+    path = tmp_path_factory.mktemp("simulation") / "parameters.yaml"
+    settings = {"robot_description": expand_xacro(str(arm), {})}
+    path.write_text(yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}}))
+    return path
+
+
+@pytest.mark.parametrize("broken", ["Simulation", "ControllerManagerServer", "_supervise"])
+def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):
+    run = subprocess.run(
+        [
+            *(sys.executable, "-c", PROGRAM, broken),
+            *("--ros-args", "--params-file", str(parameters)),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=90,
+    )
+    assert "not today" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert run.stdout.splitlines()[-1] == "1 [] []"
+    assert run.returncode == 0
