@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from arm_control.chainable_controller import ChainableController
     from arm_control.control_loop import ControlLoop
     from arm_control.controller import Controller, ControllerContext, NoParameters, ReturnType
     from arm_control.controller_manager import ControllerManager, ManagerObserver
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ArmControlError",
+    "ChainableController",
     "ControlLoop",
     "Controller",
     "ControllerContext",
@@ -54,6 +56,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "chainable_controller": ("ChainableController",),
     "control_loop": ("ControlLoop",),
     "controller": ("Controller", "ControllerContext", "NoParameters", "ReturnType"),
     "controller_manager": ("ControllerManager", "ManagerObserver"),

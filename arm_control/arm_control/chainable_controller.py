@@ -45,6 +45,9 @@ class ChainableController(Controller[ParametersT]):
     def update_commands(self, time_s: float, period_s: float) -> ReturnType:
         """Follow `references`: write `commands` and `exported_states`; see `Controller.update`."""
 
+    def on_set_chained_mode(self, is_chained: bool) -> None:
+        """Take note that `is_chained` has changed: references come from elsewhere from now on."""
+
     def update(self, time_s: float, period_s: float) -> ReturnType:
         """Compute one cycle."""
         if not self.is_chained:

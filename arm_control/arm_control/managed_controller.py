@@ -6,6 +6,7 @@ from typing import Any
 
 from arm_control.chainable_controller import ChainableController
 from arm_control.controller import Controller, ReturnType
+from arm_control.guarded import failure_of
 from arm_control.lifecycle import LifecycleState
 from arm_control.resource_manager import ResourceManager
 from arm_control.run_supervision import RunSupervision
@@ -68,8 +69,16 @@ class ManagedController:
 
     def set_chained(self, is_chained: bool) -> None:
         """Say whether another controller commands its references; for a chainable one."""
-        if isinstance(self.controller, ChainableController):
-            self.controller.is_chained = is_chained
+        controller = self.controller
+        if not isinstance(controller, ChainableController) or is_chained == controller.is_chained:
+            return
+        controller.is_chained = is_chained
+        reason = failure_of(
+            lambda: controller.on_set_chained_mode(is_chained),
+            f"on_set_chained_mode of controller '{self.name}'",
+        )
+        if reason:
+            logger.error("%s", reason)
 
     def set_update_rate(self, requested_hz: int) -> None:
         """Choose the rate nearest to the one asked for that divides the manager's; 0 = that."""

@@ -10,6 +10,7 @@ import importlib
 import logging
 from typing import TYPE_CHECKING, Any
 
+from arm_control.chainable_controller import ChainableController
 from arm_control.controller import Controller
 from arm_control.errors import ArmControlError, RegistryError
 from arm_control.hardware import Hardware
@@ -41,8 +42,10 @@ _CONTROLLERS = {
     "parallel_gripper_action_controller/GripperActionController": (
         f"{_GRIPPER}:ParallelGripperController"
     ),
+    "pid_controller/PidController": "arm_control.pid_controller:PidController",
     "position_controllers/GripperActionController": f"{_GRIPPER}:PositionGripperController",
     "position_controllers/JointGroupPositionController": f"{_FORWARD}:JointGroupPositionController",
+    "position_controllers/JointPositionController": f"{_FORWARD}:JointPositionController",
     "velocity_controllers/JointGroupVelocityController": f"{_FORWARD}:JointGroupVelocityController",
 }
 _HARDWARE = {"mock_components/GenericSystem": "arm_control.mock_components:GenericSystem"}
@@ -66,6 +69,17 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
             "which does not derive from arm_control.Controller"
         )
     return found
+
+
+def is_chainable(type_name: str) -> bool:
+    """Return whether controllers of a type may be commanded by others; imports the type.
+
+    A type that cannot be imported is none; `controller_class` says why.
+    """
+    try:
+        return issubclass(controller_class(type_name), ChainableController)
+    except RegistryError:
+        return False
 
 
 def create_hardware(info: HardwareInfo) -> Hardware:

@@ -14,6 +14,7 @@ from arm_control.registry import (
     controller_class,
     controller_types,
     create_hardware,
+    is_chainable,
     load_object,
 )
 
@@ -45,6 +46,13 @@ def test_types_are_listed_in_order() -> None:
     types = controller_types()
     assert list(types) == sorted(types)
     assert "joint_state_broadcaster/JointStateBroadcaster" in types
+
+
+def test_a_type_tells_whether_it_can_be_chained(installed: list[EntryPoint]) -> None:
+    assert is_chainable("pid_controller/PidController")
+    assert not is_chainable("joint_state_broadcaster/JointStateBroadcaster")
+    installed.append(EntryPoint("x/Broken", "nowhere:Thing", "arm_control.controllers"))
+    assert not is_chainable("x/Broken")
 
 
 def test_an_installed_package_adds_a_type(installed: list[EntryPoint]) -> None:

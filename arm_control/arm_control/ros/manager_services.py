@@ -24,7 +24,7 @@ from arm_control.controller_switch import Strictness, SwitchRequest
 from arm_control.errors import ArmControlError
 from arm_control.lifecycle import LifecycleState
 from arm_control.refusals import Refusals
-from arm_control.registry import controller_types
+from arm_control.registry import controller_types, is_chainable
 from arm_control.ros.control_plane import ControlPlane
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.convert import (
@@ -42,6 +42,7 @@ SERVICE_QOS = QoSProfile(
     durability=DurabilityPolicy.VOLATILE,
 )
 CONTROLLER_INTERFACE = "controller_interface::ControllerInterface"
+CHAINABLE_INTERFACE = "controller_interface::ChainableControllerInterface"
 
 
 class ManagerServices:
@@ -107,9 +108,12 @@ class ManagerServices:
     def _list_controller_types(
         self, _request: ListControllerTypes.Request, response: ListControllerTypes.Response
     ) -> ListControllerTypes.Response:
-        types = controller_types()
-        response.types = list(types)
-        response.base_classes = [CONTROLLER_INTERFACE] * len(types)
+        # The ordinary ones first, as a real one lists them.
+        types = sorted((is_chainable(name), name) for name in controller_types())
+        response.types = [name for _, name in types]
+        response.base_classes = [
+            CHAINABLE_INTERFACE if chainable else CONTROLLER_INTERFACE for chainable, _ in types
+        ]
         return response
 
     def _switch_controller(

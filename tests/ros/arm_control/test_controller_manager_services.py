@@ -8,6 +8,7 @@ pytestmark = pytest.mark.ros
 
 POSITION = "position_controllers/JointGroupPositionController"
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+INTERFACES = "controller_interface::"
 JOINTS = ("j0", "j1", "j2", "j3")
 COMMANDS = [f"{joint}/position" for joint in JOINTS]
 
@@ -25,9 +26,11 @@ def test_the_services_of_a_real_one_are_there(
 
 def test_controller_types_are_listed_with_their_base_class(control: Any) -> None:
     answer = control.call("list_controller_types")
-    assert {POSITION, BROADCASTER} <= set(answer.types)
-    assert set(answer.base_classes) == {"controller_interface::ControllerInterface"}
-    assert len(answer.base_classes) == len(answer.types)
+    base_classes = dict(zip(answer.types, answer.base_classes, strict=True))
+    assert base_classes[POSITION] == base_classes[BROADCASTER] == f"{INTERFACES}ControllerInterface"
+    assert base_classes["pid_controller/PidController"] == (
+        f"{INTERFACES}ChainableControllerInterface"
+    )
 
 
 def test_a_controller_from_load_to_unload(control: Any) -> None:

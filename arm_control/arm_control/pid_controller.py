@@ -1,0 +1,260 @@
+"""pid_controller/PidController: follows references by PID, its own or those of a controller."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.chainable_controller import ChainableController
+from arm_control.controller import ControllerContext, ReturnType
+from arm_control.errors import ControllerError
+from arm_control.interface_configuration import InterfaceConfiguration
+from arm_control.joint_trajectory.angles import shortest_way
+from arm_control.joint_trajectory.pid import Pid
+from arm_control.parameters import ParameterSpec
+from arm_control.pid_controller_parameters import PidControllerParameters
+
+STATE_FIELDS = (
+    "reference",
+    "feedback",
+    "feedback_dot",
+    "error",
+    "error_dot",
+    "time_step",
+    "output",
+)
+
+Array = NDArray[np.float64]
+
+
+class PidStateSink(Protocol):
+    """Where the controller's state goes; used on the loop thread."""
+
+    def publish(self, time_s: float, state: Array) -> None:
+        """Publish one state; the array is reused for the next one.
+
+        Args:
+            time_s: stamp.
+            state: shape (n, len(STATE_FIELDS)), one row for each degree of freedom.
+        """
+        ...
+
+
+class PidController(ChainableController[PidControllerParameters]):
+    """Commands each degree of freedom by the error of its reference.
+
+    A reference of NaN commands nothing. With two interfaces the second is the derivative of the
+    first, and its error the derivative of the error; otherwise the error is differentiated.
+
+    Attributes:
+        sink: where the state goes; None publishes nothing. Set it before activation.
+        is_feedforward_enabled: whether the reference adds to the output; any thread may set it.
+    """
+
+    parameters_type = PidControllerParameters
+    adapter = "arm_control.ros.pid_controller_adapter:PidControllerAdapter"
+
+    def __init__(self, context: ControllerContext) -> None:
+        super().__init__(context)
+        self.sink: PidStateSink | None = None
+        self.is_feedforward_enabled = False
+        self._parameters = PidControllerParameters()
+        self._offered: deque[Array] = deque(maxlen=1)
+        self._measured = np.empty((0, 0))
+        self._set_up(self._parameters)
+
+    @classmethod
+    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
+        """Return the parameters, the gains by the names among them."""
+        return PidControllerParameters.specs(given)
+
+    @classmethod
+    def build_parameters(cls, values: Mapping[str, Any]) -> PidControllerParameters:
+        """Return the values as one object."""
+        return PidControllerParameters.build(values)
+
+    def on_configure(self, parameters: PidControllerParameters) -> None:
+        """Take the parameters.
+
+        Raises:
+            ControllerError: names or interfaces are missing, or do not fit each other.
+        """
+        interfaces = parameters.reference_and_state_interfaces
+        if not parameters.dof_names:
+            raise ControllerError("'dof_names' parameter was empty")
+        if not parameters.command_interface:
+            raise ControllerError("'command_interface' parameter was empty")
+        if len(interfaces) not in (1, 2):
+            raise ControllerError(
+                "'reference_and_state_interfaces' takes one interface, or two of which the second "
+                f"is the derivative of the first, not {len(interfaces)}"
+            )
+        if len(parameters.state_dof_names) != len(parameters.dof_names):
+            raise ControllerError(
+                f"'dof_names' has {len(parameters.dof_names)} names, but "
+                f"'reference_and_state_dof_names' has {len(parameters.state_dof_names)}"
+            )
+        self.is_feedforward_enabled = parameters.enable_feedforward
+        self._set_up(parameters)
+
+    def update_parameters(self, parameters: PidControllerParameters) -> None:
+        """Take changed gains; the integral stays."""
+        if parameters.enable_feedforward != self._parameters.enable_feedforward:
+            self.is_feedforward_enabled = parameters.enable_feedforward
+        self._take_gains(parameters)
+
+    def command_interface_configuration(self) -> InterfaceConfiguration:
+        """Claim the command interface of each degree of freedom."""
+        interface = self._parameters.command_interface
+        return InterfaceConfiguration.individual(
+            f"{dof}/{interface}" for dof in self._parameters.dof_names
+        )
+
+    def state_interface_configuration(self) -> InterfaceConfiguration:
+        """Read what is controlled, unless the states come by topic."""
+        if self._parameters.use_external_measured_states:
+            return InterfaceConfiguration.none()
+        return InterfaceConfiguration.individual(self._parameters.state_names)
+
+    def reference_names(self) -> tuple[str, ...]:
+        """Export a reference for each state."""
+        return self._parameters.state_names
+
+    def exported_state_names(self) -> tuple[str, ...]:
+        """Export each state as it was measured."""
+        return self._parameters.state_names
+
+    def offer(
+        self, names: Sequence[str], values: Sequence[float], derivatives: Sequence[float] = ()
+    ) -> str:
+        """Make these the references from the next cycle on; any thread. NaN leaves one as it is.
+
+        Args:
+            names: of the degrees of freedom, in any order; empty for the order of the parameters.
+            values: of the first interface, as many.
+            derivatives: of the second interface, as many or none.
+
+        Returns:
+            Why it was refused; empty where it was taken.
+        """
+        rows, reason = self._arranged(names, values, derivatives)
+        if not reason:
+            self._offered.append(rows)
+        return reason
+
+    def offer_measured(
+        self, names: Sequence[str], values: Sequence[float], derivatives: Sequence[float] = ()
+    ) -> str:
+        """Make these the measured states; as `offer`."""
+        rows, reason = self._arranged(names, values, derivatives)
+        if not reason:
+            self._measured = rows
+        return reason
+
+    def on_activate(self) -> None:
+        """Begin anew: no reference, no integral."""
+        self._offered.clear()
+        self._measured = np.full(self._shape, np.nan)
+        self._last_error = np.full(self._shape[1], np.nan)
+        self._pid = Pid([gains.as_pid_gains() for gains in self._gains])
+
+    def on_set_chained_mode(self, is_chained: bool) -> None:
+        """Drop what was offered meanwhile: it is of another time."""
+        self._offered.clear()
+
+    def on_deactivate(self) -> None:
+        """Command a standstill where a command means motion or force."""
+        if self._parameters.command_interface != "position":
+            self.commands.write(0.0)
+
+    def update_references(self, time_s: float, period_s: float) -> ReturnType:
+        """Take what was offered."""
+        if self._offered:
+            offered = self._offered.pop().ravel()
+            given = ~np.isnan(offered)
+            self.references[given] = offered[given]
+        return ReturnType.OK
+
+    def update_commands(self, time_s: float, period_s: float) -> ReturnType:
+        """Command by the errors."""
+        references = self.references.reshape(self._shape)
+        measured = self._measured
+        if not self._parameters.use_external_measured_states:
+            measured = self.states.read().reshape(self._shape)
+        self.exported_states[:] = measured.ravel()
+        error = references[0] - measured[0]
+        if self._wraps.any():
+            error = np.where(self._wraps, shortest_way(measured[0], references[0]), error)
+        rate = self._error_rate(references, measured, error, period_s)
+        output = self._pid.update(error, np.where(np.isnan(rate), 0.0, rate), period_s)
+        if self.is_feedforward_enabled:
+            forward = references[-1] * self._feedforward
+            output = output + np.where(np.isnan(forward), 0.0, forward)
+        present = self.commands.read()
+        command = np.where(np.isfinite(error), output, present)
+        self.commands.write(command)
+        self._publish(time_s, (references[0], measured, error, rate, period_s, command))
+        return ReturnType.OK
+
+    def _error_rate(
+        self, references: Array, measured: Array, error: Array, period_s: float
+    ) -> NDArray[np.float64]:
+        """Return the errors' derivatives: given ones where there are, else by differences."""
+        differences = (error - self._last_error) / period_s
+        self._last_error = error
+        if len(references) == 1:
+            return differences
+        given = references[1] - measured[1]
+        return np.where(np.isfinite(given), given, differences)
+
+    def _publish(
+        self, time_s: float, state: tuple[Array, Array, Array, Array, float, Array]
+    ) -> None:
+        if self.sink is None:
+            return
+        reference, measured, error, rate, period_s, output = state
+        feedback_dot = measured[1] if len(measured) == 2 else 0.0
+        columns = (reference, measured[0], feedback_dot, error, rate, period_s, output)
+        for i, column in enumerate(columns):
+            self._state[:, i] = column
+        self.sink.publish(time_s, self._state)
+
+    def _set_up(self, parameters: PidControllerParameters) -> None:
+        count = len(parameters.dof_names)
+        self._shape = (len(parameters.reference_and_state_interfaces), count)
+        self._state = np.zeros((count, len(STATE_FIELDS)))
+        self._last_error = np.full(count, np.nan)
+        self._pid = Pid([])
+        self._parameters = parameters
+        self._take_gains(parameters)
+
+    def _take_gains(self, parameters: PidControllerParameters) -> None:
+        self._parameters = parameters
+        self._gains = [parameters.gains_of(dof) for dof in parameters.dof_names]
+        self._wraps = np.array([gains.angle_wraparound for gains in self._gains], dtype=np.bool_)
+        self._feedforward = np.array([gains.feedforward_gain for gains in self._gains])
+        self._pid.set_gains([gains.as_pid_gains() for gains in self._gains])
+
+    def _arranged(
+        self, names: Sequence[str], values: Sequence[float], derivatives: Sequence[float]
+    ) -> tuple[Array, str]:
+        """Return a message's numbers as rows of interfaces, and why they cannot be used."""
+        rows = np.full(self._shape, np.nan)
+        own = self._parameters.state_dof_names
+        named = list(names) or list(own)
+        if sorted(named) != sorted(own):
+            return rows, f"it names {', '.join(named)}; the controller has {', '.join(own)}"
+        if len(values) != len(own) or len(derivatives) not in (0, len(own)):
+            return rows, (
+                f"it has {len(values)} values and {len(derivatives)} derivatives; "
+                f"the controller has {len(own)} degrees of freedom"
+            )
+        where = [own.index(name) for name in named]
+        rows[0, where] = values
+        if len(rows) == 2 and len(derivatives):
+            rows[1, where] = derivatives
+        if np.isinf(rows).any():
+            return rows, "it has an infinite value"
+        return rows, ""

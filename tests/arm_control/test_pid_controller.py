@@ -1,0 +1,282 @@
+"""The PID controller on fake hardware: alone, and behind another controller."""
+
+from math import inf, nan, pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+from arm_control import ControllerContext, ControllerManager, SwitchRequest
+from arm_control.controller_switch import Strictness
+from arm_control.errors import ControllerManagerError, ParameterError
+from arm_control.forward_command_controller import (
+    ForwardCommandController,
+    ForwardCommandParameters,
+)
+from arm_control.pid_controller import STATE_FIELDS, PidController
+from arm_control.testing import fake_hardware
+
+DOFS = ["j0", "j1"]
+PERIOD_S = 0.01
+
+
+class Sink:
+    def __init__(self) -> None:
+        self.states: list[np.ndarray] = []
+
+    def publish(self, time_s: float, state: np.ndarray) -> None:
+        self.states.append(state.copy())
+
+    def last(self, field: str) -> list[float]:
+        return self.states[-1][:, STATE_FIELDS.index(field)].tolist()
+
+
+class PidBench:
+    """A manager over two joints that do not move by themselves, and a PID controller."""
+
+    def __init__(self) -> None:
+        self.hardware = fake_hardware(
+            ("j0", "j1"),
+            command_interfaces=("effort",),
+            state_interfaces=("position", "velocity"),
+        )
+        self.manager = ControllerManager([self.hardware], 100)
+        self.manager.bring_up()
+        self.pid = PidController(ControllerContext("pid", 100))
+        self.pid.sink = self.sink = Sink()
+        self.manager.load_controller(self.pid, "pid_controller/PidController")
+        self.time_s = 0.0
+
+    def configure(self, **values: Any) -> None:
+        defaults = {
+            "dof_names": DOFS,
+            "command_interface": "effort",
+            "reference_and_state_interfaces": ["position"],
+            "gains.j0.p": 10.0,
+            "gains.j1.p": 20.0,
+        }
+        merged = {name: v for name, v in {**defaults, **values}.items() if v is not None}
+        self.manager.configure_controller("pid", PidController.build_parameters(merged))
+
+    def activate(self, names: str = "pid") -> None:
+        result = self.manager.switch_controller(
+            SwitchRequest(tuple(names.split()), (), Strictness.STRICT)
+        )
+        assert result.ok, result.message
+
+    def measure(self, positions: list[float], velocities: list[float] | None = None) -> None:
+        states = self.hardware.states.reshape(2, 2)
+        states[:, 0] = positions
+        if velocities is not None:
+            states[:, 1] = velocities
+
+    def tick(self, count: int = 1) -> list[float]:
+        for _ in range(count):
+            self.manager.read(self.time_s, PERIOD_S)
+            self.manager.update(self.time_s, PERIOD_S)
+            self.manager.write(self.time_s, PERIOD_S)
+            self.time_s += PERIOD_S
+        return self.hardware.commands.tolist()
+
+
+@pytest.fixture
+def bench() -> PidBench:
+    return PidBench()
+
+
+@pytest.fixture
+def running(bench: PidBench) -> PidBench:
+    bench.configure()
+    bench.activate()
+    bench.measure([0.0, 0.0])
+    return bench
+
+
+def test_without_a_reference_it_commands_nothing(running: PidBench) -> None:
+    assert np.isnan(running.tick(3)).all()
+
+
+def test_the_error_times_its_gain_is_commanded(running: PidBench) -> None:
+    running.measure([0.5, 0.5])
+    assert not running.pid.offer(DOFS, [1.0, 1.0])
+    assert running.tick() == [5.0, 10.0]
+
+
+def test_names_may_come_in_any_order_or_not_at_all(running: PidBench) -> None:
+    assert not running.pid.offer(["j1", "j0"], [2.0, 1.0])
+    assert running.tick() == [10.0, 40.0]
+    assert not running.pid.offer([], [0.0, 1.0])
+    assert running.tick() == [0.0, 20.0]
+
+
+def test_a_nan_leaves_a_reference_as_it_is(running: PidBench) -> None:
+    running.pid.offer([], [1.0, nan])
+    command = running.tick()
+    assert command[0] == 10.0
+    assert np.isnan(command[1])
+    running.pid.offer([], [nan, 1.0])
+    assert running.tick() == [10.0, 20.0]
+
+
+@pytest.mark.parametrize(
+    ("names", "values", "derivatives", "says"),
+    [
+        (["j0", "j9"], [0.0, 0.0], [], "it names j0, j9; the controller has j0, j1"),
+        (["j0", "j0"], [0.0, 0.0], [], "it names j0, j0"),
+        ([], [0.0], [], "it has 1 values and 0 derivatives; the controller has 2 degrees"),
+        ([], [0.0, 0.0], [0.0], "2 values and 1 derivatives"),
+        ([], [0.0, inf], [], "it has an infinite value"),
+    ],
+)
+def test_references_that_make_no_sense_are_refused(
+    running: PidBench,
+    names: list[str],
+    values: list[float],
+    derivatives: list[float],
+    says: str,
+) -> None:
+    assert says in running.pid.offer(names, values, derivatives)
+    assert np.isnan(running.tick()).all()
+
+
+def test_the_integral_grows_and_is_forgotten_at_the_next_start(bench: PidBench) -> None:
+    bench.configure(**{"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j1.p": 0.0})
+    bench.activate()
+    bench.measure([0.0, 0.0])
+    bench.pid.offer([], [1.0, 1.0])
+    assert bench.tick(50) == pytest.approx([1.0, 0.0])
+    bench.manager.switch_controller(SwitchRequest((), ("pid",)))
+    assert bench.hardware.commands.tolist() == [0.0, 0.0]
+    bench.activate()
+    bench.pid.offer([], [1.0, 1.0])
+    assert bench.tick() == pytest.approx([0.02, 0.0])
+
+
+def test_one_interface_is_differentiated(bench: PidBench) -> None:
+    bench.configure(**{"gains.j0.p": 0.0, "gains.j1.p": 0.0, "gains.j0.d": 1.0})
+    bench.activate()
+    bench.measure([0.0, 0.0])
+    bench.pid.offer([], [1.0, 1.0])
+    # Nothing to compare with yet.
+    assert bench.tick() == [0.0, 0.0]
+    bench.measure([0.1, 0.1])
+    assert bench.tick() == pytest.approx([-10.0, 0.0])
+
+
+def test_with_two_interfaces_the_second_is_the_derivative(bench: PidBench) -> None:
+    bench.configure(reference_and_state_interfaces=["position", "velocity"], **{"gains.j0.d": 3.0})
+    assert bench.pid.reference_names() == (
+        "j0/position",
+        "j1/position",
+        "j0/velocity",
+        "j1/velocity",
+    )
+    bench.activate()
+    bench.measure([0.0, 0.0], [0.5, 0.5])
+    bench.pid.offer([], [1.0, 1.0], [2.0, 2.0])
+    assert bench.tick() == pytest.approx([10.0 + 3.0 * 1.5, 20.0])
+
+
+def test_the_error_goes_the_short_way_round(bench: PidBench) -> None:
+    bench.configure(**{"gains.j0.angle_wraparound": True})
+    bench.activate()
+    bench.measure([3.0, 3.0])
+    bench.pid.offer([], [-3.0, -3.0])
+    assert bench.tick() == pytest.approx([10.0 * (2.0 * pi - 6.0), -120.0])
+
+
+def test_feed_forward_adds_the_reference_when_it_is_on(bench: PidBench) -> None:
+    bench.configure(**{"gains.j0.feedforward_gain": 4.0})
+    bench.activate()
+    bench.measure([1.0, 1.0])
+    bench.pid.offer([], [1.0, 1.0])
+    assert bench.tick() == [0.0, 0.0]
+    bench.pid.is_feedforward_enabled = True
+    assert bench.tick() == [4.0, 0.0]
+
+
+def test_the_output_is_clamped(bench: PidBench) -> None:
+    bench.configure(**{"gains.j0.u_clamp_max": 1.5})
+    bench.activate()
+    bench.measure([0.0, 0.0])
+    bench.pid.offer([], [1.0, 1.0])
+    assert bench.tick() == [1.5, 20.0]
+
+
+def test_gains_can_change_while_it_runs(running: PidBench) -> None:
+    running.pid.offer([], [1.0, 1.0])
+    values = {
+        "dof_names": DOFS,
+        "command_interface": "effort",
+        "reference_and_state_interfaces": ["position"],
+        "gains.j0.p": 1.0,
+    }
+    running.pid.update_parameters(PidController.build_parameters(values))
+    assert running.tick() == [1.0, 0.0]
+
+
+def test_states_may_come_by_topic(bench: PidBench) -> None:
+    bench.configure(use_external_measured_states=True)
+    bench.activate()
+    bench.measure([9.0, 9.0])
+    bench.pid.offer([], [1.0, 1.0])
+    assert np.isnan(bench.tick()).all()
+    assert not bench.pid.offer_measured(["j1", "j0"], [0.5, 0.0])
+    assert bench.tick() == [10.0, 10.0]
+
+
+def test_the_state_is_published(running: PidBench) -> None:
+    running.measure([0.25, 0.0])
+    running.pid.offer([], [1.0, nan])
+    running.tick()
+    assert running.sink.last("reference")[0] == 1.0
+    assert running.sink.last("feedback") == [0.25, 0.0]
+    assert running.sink.last("error")[0] == 0.75
+    assert running.sink.last("time_step") == [PERIOD_S, PERIOD_S]
+    assert running.sink.last("output")[0] == 7.5
+
+
+def test_behind_a_forward_command_controller(running: PidBench) -> None:
+    top = ForwardCommandController(ControllerContext("top", 100))
+    running.manager.load_controller(top, "forward")
+    joints = ("pid/j0", "pid/j1")
+    running.manager.configure_controller("top", ForwardCommandParameters(joints, "position"))
+    running.pid.offer([], [5.0, 5.0])
+    running.activate("top")
+    assert running.pid.is_chained
+    top.offer([1.0, 2.0])
+    running.measure([0.0, 0.5])
+    assert running.tick() == [10.0, 30.0]
+    statuses = {s.name: s for s in running.manager.list_controllers()}
+    assert list(statuses) == ["top", "pid"]
+    assert statuses["pid"].reference_interfaces == ("j0/position", "j1/position")
+    # Alone again, it goes on to where it was sent; what came by topic meanwhile is too old.
+    running.pid.offer([], [5.0, 5.0])
+    running.manager.switch_controller(SwitchRequest((), ("top",)))
+    assert running.tick() == [10.0, 30.0]
+    assert running.pid.exported_states.tolist() == [0.0, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"dof_names": None}, "'dof_names' parameter was empty"),
+        ({"command_interface": ""}, "'command_interface' parameter was empty"),
+        ({"reference_and_state_interfaces": []}, "takes one interface, or two"),
+        ({"reference_and_state_interfaces": ["a", "b", "c"]}, "derivative of the first, not 3"),
+        ({"reference_and_state_dof_names": ["x"]}, "'dof_names' has 2 names, but .* has 1"),
+    ],
+)
+def test_parameters_that_do_not_fit_fail_the_configuration(
+    bench: PidBench, values: dict[str, Any], says: str
+) -> None:
+    gains = {"gains.j0.p": None, "gains.j1.p": None}
+    with pytest.raises(ControllerManagerError, match=says):
+        bench.configure(**gains, **values)
+
+
+def test_bounds_the_wrong_way_round_are_refused() -> None:
+    with pytest.raises(ParameterError, match=r"'gains\.j0\.u_clamp_min' is 2, above u_clamp_max 1"):
+        PidController.build_parameters(
+            {"dof_names": ["j0"], "gains.j0.u_clamp_min": 2.0, "gains.j0.u_clamp_max": 1.0}
+        )
