@@ -86,6 +86,18 @@ class Program:
         self._reader.join(TIMEOUT_S)
         return code
 
+    def succeed(self) -> str:
+        """Wait for its end, which must be a good one; return what it printed."""
+        assert self.wait() == 0, self.output
+        assert "Traceback" not in self.output
+        return self.output
+
+    def fail(self, code: int = 1) -> str:
+        """Wait for its end, which must be a failure without a traceback; return its output."""
+        assert self.wait() == code, self.output
+        assert "Traceback" not in self.output
+        return self.output
+
     def stop(self, number: int = signal.SIGTERM) -> int:
         """Send a signal and wait for the end; return the exit code."""
         self.process.send_signal(number)
@@ -162,6 +174,30 @@ def run_manager(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Run:
 def manager(run_manager: Run) -> Program:
     """Return the module's manager; tests leave it without controllers."""
     return run_manager()
+
+
+@pytest.fixture
+def spawn(run: Run) -> Run:
+    """Return a function that starts a spawner."""
+    return lambda *arguments: run("-m", "arm_control.spawner_node", *arguments)
+
+
+@pytest.fixture
+def unspawn(run: Run) -> Run:
+    """Return a function that starts an unspawner."""
+    return lambda *arguments: run("-m", "arm_control.unspawner_node", *arguments)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Callable[..., str]:
+    """Return a function that writes a parameter file and returns its path."""
+
+    def write(content: dict[str, Any], name: str = "extra") -> str:
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(yaml.safe_dump(content))
+        return str(path)
+
+    return write
 
 
 SERVICES = {
@@ -276,6 +312,20 @@ def control(client: Any, manager: Program) -> Iterator[Control]:
 def control_of(client: Any) -> Callable[[str], Control]:
     """Return a function that makes a client of the manager in a namespace."""
     return lambda namespace: Control(client, namespace)
+
+
+@pytest.fixture
+def get_parameter(client: Any) -> Callable[[str, str], Any]:
+    """Return a function that returns a node's parameter, None where it has no such one."""
+    from rcl_interfaces.srv import GetParameters
+    from rclpy.parameter import parameter_value_to_python
+
+    def get(node: str, name: str) -> Any:
+        request = GetParameters.Request(names=[name])
+        (value,) = client.call(GetParameters, f"{node}/get_parameters", request).values
+        return parameter_value_to_python(value)
+
+    return get
 
 
 @pytest.fixture

@@ -1,0 +1,38 @@
+"""The unspawner as a program."""
+
+import signal
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+
+def test_it_deactivates_and_unloads(control: Any, unspawn: Any) -> None:
+    control.start("joint_state_broadcaster", "position_controller")
+    # One that is not active does not keep the others.
+    assert control.load("second_controller")
+    output = unspawn("position_controller", "second_controller").succeed()
+    assert "Deactivated controllers: position_controller" in output
+    assert "Unloaded controller second_controller" in output
+    assert control.states() == {"joint_state_broadcaster": "active"}
+
+
+def test_one_that_is_not_there_is_a_failure_but_the_others_go(control: Any, unspawn: Any) -> None:
+    control.start("position_controller")
+    output = unspawn("nothere", "position_controller", "-c", "/controller_manager").fail()
+    assert "Failed to unload controller nothere" in output
+    assert control.states() == {}
+
+
+def test_the_manager_is_looked_for_in_the_own_namespace_and_a_signal_ends_the_wait(
+    unspawn: Any,
+) -> None:
+    unspawner = unspawn("a", "--ros-args", "-r", "__ns:=/far")
+    unspawner.wait_for_line("waiting for service /far/controller_manager/list_controllers")
+    assert unspawner.stop(signal.SIGINT) == 0
+    assert "Traceback" not in unspawner.output
+
+
+def test_without_a_name_it_ends_with_code_2(unspawn: Any) -> None:
+    assert "the following arguments are required: NAME" in unspawn().fail(2)
