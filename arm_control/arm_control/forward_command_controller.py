@@ -14,6 +14,8 @@ from arm_control.parameters import parameter
 
 ParametersT = TypeVar("ParametersT")
 
+IGNORED_GAIN = "Known from ROS 1, without effect"
+
 
 @dataclass(frozen=True, slots=True)
 class ForwardCommandParameters:
@@ -50,6 +52,23 @@ class MultiInterfaceForwardCommandParameters:
 
     joint: str = parameter("", "The joint to command")
     interface_names: tuple[str, ...] = parameter((), "Its interfaces, in the message's order")
+
+
+@dataclass(frozen=True, slots=True)
+class PidParameters:
+    """Gains as they stand in parameter files of ROS 1."""
+
+    p: float = parameter(0.0, IGNORED_GAIN)
+    i: float = parameter(0.0, IGNORED_GAIN)
+    d: float = parameter(0.0, IGNORED_GAIN)
+
+
+@dataclass(frozen=True, slots=True)
+class JointPositionParameters:
+    """Parameters of JointPositionController."""
+
+    joint: str = parameter("", "The joint to command")
+    pid: PidParameters = PidParameters()
 
 
 class ForwardCommander(Controller[ParametersT]):
@@ -177,3 +196,24 @@ class MultiInterfaceForwardCommandController(
         self._command_names = tuple(
             f"{parameters.joint}/{interface}" for interface in parameters.interface_names
         )
+
+
+class JointPositionController(ForwardCommander[JointPositionParameters]):
+    """position_controllers/JointPositionController: ROS 1's, one position of one joint."""
+
+    parameters_type = JointPositionParameters
+    adapter = "arm_control.ros.forward_command_adapter:JointCommandAdapter"
+
+    def on_configure(self, parameters: JointPositionParameters) -> None:
+        """Take the joint; gains have no effect.
+
+        Raises:
+            ControllerError: there is no joint.
+        """
+        if not parameters.joint:
+            raise ControllerError("'joint' parameter was empty")
+        if parameters.pid != PidParameters():
+            self.logger.info(
+                "the gains under 'pid' have no effect: the hardware follows positions by itself"
+            )
+        self._command_names = (f"{parameters.joint}/position",)

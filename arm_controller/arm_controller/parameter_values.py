@@ -60,6 +60,28 @@ def read_joint_names(value: object) -> tuple[str, ...]:
     return names
 
 
+def read_flag(value: object) -> bool:
+    """Return true or false.
+
+    Raises:
+        ParameterValueError: it is something else.
+    """
+    if not isinstance(value, bool):
+        raise ParameterValueError(f"must be true or false, not {value!r}")
+    return value
+
+
+def read_topic(value: object) -> str:
+    """Return the name of a topic.
+
+    Raises:
+        ParameterValueError: it is not a text or an empty one.
+    """
+    if not isinstance(value, str) or not value:
+        raise ParameterValueError(f"must be the name of a topic, not {value!r}")
+    return value
+
+
 def read_path(value: object) -> Path:
     """Return the path of a file, `~` expanded; whether the file is there is not asked.
 

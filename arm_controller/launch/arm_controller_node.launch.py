@@ -2,22 +2,41 @@
 
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified
 from launch_py.ros import FindPackageShare, Node
-from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_py.substitutions import (
+    EqualsSubstitution,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    PathJoinSubstitution,
+)
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the node."""
-    parameters = PathJoinSubstitution([FindPackageShare("arm_controller"), "config", "params.yaml"])
+    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+    file = IfElseSubstitution(is_ros1, if_value="params_ros1.yaml", else_value="params.yaml")
+    parameters = PathJoinSubstitution([FindPackageShare("arm_controller"), "config", file])
     return LaunchDescription(
         [
+            DeclareLaunchArgument(
+                "interface",
+                default_value="ros2",
+                choices=["ros2", "ros1"],
+                description="one controller of all joints, or as in ROS 1 one for each under /arm",
+            ),
             DeclareLaunchArgument(
                 "params_file",
                 default_value=parameters,
                 description="parameter file with desired_param",
             ),
+            DeclareLaunchArgument(
+                "namespace",
+                default_value=IfElseSubstitution(is_ros1, if_value="arm"),
+                description="of the node",
+            ),
             Node(
                 package="arm_controller",
                 executable="arm_controller_node",
+                namespace=LaunchConfiguration("namespace"),
                 parameters=[LaunchConfiguration("params_file")],
                 ready=Notified(),
             ),

@@ -1,4 +1,4 @@
-"""The shipped YAML."""
+"""The shipped YAML files."""
 
 from pathlib import Path
 from typing import Any
@@ -7,10 +7,13 @@ import pytest
 import yaml
 
 from arm_control.controller_parameter_file import ControllerParameterFile
+from arm_control.forward_command_controller import JointPositionController
 from arm_control.parameters import build_parameters
 from arm_control.registry import controller_class
 
-PATH = Path(__file__).parents[2] / "arm_control" / "config" / "arm_control.yaml"
+FOLDER = Path(__file__).parents[2] / "arm_control" / "config"
+PATH = FOLDER / "arm_control.yaml"
+ROS1_PATH = FOLDER / "arm_control_ros1.yaml"
 
 
 @pytest.fixture
@@ -38,3 +41,21 @@ def test_every_parameter_is_known_to_its_controller(content: dict[str, Any], nam
 def test_the_controllers_command_the_arms_four_joints(content: dict[str, Any]) -> None:
     for name in ("position_controller", "joint_trajectory_controller"):
         assert content[name]["ros__parameters"]["joints"] == ["j0", "j1", "j2", "j3"]
+
+
+def test_the_ros1_form_has_a_controller_for_each_joint_under_arm() -> None:
+    parameters = yaml.safe_load(ROS1_PATH.read_text())
+    manager = parameters["/arm/controller_manager"]["ros__parameters"]
+    for index in range(4):
+        name = f"j{index}p_controller"
+        own = parameters[f"/arm/{name}"]["ros__parameters"]
+        gains = {f"pid.{gain}": value for gain, value in own.pop("pid").items()}
+        built = JointPositionController.build_parameters({**own, **gains})
+        assert built.joint == f"j{index}"
+        assert (built.pid.p, built.pid.i, built.pid.d) == (100.0, 0.01, 10.0)
+        assert controller_class(manager[name]["type"]) is JointPositionController
+
+
+def test_the_ros1_form_publishes_states_at_50_hz() -> None:
+    file = ControllerParameterFile(str(ROS1_PATH))
+    assert file.lookup("joint_state_broadcaster", "/arm", "update_rate") == 50

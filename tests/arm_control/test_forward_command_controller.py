@@ -15,8 +15,11 @@ from arm_control.forward_command_controller import (
     JointGroupEffortController,
     JointGroupPositionController,
     JointGroupVelocityController,
+    JointPositionController,
+    JointPositionParameters,
     MultiInterfaceForwardCommandController,
     MultiInterfaceForwardCommandParameters,
+    PidParameters,
     PositionGroupParameters,
     VelocityGroupParameters,
 )
@@ -217,3 +220,25 @@ def test_an_empty_parameter_fails_the_configuration(
 ) -> None:
     with pytest.raises(ControllerManagerError, match=f"'{missing}' parameter was empty"):
         make(class_, parameters)
+
+
+def test_a_joint_position_controller_commands_its_one_joint(bench: Any, make: Any) -> None:
+    controller = make(JointPositionController, JointPositionParameters(joint="j2"))
+    activate(bench)
+    controller.offer([0.7])
+    bench.tick()
+    assert commands(bench)[2] == 0.7
+
+
+def test_a_joint_position_controller_takes_gains_and_says_that_they_do_nothing(
+    make: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    parameters = JointPositionParameters("j2", PidParameters(p=100.0, i=0.01, d=10.0))
+    make(JointPositionController, parameters)
+    assert "the gains under 'pid' have no effect" in caplog.text
+
+
+def test_a_joint_position_controller_without_a_joint_is_refused(make: Any) -> None:
+    with pytest.raises(ControllerManagerError, match="'joint' parameter was empty"):
+        make(JointPositionController, JointPositionParameters())

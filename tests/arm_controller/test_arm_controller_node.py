@@ -69,6 +69,15 @@ def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
     assert commands == []
 
 
+def test_publishes_on_and_on_at_a_rate_and_says_so_once(robot, run, until):
+    commands = robot.listen()
+    robot.describe()
+    program = run(MODULE, publish_rate=50, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    until(lambda: len(commands) >= 10, "ten commands")
+    assert commands[9] == [0.1, 0.2, 0.3, 0.4]
+    assert program.output.count("Publishing positions") == 1
+
+
 def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pose):
     commands = robot.listen()
     robot.describe()
@@ -152,6 +161,9 @@ def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):
         ({"desired_param": "[.nan, 0.0, 0.0, 0.0]"}, "joint 'j0' cannot go to nan"),
         ({"print_period": "-1"}, "parameter print_period: must be 0 or a number above, not -1"),
         ({"joints": "[]"}, "parameter joints: must be a list of joint names"),
+        ({"command_topic": "5"}, "parameter command_topic: must be the name of a topic, not 5"),
+        ({"publish_rate": "-1"}, "parameter publish_rate: must be 0 or a number above, not -1"),
+        ({"check_limits": "3"}, "parameter check_limits: must be true or false, not 3"),
     ],
 )
 def test_a_start_with_nonsense_ends_with_a_sentence(run, parameters, sentence):

@@ -21,7 +21,7 @@ POSES = {
 
 
 def test_every_parameter_file_is_known_here():
-    assert {path.name for path in CONFIG.glob("params*.yaml")} == set(POSES)
+    assert {path.name for path in CONFIG.glob("params*.yaml")} == {*POSES, "params_ros1.yaml"}
 
 
 @pytest.mark.parametrize("name", POSES)
@@ -34,6 +34,18 @@ def test_a_parameter_file_holds_the_pose_of_the_original(name):
     assert pose.positions == POSES[name]
     read_number(parameters.pop("print_period", 1.0), positive=False)
     assert parameters == {}
+
+
+def test_the_ros1_file_sends_the_originals_pose_to_each_joint_ten_times_a_second():
+    node, settings = yaml.safe_load((CONFIG / "params_ros1.yaml").read_text()).popitem()
+    assert node == "/arm/arm_controller_node"
+    assert settings["ros__parameters"] == {
+        "command_topic": "{joint}p_controller/command",
+        "desired_param": [-5.0, 0.5, -1.2, -1.0],
+        "check_limits": False,
+        "publish_rate": 10.0,
+        "print_period": 1.0,
+    }
 
 
 def test_the_defined_poses_are_the_five_of_the_original():

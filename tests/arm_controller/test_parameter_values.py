@@ -7,10 +7,12 @@ import pytest
 
 from arm_controller.errors import ParameterValueError, PoseError
 from arm_controller.parameter_values import (
+    read_flag,
     read_joint_names,
     read_number,
     read_path,
     read_pose,
+    read_topic,
 )
 
 JOINTS = ("j0", "j1")
@@ -80,3 +82,24 @@ def test_a_path_may_start_at_home(monkeypatch):
 def test_refuses_what_is_no_path(value):
     with pytest.raises(ParameterValueError, match="must be the path of a file"):
         read_path(value)
+
+
+@pytest.mark.parametrize("value", [True, False])
+def test_a_flag_is_true_or_false(value):
+    assert read_flag(value) is value
+
+
+@pytest.mark.parametrize("value", [0, 1, "true", None])
+def test_refuses_what_is_no_flag(value):
+    with pytest.raises(ParameterValueError, match="must be true or false, not"):
+        read_flag(value)
+
+
+def test_a_topic_is_a_text():
+    assert read_topic("{joint}p_controller/command") == "{joint}p_controller/command"
+
+
+@pytest.mark.parametrize("value", ["", 3, None, ["a"]])
+def test_refuses_what_is_no_topic(value):
+    with pytest.raises(ParameterValueError, match="must be the name of a topic, not"):
+        read_topic(value)

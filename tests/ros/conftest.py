@@ -54,21 +54,24 @@ class Launched:
 
     def wait_for_line(self, text: str, timeout_s: float = START_TIMEOUT_S) -> str:
         """Block until a line that contains `text` has been printed; return it."""
+        return self._wait_for(lambda line: text in line, f"with {text!r}", timeout_s)
+
+    def wait_until_ready(self) -> None:
+        """Block until the launcher says that everything runs, not only some process."""
+        self._wait_for(lambda line: line.startswith("ready "), "'ready ...'", START_TIMEOUT_S)
+
+    def _wait_for(self, fits: Callable[[str], bool], what: str, timeout_s: float) -> str:
         deadline = time.monotonic() + timeout_s
         with self._changed:
             while True:
-                found = next((line for line in self.lines if text in line), None)
+                found = next((line for line in self.lines if fits(line)), None)
                 if found is not None:
                     return found
                 ended = bool(self.lines) and self.lines[-1] == "<end of output>"
                 left = deadline - time.monotonic()
                 if ended or left <= 0:
-                    pytest.fail(f"no line with {text!r} was printed:\n{self.output}")
+                    pytest.fail(f"no line {what} was printed:\n{self.output}")
                 self._changed.wait(left)
-
-    def wait_until_ready(self) -> None:
-        """Block until the launcher says that everything runs."""
-        self.wait_for_line("ready ")
 
     def descendants(self) -> list[psutil.Process]:
         """All processes below the launcher."""

@@ -1,11 +1,12 @@
-"""The ROS half of the controllers that forward commands: the topic ~/commands."""
+"""The ROS half of the controllers that forward commands: the topic of the commands."""
 
 import logging
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, ClassVar
 
 from rclpy.qos import QoSPresetProfiles
 from rclpy.subscription import Subscription
-from std_msgs.msg import Float64MultiArray
+from std_msgs.msg import Float64, Float64MultiArray
 
 from arm_control.forward_command_controller import ForwardCommander
 from arm_control.ros.controller_adapter import ControllerAdapter
@@ -15,18 +16,22 @@ WARNING_INTERVAL_S = 1.0
 
 
 class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
-    """Hands each std_msgs/msg/Float64MultiArray of ~/commands to the core."""
+    """Hands each std_msgs/msg/Float64MultiArray of ~/commands to the core.
 
+    Attributes:
+        message_type: class of the message.
+        topic: where the commands come in.
+    """
+
+    message_type: ClassVar[type[Any]] = Float64MultiArray
+    topic: ClassVar[str] = "~/commands"
     _subscription: Subscription | None = None
 
     def on_configure(self, parameters: Any) -> None:
         """Subscribe; best effort on Fast DDS, so that every publisher matches."""
         self._throttle = Throttle(WARNING_INTERVAL_S)
         self._subscription = self.node.create_subscription(
-            Float64MultiArray,
-            "~/commands",
-            self._take,
-            QoSPresetProfiles.SYSTEM_DEFAULT.value,
+            self.message_type, self.topic, self._take, QoSPresetProfiles.SYSTEM_DEFAULT.value
         )
 
     def on_cleanup(self) -> None:
@@ -35,8 +40,24 @@ class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
             self.node.destroy_subscription(self._subscription)
             self._subscription = None
 
-    def _take(self, message: Float64MultiArray) -> None:
-        if not self.controller.offer(message.data) and self._throttle.permits():
+    def values_of(self, message: Any) -> Sequence[float]:
+        """Return the numbers in a message."""
+        return message.data
+
+    def _take(self, message: Any) -> None:
+        values = self.values_of(message)
+        if not self.controller.offer(values) and self._throttle.permits():
             logging.getLogger(self.controller.name).warning(
-                "a command with a NaN or an infinity was dropped: %s", list(message.data)[:16]
+                "a command with a NaN or an infinity was dropped: %s", list(values)[:16]
             )
+
+
+class JointCommandAdapter(ForwardCommandAdapter):
+    """Hands each std_msgs/msg/Float64 of ~/command to the core, as controllers of ROS 1 do."""
+
+    message_type = Float64
+    topic = "~/command"
+
+    def values_of(self, message: Float64) -> Sequence[float]:
+        """Return the number in a message."""
+        return (message.data,)

@@ -7,7 +7,7 @@ from rclpy.timer import Timer
 
 from arm_controller.errors import ArmControllerError, PoseError
 from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_number, read_pose
+from arm_controller.parameter_values import read_flag, read_number, read_pose
 from arm_controller.pose import JointPose
 from arm_controller.ros.clock_time import steady_clock
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
@@ -18,7 +18,9 @@ WAIT_WARNING_S = 5.0
 
 
 class ArmController(Node):
-    """Publishes its parameter desired_param once each time it is set, and prints joint states.
+    """Publishes its parameter desired_param each time it is set, and prints joint states.
+
+    It publishes a pose once or, with a publish_rate, on and on.
 
     Raises:
         ParameterValueError: a parameter that was given makes no sense.
@@ -30,9 +32,24 @@ class ArmController(Node):
         self._joint_names = declare_joints(self)
         self._commands = CommandPublisher(self, self._joint_names)
         self._pending: JointPose | None = None
+        self._announced: JointPose | None = None
         self._warned = False
+        self._checks_limits = declare(
+            self, "check_limits", True, read_flag, "Publish no pose beyond the limits of a joint"
+        )
+        rate_hz = declare(
+            self,
+            "publish_rate",
+            0.0,
+            self._read_not_negative,
+            "How often a pose is published (Hz); 0 = once",
+        )
+        self._repeats = rate_hz > 0.0
         self._delivery = self.create_timer(
-            POLL_S, self._deliver, clock=self._steady, autostart=False
+            1.0 / rate_hz if self._repeats else POLL_S,
+            self._deliver,
+            clock=self._steady,
+            autostart=False,
         )
         self._readings = JointReadings()
         self._states: JointStateInput | None = None
@@ -52,7 +69,7 @@ class ArmController(Node):
             self,
             "print_period",
             1.0,
-            self._read_period,
+            self._read_not_negative,
             "Time between two prints of the joint states (s); 0 = never",
             read_only=False,
         )
@@ -63,15 +80,18 @@ class ArmController(Node):
 
     def _read_pose(self, value: object) -> JointPose | None:
         pose = read_pose(value, self._joint_names)
-        if pose is not None:
-            self._commands.limits.check(pose)
+        self._check_limits(pose)
         return pose
 
-    def _read_period(self, value: object) -> float:
+    def _check_limits(self, pose: JointPose | None) -> None:
+        if pose is not None and self._checks_limits:
+            self._commands.limits.check(pose)
+
+    def _read_not_negative(self, value: object) -> float:
         return read_number(value, positive=False)
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        readers = {"desired_param": self._read_pose, "print_period": self._read_period}
+        readers = {"desired_param": self._read_pose, "print_period": self._read_not_negative}
         for parameter in parameters:
             try:
                 # Others pass here as well: use_sim_time, QoS overrides.
@@ -88,10 +108,11 @@ class ArmController(Node):
             if parameter.name == "desired_param":
                 self._want(self._read_pose(parameter.value))
             elif parameter.name == "print_period":
-                self._print_every(self._read_period(parameter.value))
+                self._print_every(self._read_not_negative(parameter.value))
 
     def _want(self, pose: JointPose | None) -> None:
         self._pending = pose
+        self._announced = None
         self._warned = False
         if pose is None:
             self._delivery.cancel()
@@ -105,22 +126,30 @@ class ArmController(Node):
         self._commands.observe()
         try:
             # The description may have come after the parameter.
-            self._commands.limits.check(pose)
+            self._check_limits(pose)
         except PoseError as error:
             self.get_logger().error(f"Not publishing {pose}: {error}")
             self._want(None)
             return
         if self._commands.is_ready:
-            self.get_logger().info(f"Publishing positions: {pose}")
-            if not self._commands.reaches_controller:
-                self.get_logger().warning(self._commands.audience)
+            self._announce(pose)
             self._commands.publish(pose)
-            self._want(None)
+            if not self._repeats:
+                self._want(None)
         elif not self._warned and self._commands.silence_s >= WAIT_WARNING_S:
             self._warned = True
             self.get_logger().warning(
                 f"{self._commands.audience}, so {pose} waits: is the position_controller active?"
             )
+
+    def _announce(self, pose: JointPose) -> None:
+        """Say what is published, once."""
+        if self._announced is pose:
+            return
+        self._announced = pose
+        self.get_logger().info(f"Publishing positions: {pose}")
+        if not self._commands.reaches_controller:
+            self.get_logger().warning(self._commands.audience)
 
     def _print_every(self, period_s: float) -> None:
         if self._print_timer is not None:

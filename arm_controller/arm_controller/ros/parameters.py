@@ -8,9 +8,12 @@ from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 
 from arm_controller.errors import ArmControllerError, ParameterValueError
-from arm_controller.parameter_values import read_joint_names, read_number
+from arm_controller.parameter_values import read_joint_names, read_number, read_topic
 
 Value = TypeVar("Value")
+
+JOINT_MARK = "{joint}"
+"""What stands for a joint's name in the name of a topic."""
 
 
 def declare(
@@ -46,6 +49,18 @@ def declare_joints(node: Node) -> tuple[str, ...]:
         ["j0", "j1", "j2", "j3"],
         read_joint_names,
         "Joints of a pose, in the position controller's order",
+    )
+
+
+def declare_command_topic(node: Node) -> str:
+    """Declare the parameter `command_topic` and return it."""
+    return declare(
+        node,
+        "command_topic",
+        "position_controller/commands",
+        read_topic,
+        "Where poses go: one std_msgs/msg/Float64MultiArray or, where it holds {joint}, "
+        "one std_msgs/msg/Float64 for each joint",
     )
 
 

@@ -61,7 +61,7 @@ def manager(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
         f"world:={folder / 'world.xml'}",
         f"controllers:={folder / 'controllers.yaml'}",
     )
-    launched.wait_for_line("ready ")
+    launched.wait_for_line("[launch] stop: Ctrl-C")  # said once all of it is ready
     return launched
 
 
