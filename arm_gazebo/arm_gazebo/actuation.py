@@ -12,7 +12,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mimic_joints import SCALAR_TYPES, Following
 
-DEFAULT_SPEED = {"revolute": 10.0, "continuous": 10.0, "prismatic": 1.0}
+DEFAULT_SPEED = {"revolute": 3.0, "continuous": 3.0, "prismatic": 0.5}
 """Highest speed, in rad/s or m/s, of a joint whose URDF gives none."""
 
 
