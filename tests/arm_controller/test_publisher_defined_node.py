@@ -94,7 +94,7 @@ def test_says_that_the_simulations_clock_is_silent(robot, run):
     robot.listen()
     robot.describe()
     robot.broadcast()
-    program = run(MODULE, use_sim_time=True, match_timeout=1)
+    program = run(MODULE, use_sim_time=True, match_timeout=5)
     assert program.wait() == 1
     assert "use_sim_time is true and /clock is silent" in program.output
 
