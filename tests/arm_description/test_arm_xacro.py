@@ -199,6 +199,12 @@ def test_a_prefix_reaches_every_name_except_world():
     assert (camera.link, camera.optical_frame) == ("left_camera_link", "left_camera_optical_frame")
 
 
+def test_the_hardware_can_be_chosen():
+    control = parse_xml(expand(hardware="mock_components/GenericSystem")).find("ros2_control")
+
+    assert control.findtext("hardware/plugin") == "mock_components/GenericSystem"
+
+
 def test_every_joint_takes_position_velocity_and_effort():
     control = parse_xml(expand()).find("ros2_control")
 
