@@ -17,7 +17,12 @@ _LIST_TYPES = {
     float: Parameter.Type.DOUBLE_ARRAY,
     str: Parameter.Type.STRING_ARRAY,
 }
-_ANY_NODE = ("use_sim_time", "start_type_description_service", "type")
+_ANY_NODE = (
+    "fallback_controllers",
+    "start_type_description_service",
+    "type",
+    "use_sim_time",
+)
 """What a parameter file may say about any controller, beside the controller's own parameters."""
 
 

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
 
 pytestmark = pytest.mark.ros
 
@@ -46,3 +48,37 @@ def test_a_signal_ends_the_wait(spawn_hardware: Any) -> None:
     spawner.wait_for_line("waiting for service /far/controller_manager/list_hardware_components")
     assert spawner.stop(signal.SIGTERM) == 0
     assert "Traceback" not in spawner.output
+
+
+# A manager without a robot offers no services yet
+
+
+MOCK = "<hardware><plugin>mock_components/GenericSystem</plugin></hardware>"
+ROBOT = (
+    "<robot name='r'><link name='base_link'/><ros2_control name='Arm' type='system'>"
+    f"{MOCK}<joint name='j0'><state_interface name='position'/></joint></ros2_control></robot>"
+)
+
+
+def test_spawners_wait_for_the_robot_description(
+    run: Any, spawn: Any, spawn_hardware: Any, client: Any, control_of: Any
+) -> None:
+    namespace = ("--ros-args", "-r", "__ns:=/bare")
+    type_name = "joint_state_broadcaster/JointStateBroadcaster"
+    waiting = run("-m", "arm_control.ros2_control_node", *namespace, "-p", f"jsb.type:={type_name}")
+    waiting.wait_for_line("Waiting for data on 'robot_description' topic")
+    spawners = [
+        spawn("jsb", "--controller-manager-timeout", "0.5", *namespace),
+        spawn_hardware("Arm", "--configure", "--controller-manager-timeout", "0.5", *namespace),
+    ]
+    for spawner in spawners:
+        assert "Could not contact service /bare/controller_manager/list_" in spawner.fail()
+    spawner = spawn("jsb", *namespace)
+    spawner.wait_for_line("waiting for service /bare/controller_manager/list_controllers")
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    description = client.node.create_publisher(String, "/bare/robot_description", latched)
+    description.publish(String(data=ROBOT))
+    spawner.succeed()
+    assert control_of("/bare").states() == {"jsb": "active"}
+    spawn_hardware("Arm", "--configure", *namespace).succeed()
+    assert state(control_of("/bare")) == "inactive"

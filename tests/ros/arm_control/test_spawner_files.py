@@ -16,7 +16,7 @@ def node(**parameters: Any) -> dict[str, Any]:
 
 
 def test_a_file_brings_type_and_parameters(
-    control: Any, spawn: Any, file: Any, get_parameter: Callable[..., Any]
+    control: Any, spawn: Any, manager: Any, file: Any, get_parameter: Callable[..., Any]
 ) -> None:
     path = file({"fresh": node(type=POSITION, joints=["j2"], fallback_controllers=["a", "b"])})
     spawn("fresh", "--inactive", "-p", path).succeed()
@@ -25,6 +25,8 @@ def test_a_file_brings_type_and_parameters(
     assert controller.required_command_interfaces == ["j2/position"]
     assert get_parameter("/controller_manager", "fresh.fallback_controllers") == ["a", "b"]
     assert get_parameter("/controller_manager", "fresh.params_file") == [path]
+    # All of it is known: what is for the spawner is no strange parameter of the controller.
+    assert "is not known to" not in manager.output
 
 
 def test_a_wildcard_serves_many_controllers_beside_their_own_entries(
