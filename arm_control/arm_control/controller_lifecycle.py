@@ -50,12 +50,11 @@ class ControllerLifecycle:
         return reason
 
     def clean_up(self, managed: ManagedController) -> str:
-        """Let the controller forget; it counts as unconfigured even where its own part failed."""
+        """Let the controller forget; it stays inactive where its own part failed."""
         reason = self._run(managed, Transition.CLEANUP, managed.controller.on_cleanup)
-        managed.forget_interfaces()
-        self._resources.exported.remove(managed.name)
-        self._arrive(managed, Transition.CLEANUP, "")
-        return reason
+        if not reason:
+            self._forget(managed)
+        return self._arrive(managed, Transition.CLEANUP, reason)
 
     def activate(self, managed: ManagedController) -> str:
         """Claim and loan the interfaces, then start."""
@@ -86,8 +85,13 @@ class ControllerLifecycle:
     def shut_down(self, managed: ManagedController) -> str:
         """Let go for good; it counts as finalized even where its own part failed."""
         reason = self._run(managed, Transition.SHUTDOWN, managed.controller.on_shutdown)
+        self._forget(managed)
         self._arrive(managed, Transition.SHUTDOWN, "")
         return reason
+
+    def _forget(self, managed: ManagedController) -> None:
+        managed.forget_interfaces()
+        self._resources.exported.remove(managed.name)
 
     def _export(self, managed: ManagedController) -> str:
         return failure_of(

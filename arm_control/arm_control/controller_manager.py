@@ -224,7 +224,7 @@ class ControllerManager:
         """
         controller = self._find(name, "configure")
         if controller.state is LifecycleState.INACTIVE:
-            self._lifecycle.clean_up(controller)
+            self._clean_up(controller)
         if controller.state is not LifecycleState.UNCONFIGURED:
             raise ControllerManagerError(
                 f"Controller '{name}' can not be configured from '{controller.state.label}' state."
@@ -243,8 +243,7 @@ class ControllerManager:
                 f"Controller '{name}' can not be cleaned-up from '{controller.state.label}' state."
             )
         if controller.state is LifecycleState.INACTIVE:
-            self._lifecycle.clean_up(controller)
-            self._activity_changed()
+            self._clean_up(controller)
 
     def unload_controller(self, name: str) -> None:
         """Clean a controller up, shut it down and forget it."""
@@ -279,6 +278,14 @@ class ControllerManager:
                 if reason:
                     logger.error("%s", reason)
         self._activity_changed()
+
+    def _clean_up(self, controller: ManagedController) -> None:
+        reason = self._lifecycle.clean_up(controller)
+        self._activity_changed()
+        if reason:
+            raise ControllerManagerError(
+                f"controller '{controller.name}' was not cleaned up: {reason}"
+            )
 
     def _component(self, name: str) -> HardwareComponent:
         component = self.resources.components.get(name)

@@ -99,6 +99,36 @@ def test_cleanup_of_an_unconfigured_controller_does_nothing(bench: Any) -> None:
     assert bench.events == []
 
 
+def test_cleanup_of_an_unknown_name_says_what_is_loaded(bench: Any) -> None:
+    bench.load("a")
+    with pytest.raises(ControllerManagerError, match=r"clean up controller with name 'x'.*: a"):
+        bench.manager.cleanup_controller("x")
+
+
+@pytest.mark.parametrize("way", ["refuses", "raises"])
+def test_a_controller_that_cannot_be_cleaned_up_stays_inactive(bench: Any, way: str) -> None:
+    probe = bench.configure("a", commands=ALL)
+    getattr(probe, way).add("cleanup")
+    with pytest.raises(ControllerManagerError, match="controller 'a' was not cleaned up: "):
+        bench.manager.cleanup_controller("a")
+    with pytest.raises(ControllerManagerError, match="controller 'a' was not cleaned up: "):
+        bench.manager.configure_controller("a", type(probe).parameters_type())
+    assert bench.states() == {"a": "inactive"}
+    # It can still be used, and taken out.
+    assert bench.manager.switch_controller(SwitchRequest(("a",))).ok
+    assert bench.manager.switch_controller(SwitchRequest((), ("a",))).ok
+    bench.manager.unload_controller("a")
+    assert bench.states() == {}
+
+
+def test_a_controller_can_be_configured_again_after_cleanup(bench: Any) -> None:
+    probe = bench.configure("a", commands=ALL[:1])
+    bench.manager.cleanup_controller("a")
+    bench.manager.configure_controller("a", type(probe).parameters_type(ALL[1:2]))
+    (status,) = bench.manager.list_controllers()
+    assert status.required_command_interfaces == ALL[1:2]
+
+
 def test_an_active_controller_is_not_cleaned_up(bench: Any) -> None:
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))

@@ -4,7 +4,17 @@ from typing import Any
 
 import pytest
 
-from arm_control import LifecycleState, Strictness, SwitchRequest
+from arm_control import (
+    Controller,
+    ControllerContext,
+    ControllerManagerError,
+    InterfaceConfiguration,
+    LifecycleState,
+    NoParameters,
+    ReturnType,
+    Strictness,
+    SwitchRequest,
+)
 from arm_control.controller_switcher import NOTHING_TO_SWITCH, PREPARE_REJECTED
 
 BEST_EFFORT, STRICT = Strictness.BEST_EFFORT, Strictness.STRICT
@@ -200,6 +210,47 @@ def test_two_controllers_of_one_request_that_want_the_same(
         "that is being activated.",
     )
     assert bench.states() == {"a": "inactive", "b": "inactive"}
+
+
+def test_a_controller_of_all_commands_leaves_none_to_another(bench: Any) -> None:
+    class Greedy(Controller[NoParameters]):
+        def command_interface_configuration(self) -> InterfaceConfiguration:
+            return InterfaceConfiguration.all()
+
+        def state_interface_configuration(self) -> InterfaceConfiguration:
+            return InterfaceConfiguration.none()
+
+        def on_configure(self, parameters: NoParameters) -> None:
+            pass
+
+        def update(self, time_s: float, period_s: float) -> ReturnType:
+            return ReturnType.OK
+
+    bench.manager.load_controller(Greedy(ControllerContext("greedy", 100)), "test/Greedy")
+    bench.manager.configure_controller("greedy", NoParameters())
+    bench.configure("modest", commands=("j2/position",))
+    assert bench.manager.switch_controller(SwitchRequest(("greedy",))).ok
+    result = bench.manager.switch_controller(SwitchRequest(("modest",)))
+    assert "'j2/position' is currently claimed by another controller." in result.message
+    assert bench.manager.switch_controller(SwitchRequest(("modest",), ("greedy",))).ok
+
+
+def test_a_finalized_controller_is_not_activated(bench: Any) -> None:
+    bench.configure("a")
+    bench.manager.shutdown()
+    result = bench.manager.switch_controller(SwitchRequest(("a",), (), STRICT))
+    assert (result.ok, bench.states()) == (False, {"a": "finalized"})
+    with pytest.raises(ControllerManagerError, match="can not be configured from 'finalized'"):
+        bench.manager.configure_controller("a", None)
+
+
+def test_controllers_change_places_as_groups(bench: Any) -> None:
+    for name, joint in (("a", "j0"), ("b", "j1"), ("c", "j0"), ("d", "j1")):
+        bench.configure(name, commands=(f"{joint}/position",))
+    bench.manager.switch_controller(SwitchRequest(("a", "b"), (), STRICT))
+    result = bench.manager.switch_controller(SwitchRequest(("c", "d"), ("a", "b"), STRICT))
+    assert result.ok
+    assert bench.states() == {"d": "active", "c": "active", "b": "inactive", "a": "inactive"}
 
 
 def test_interfaces_released_by_the_same_request_are_free(bench: Any) -> None:
