@@ -64,6 +64,9 @@ class CameraSnapshot:
                 FrameDue(*fields) for fields in FRAME.iter_unpack(packed[HEADER.size : values_at])
             )
             values = np.frombuffer(packed, np.float64, offset=values_at)
+            expected = positions + mocaps * POSE_SIZE
+            if len(values) != expected:
+                raise ValueError(f"{len(values)} numbers, not {expected}")
             mocap_poses = values[positions:].reshape(mocaps, POSE_SIZE)
         except (struct.error, ValueError) as error:
             raise CameraError(f"{len(packed)} bytes are not a camera snapshot: {error}") from error

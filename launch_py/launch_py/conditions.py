@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from launch_py.errors import SubstitutionError
@@ -12,12 +13,12 @@ if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
 
 
-class Condition:
+class Condition(ABC):
     """Decides whether an action is taken."""
 
+    @abstractmethod
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether it holds."""
-        raise NotImplementedError
 
 
 class IfCondition(Condition):

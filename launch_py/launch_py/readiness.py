@@ -8,6 +8,7 @@ Each condition is a value; who watches it is decided by its kind: the output of 
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -19,14 +20,14 @@ DEFAULT_TIMEOUT_S = 30.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Readiness:
+class Readiness(ABC):
     """A condition of readiness that must hold within `timeout_s` of the start."""
 
     timeout_s: float = DEFAULT_TIMEOUT_S
 
+    @abstractmethod
     def missing(self) -> str:
         """Return what is missing while the condition does not hold, as part of a sentence."""
-        raise NotImplementedError
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its texts performed and relative names in `namespace`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, cast
@@ -12,19 +13,19 @@ if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
 
 
-class Substitution:
+class Substitution(ABC):
     """A text that depends on the launch context."""
 
     is_costly = False
     """Whether performing it takes time or does something, so that a mere survey should not."""
 
+    @abstractmethod
     def perform(self, context: LaunchContext) -> str:
         """Return the text.
 
         Raises:
             SubstitutionError: it has no value in this context.
         """
-        raise NotImplementedError
 
     def describe(self) -> str:
         """Return how it is written in a launch file, for messages."""

@@ -34,8 +34,9 @@ def test_it_declares_the_three_controllers_at_100_hz(content: dict[str, Any]) ->
 @pytest.mark.parametrize("name", ["joint_state_broadcaster", "position_controller"])
 def test_every_parameter_is_known_to_its_controller(content: dict[str, Any], name: str) -> None:
     type_name = ControllerParameterFile(str(PATH)).lookup(name, "/", "type")
-    parameters = content[name]["ros__parameters"]
-    build_parameters(controller_class(type_name).parameters_type, parameters)
+    parameters_type = controller_class(type_name).parameters_type
+    built = build_parameters(parameters_type, content[name]["ros__parameters"])
+    assert isinstance(built, parameters_type)
 
 
 def test_the_controllers_command_the_arms_four_joints(content: dict[str, Any]) -> None:

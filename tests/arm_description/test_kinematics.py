@@ -1,4 +1,7 @@
-"""Forward kinematics: golden figures of the original arm, and yourdfpy as a second opinion."""
+"""Forward kinematics, with yourdfpy as a second opinion.
+
+The golden figures of the original arm are in test_arm_xacro.py, where the shipped file meets them.
+"""
 
 import math
 from typing import Any
@@ -12,83 +15,6 @@ from lxml import etree
 
 from arm_description import KinematicsError, Robot, forward_kinematics, parse_urdf
 from arm_description.kinematics import resolve_mimics
-
-ORIGINAL_ARM = (
-    # joint, type, parent, child, xyz, rpy; every axis is z
-    ("base_1_2", "fixed", "base_link", "base_turn", "-0.0011 -0.011 0.05", "0 0 0"),
-    ("j0", "continuous", "base_turn", "base_turn_rot", "0 0.0155 0.013", "0 0 -1.57"),
-    ("base_turn_rot_dyn2", "fixed", "base_turn_rot", "dyn2", "0 0 0.0385", "0 1.57 1.57"),
-    ("j1", "continuous", "dyn2", "dyn2_r", "0 0 0", "0 0 0"),
-    ("dyn2_f4", "fixed", "dyn2_r", "f4", "-0.047 0 -0.003", "0 1.57 1.57"),
-    ("d4_dyn3", "fixed", "f4", "dyn3", "-0.004 0.0645 0", "-1.57 3.14 1.57"),
-    ("j2", "continuous", "dyn3", "dyn3_r", "0 0 0", "0 0 0"),
-    ("dyn3_f5", "fixed", "dyn3_r", "f5", "-0.046 0 -0.002", "1.57 1.57 3.1415"),
-    ("f5_dyn4", "fixed", "f5", "dyn4", "-0.004 0.065 0", "-1.57 3.1415 1.57"),
-    ("j3", "continuous", "dyn4", "dyn4_r", "0 0 0", "0 0 0"),
-    ("f5_wrist", "fixed", "dyn4_r", "wrist", "-0.017 -0.013 0.003", "1.57 1.57 -1.57"),
-    ("wrist_dyn5", "fixed", "wrist", "dyn5", "0.0038 -0.013 0.0275", "0 0 1.57"),
-    ("dyn5_dyn5_r", "fixed", "dyn5", "dyn5_r", "0 0 0", "0 0 0"),
-    ("wrist_rotate_dyn5", "fixed", "dyn5_r", "crawer_base", "0.015 0 0.019", "0 0 1.57"),
-    ("left", "fixed", "crawer_base", "crawer_left", "-0.03 0.015 0.01", "0 -1.57 0"),
-    ("right", "fixed", "crawer_base", "crawer_right", "0.03 0.015 0.01", "3.1415 -1.57 0"),
-)
-
-LINKS_AT_ZERO = {
-    "base_link": (0.0, 0.0, 0.0),
-    "base_turn": (-0.0011, -0.011, 0.05),
-    "base_turn_rot": (-0.0011, 0.0045, 0.063),
-    "dyn2": (-0.0011, 0.0045, 0.1015),
-    "dyn2_r": (-0.0011, 0.0045, 0.1015),
-    "f4": (-0.00414, 0.0045, 0.1485),
-    "dyn3": (-0.00019, 0.00455, 0.213),
-    "dyn3_r": (-0.00019, 0.00455, 0.213),
-    "f5": (-0.00226, 0.00466, 0.259),
-    "dyn4": (0.00169, 0.00476, 0.324),
-    "dyn4_r": (0.00169, 0.00476, 0.324),
-    "wrist": (0.00463, -0.00821, 0.34103),
-    "dyn5": (0.0008, 0.0048, 0.36852),
-    "dyn5_r": (0.0008, 0.0048, 0.36852),
-    "crawer_base": (0.00074, -0.0102, 0.38752),
-    "crawer_left": (-0.02923, 0.0049, 0.39747),
-    "crawer_right": (0.03077, 0.00471, 0.39757),
-}
-
-GRIPPER_AT = {
-    (0.0, 0.0, 0.0, 0.0): (0.00074, -0.0102, 0.38752),
-    (0.0, 0.5, 0.5, 1.0): (0.00074, -0.19373, 0.21949),
-    (1.0, 0.5, 0.1, 0.5): (0.15077, -0.09084, 0.30659),
-    (1.0, 2.0, -1.0, -2.0): (0.12586, -0.07413, 0.16221),
-    (1.0, 0.5, 0.0, 0.0): (0.12615, -0.07498, 0.34546),
-    (0.4, -0.1, 0.5, 0.4): (0.0347, -0.07573, 0.34828),
-    (-2.57, 0.5, -1.2, -1.0): (0.0419, -0.06674, 0.29078),
-}
-"""Where crawer_base is, by j0..j3. Measured on the original robot, rounded to 0.01 mm."""
-
-ROUNDING_M = 0.6e-5
-
-
-def original_arm() -> Robot:
-    links = "".join(f"<link name='{name}'/>" for name in LINKS_AT_ZERO)
-    joints = "".join(
-        f"<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
-        f"<origin xyz='{xyz}' rpy='{rpy}'/><axis xyz='0 0 1'/></joint>"
-        for name, kind, parent, child, xyz, rpy in ORIGINAL_ARM
-    )
-    return parse_urdf(f"<robot name='arm'>{links}{joints}</robot>")
-
-
-def test_the_original_arms_links_at_zero():
-    poses = forward_kinematics(original_arm(), {})
-    assert poses.keys() == LINKS_AT_ZERO.keys()
-    for link, xyz in LINKS_AT_ZERO.items():
-        assert poses[link][:3, 3] == pytest.approx(xyz, abs=ROUNDING_M)
-
-
-@pytest.mark.parametrize("q", GRIPPER_AT)
-def test_the_original_arms_gripper(q):
-    poses = forward_kinematics(original_arm(), dict(zip(("j0", "j1", "j2", "j3"), q, strict=True)))
-    assert poses["crawer_base"][:3, 3] == pytest.approx(GRIPPER_AT[q], abs=ROUNDING_M)
-
 
 LIMIT = "<limit lower='-9' upper='9' effort='1' velocity='1'/>"
 

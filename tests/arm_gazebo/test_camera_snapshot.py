@@ -32,9 +32,17 @@ def test_what_is_packed_comes_out_again(version, time_s, due, qpos, mocaps):
 
 
 @given(st.binary(max_size=200))
-def test_garbage_is_read_or_refused_and_nothing_else(packed):
+def test_garbage_is_refused_or_is_a_snapshot_after_all(packed):
+    found = None
     with contextlib.suppress(CameraError):
-        CameraSnapshot.unpack(packed)
+        found = CameraSnapshot.unpack(packed)
+    assert found is None or found.pack() == packed
+
+
+def test_a_snapshot_with_fewer_positions_than_it_says_is_refused():
+    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), np.zeros((0, 7))).pack()
+    with pytest.raises(CameraError, match="3 numbers, not 4"):
+        CameraSnapshot.unpack(packed[:-8])
 
 
 def test_a_truncated_snapshot_is_refused():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from launch_py.survey import Survey
 
 
-class Action:
+class Action(ABC):
     """One entry of a launch description, switched on or off by its condition.
 
     Expanding an action only describes: it adds steps to the plan or changes the context for what
@@ -29,13 +30,13 @@ class Action:
             with context.plan.expanding(self):
                 self.expand(context)
 
+    @abstractmethod
     def expand(self, context: LaunchContext) -> None:
         """Add what this action means to the plan, or to the context.
 
         Raises:
             LaunchError: something in it does not make sense.
         """
-        raise NotImplementedError
 
     def survey(self, survey: Survey, context: LaunchContext) -> None:
         """Note this action and all below it, whatever the conditions say."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from launch_py.actions.action import Action, check_actions
 from launch_py.errors import LaunchError, LaunchFileError
@@ -41,6 +41,27 @@ SHOWN_STREAMS = {
 """Which streams ROS's words for `output` put on the screen; the log file always gets both."""
 
 Variables = Mapping[Text, Text]
+
+
+class ProcessOptions(TypedDict, total=False):
+    """What every process takes besides what it runs; `ExecuteProcess` says what it means."""
+
+    ready: Readiness | Iterable[Readiness]
+    depends_on: Action | str | Iterable[Action | str]
+    restart: RestartPolicy | None
+    on_exit: Reaction | None
+    prefix: Text
+    output: Text
+    emulate_tty: bool
+    cwd: Text | None
+    env: Variables | None
+    additional_env: Variables | None
+    respawn: bool | Text
+    respawn_delay: float
+    respawn_max_retries: int
+    sigterm_timeout: float | Text
+    sigkill_timeout: float | Text
+    condition: Condition | None
 
 
 class ExecuteProcess(Action):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from launch_py.actions.action import Action
-from launch_py.actions.execute_process import ExecuteProcess, Variables
+from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
 from launch_py.errors import ParameterError
-from launch_py.event_handlers import Reaction
 from launch_py.names import join_names
 from launch_py.near_names import describe_known
 from launch_py.packages import Packages
@@ -18,9 +17,7 @@ from launch_py.parameters import (
     parameter_file_text,
     parameters_by_node,
 )
-from launch_py.plan import SIGKILL_TIMEOUT_S, SIGTERM_TIMEOUT_S, GeneratedFile
-from launch_py.readiness import Readiness
-from launch_py.restart_policy import RestartPolicy
+from launch_py.plan import GeneratedFile
 from launch_py.substitution import Text, describe_text, perform_text
 
 if TYPE_CHECKING:
@@ -63,43 +60,9 @@ class Node(ExecuteProcess):
         remappings: Iterable[tuple[Text, Text]] = (),
         arguments: Iterable[Text] = (),
         ros_arguments: Iterable[Text] = (),
-        ready: Readiness | Iterable[Readiness] = (),
-        depends_on: Action | str | Iterable[Action | str] = (),
-        restart: RestartPolicy | None = None,
-        on_exit: Reaction | None = None,
-        prefix: Text = "",
-        output: Text = "screen",
-        emulate_tty: bool = False,
-        cwd: Text | None = None,
-        env: Variables | None = None,
-        additional_env: Variables | None = None,
-        respawn: bool | Text = False,
-        respawn_delay: float = 0.0,
-        respawn_max_retries: int = -1,
-        sigterm_timeout: float | Text = SIGTERM_TIMEOUT_S,
-        sigkill_timeout: float | Text = SIGKILL_TIMEOUT_S,
-        condition: Condition | None = None,
+        **options: Unpack[ProcessOptions],
     ) -> None:
-        super().__init__(
-            cmd=(),
-            name=exec_name or name or executable,
-            ready=ready,
-            depends_on=depends_on,
-            restart=restart,
-            on_exit=on_exit,
-            prefix=prefix,
-            output=output,
-            emulate_tty=emulate_tty,
-            cwd=cwd,
-            env=env,
-            additional_env=additional_env,
-            respawn=respawn,
-            respawn_delay=respawn_delay,
-            respawn_max_retries=respawn_max_retries,
-            sigterm_timeout=sigterm_timeout,
-            sigkill_timeout=sigkill_timeout,
-            condition=condition,
-        )
+        super().__init__(cmd=(), name=exec_name or name or executable, **options)
         self.package = package
         self.executable = executable
         self.node_name = name

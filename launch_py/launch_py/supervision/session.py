@@ -24,8 +24,9 @@ from launch_py.supervision.runner import LocalRunner
 from launch_py.supervision.shared_memory import SharedMemoryLedger, watch_folder
 from launch_py.supervision.supervisor import Supervisor
 
-OBSERVE_DELAY_S = 0.02
-"""From the creation of a lock file to the look at who holds it: the lock is taken next."""
+OBSERVE_DELAYS_S = (0.02, 0.1, 0.5)
+"""From the creation of a lock file to the looks at who holds it: the lock is taken next, which may
+take a while where the processor is busy."""
 
 REPEATED_SIGNAL_S = 0.25
 """A second SIGINT within this time is the first one again: `timeout` sends each signal twice."""
@@ -188,7 +189,8 @@ class Session:
 
     def _segments_appeared(self, inotify: int) -> None:
         os.read(inotify, 65536)
-        self._loop.call_later(OBSERVE_DELAY_S, self._ledger.observe)
+        for delay_s in OBSERVE_DELAYS_S:
+            self._loop.call_later(delay_s, self._ledger.observe)
 
     def _take_notification(self, pid: int, fields: dict[str, str]) -> None:
         session = linux.session_of(pid)

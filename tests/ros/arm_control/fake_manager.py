@@ -11,13 +11,14 @@ import sys
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
 from arm_control.errors import ArmControlError
 from arm_control.hardware import HardwareReturn
 from arm_control.pacer import Pacer
-from arm_control.testing import fake_hardware
+from arm_control.testing import FakeHardware, fake_hardware
 from arm_node.process import NodeProcess, run_process
 
 JOINTS = ("j0", "j1", "j2", "j3")
@@ -33,6 +34,75 @@ URDF = (
 )
 
 
+class Ticks:
+    """The manager's cycle, in a time of its own."""
+
+    def __init__(self, manager: ControllerManager, period_s: float) -> None:
+        self._manager = manager
+        self._period_s = period_s
+        self._time_s = 0.0
+
+    def __call__(self) -> None:
+        self._manager.update(self._time_s, self._period_s)
+        self._manager.write(self._time_s, self._period_s)
+        self._time_s += self._period_s
+        self._manager.read(self._time_s, self._period_s)
+        self._manager.publish(self._time_s, self._period_s)
+
+
+def obey(loop: ControlLoop, hardware: FakeHardware) -> None:
+    """Do what the lines on standard input say, and say when it is done."""
+    unblocked = threading.Event()
+    for line in sys.stdin:
+        match line.split():
+            case ["pause"]:
+                loop.pause().result(10.0)
+            case ["resume"]:
+                loop.resume().result(10.0)
+            case ["block"]:
+                unblocked.clear()
+                loop.call(lambda: unblocked.wait(60.0))
+            case ["unblock"]:
+                unblocked.set()
+            case ["fail", "read"]:
+                hardware.read_result = HardwareReturn.ERROR
+        sys.stdout.write(f"{line.strip()} done\n")
+        sys.stdout.flush()
+
+
+@contextmanager
+def application(
+    argv: Sequence[str], start: Sequence[str], paused: bool, process: NodeProcess
+) -> Iterator[None]:
+    """Run the manager over fake hardware, with these controllers active."""
+    from arm_control.ros.configured_manager import configured_manager
+    from arm_control.ros.controller_manager_node import ControllerManagerNode
+    from arm_control.ros.controller_manager_server import ControllerManagerServer
+
+    node = ControllerManagerNode(argv)
+    hardware = fake_hardware(
+        JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
+    )
+    manager = configured_manager([hardware], node.settings, URDF)
+    period_s = 1.0 / node.settings.update_rate
+    loop = ControlLoop(
+        Ticks(manager, period_s), Pacer(period_s), on_failure=lambda _: process.stop(1)
+    )
+    loop.start(paused=paused)
+    server = ControllerManagerServer(node, manager, loop, process.executor, robot_description=URDF)
+    try:
+        server.start_controllers(start)
+        threading.Thread(target=obey, args=(loop, hardware), daemon=True).start()
+        sys.stdout.write("ready\n")
+        sys.stdout.flush()
+        yield
+    finally:
+        server.shutdown()
+        loop.stop()
+        loop.join(5.0)
+        server.destroy_nodes()
+
+
 def main(argv: Sequence[str]) -> int:
     """Run the manager until a signal."""
     own = argv[1 : argv.index("--ros-args")] if "--ros-args" in argv else argv[1:]
@@ -40,67 +110,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--start", nargs="*", default=[])
     parser.add_argument("--paused", action="store_true")
     options = parser.parse_args(own)
-
-    @contextmanager
-    def application(process: NodeProcess) -> Iterator[None]:
-        from arm_control.ros.controller_manager_node import ControllerManagerNode
-        from arm_control.ros.controller_manager_server import ControllerManagerServer
-
-        node = ControllerManagerNode(argv)
-        rate_hz = node.settings.update_rate
-        hardware = fake_hardware(
-            JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
-        )
-        manager = ControllerManager([hardware], rate_hz, node.settings.policy)
-        manager.bring_up()
-        period_s = 1.0 / rate_hz
-        time_s = 0.0
-
-        def tick() -> None:
-            nonlocal time_s
-            manager.update(time_s, period_s)
-            manager.write(time_s, period_s)
-            time_s += period_s
-            manager.read(time_s, period_s)
-            manager.publish(time_s, period_s)
-
-        unblocked = threading.Event()
-
-        def obey() -> None:
-            for line in sys.stdin:
-                match line.split():
-                    case ["pause"]:
-                        loop.pause().result(10.0)
-                    case ["resume"]:
-                        loop.resume().result(10.0)
-                    case ["block"]:
-                        unblocked.clear()
-                        loop.call(lambda: unblocked.wait(60.0))
-                    case ["unblock"]:
-                        unblocked.set()
-                    case ["fail", "read"]:
-                        hardware.read_result = HardwareReturn.ERROR
-                sys.stdout.write(f"{line.strip()} done\n")
-                sys.stdout.flush()
-
-        loop = ControlLoop(tick, Pacer(period_s), on_failure=lambda _: process.stop(1))
-        loop.start(paused=options.paused)
-        server = ControllerManagerServer(
-            node, manager, loop, process.executor, robot_description=URDF
-        )
-        try:
-            server.start_controllers(options.start)
-            threading.Thread(target=obey, daemon=True).start()
-            sys.stdout.write("ready\n")
-            sys.stdout.flush()
-            yield
-        finally:
-            server.shutdown()
-            loop.stop()
-            loop.join(5.0)
-            server.destroy_nodes()
-
-    return run_process(application, argv, user_errors=(ArmControlError,))
+    run = partial(application, argv, options.start, options.paused)
+    return run_process(run, argv, user_errors=(ArmControlError,))
 
 
 if __name__ == "__main__":
