@@ -11,6 +11,9 @@ from typing import Any
 
 from arm_description.errors import XacroError
 
+MOST_PLACES = 5
+"""Of a stack of macros and files that a message names: an endless one has a thousand."""
+
 _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _DOCTYPE = "<!DOCTYPE"
 _XACRO_NAMESPACE = "ros.org/wiki/xacro"
@@ -64,7 +67,8 @@ def _place(print_location: Callable[[], None]) -> str:
     told = io.StringIO()
     with redirect_stderr(told):
         print_location()
-    return ", ".join(told.getvalue().split("\n")).strip(", ")
+    places = [line for line in told.getvalue().split("\n") if line]
+    return ", ".join(places if len(places) <= MOST_PLACES else [*places[:MOST_PLACES], "..."])
 
 
 def _first_line(error: BaseException) -> str:
