@@ -67,6 +67,8 @@ class ControllerChain:
         Who commands runs before who is commanded. Who exports states runs before who reads them,
         except where the reader commands it.
         """
+        if not self._exported.references() and not self._exported.states():
+            return self._newest_first()
         ordered: dict[str, ManagedController] = {}
         visited: set[str] = set()
 

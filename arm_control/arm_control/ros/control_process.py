@@ -79,6 +79,7 @@ def _wait_for_robot(
     """Return the first description that can be used and its hardware; None where the end came."""
     description = _description_parameter(node)
     reminder = Throttle(REMINDER_INTERVAL_S)
+    reminder.permits()  # A description that is on its way needs no reminder.
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     logger.info("Subscribing to '%s' topic for robot description.", descriptions.name)
@@ -156,6 +157,7 @@ def _loop(
     loop.start(paused=simulated is not None)
     if simulated is not None:
         simulated.listen(
+            node,
             process.executor,
             on_start=loop.resume,
             on_advance=lambda: loop.call(_look_at_the_clock),

@@ -9,8 +9,9 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from arm_control.clock import Clock
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.node_arguments import controller_arguments
 
-NODE_NAME = "_controller_manager_clock"
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 ROUNDING_S = 1e-6
 
@@ -31,6 +32,7 @@ class SimulatedClock:
 
     def listen(
         self,
+        manager_node: ControllerManagerNode,
         executor: Executor,
         *,
         on_start: Callable[[], object],
@@ -40,6 +42,7 @@ class SimulatedClock:
         """Subscribe.
 
         Args:
+            manager_node: the clock's node has its namespace and remaps.
             executor: runs the callbacks.
             on_start: called at the first message.
             on_advance: called at each one after it.
@@ -56,7 +59,14 @@ class SimulatedClock:
             else:
                 on_advance()
 
-        node = Node(NODE_NAME, use_global_arguments=False, enable_rosout=False)
+        node = Node(
+            f"_{manager_node.get_name()}_clock",
+            namespace=manager_node.get_namespace(),
+            cli_args=controller_arguments(manager_node.arguments),
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
         node.create_subscription(ClockMessage, "/clock", take, CLOCK_QOS)
         executor.add_node(node)
 
