@@ -2,8 +2,10 @@
 
 import logging
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Protocol
 
+from arm_control.command_limiter import CommandLimiter
 from arm_control.controller import Controller
 from arm_control.controller_chain import ControllerChain
 from arm_control.controller_lifecycle import ControllerLifecycle
@@ -13,6 +15,7 @@ from arm_control.errors import ControllerManagerError
 from arm_control.guarded import log_failure, raise_failure
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.hardware_component import HardwareComponent
+from arm_control.joint_limits import JointLimits
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
 from arm_control.manager_policy import ManagerPolicy
@@ -25,6 +28,7 @@ STATISTICS_S = 5
 """The statistics speak of the last few seconds: a stall shows for a while, not for ever."""
 
 DEFAULT_POLICY = ManagerPolicy()
+NO_LIMITS: Mapping[str, JointLimits] = MappingProxyType({})
 
 logger = logging.getLogger(__name__)
 
@@ -63,6 +67,7 @@ class ControllerManager:
         hardware: Sequence[Hardware],
         update_rate_hz: int,
         policy: ManagerPolicy = DEFAULT_POLICY,
+        limits: Mapping[str, JointLimits] = NO_LIMITS,
     ) -> None:
         """Take over the components, all still unconfigured; see `bring_up`.
 
@@ -70,6 +75,7 @@ class ControllerManager:
             hardware: the components' drivers.
             update_rate_hz: ticks per second.
             policy: what to do where there is a choice.
+            limits: by joint, for the commands of joints that are to be kept within them.
 
         Raises:
             ControllerManagerError: the rate is not positive, or names are used twice.
@@ -88,6 +94,7 @@ class ControllerManager:
             self._supervision,
             command_inactive=policy.activate_with_inactive_hardware,
         )
+        self._limiter = CommandLimiter(limits, self.resources) if limits else None
         self._controllers: dict[str, ManagedController] = {}
         self._commanding: tuple[ManagedController, ...] = ()
         self._broadcasting: tuple[ManagedController, ...] = ()
@@ -113,7 +120,9 @@ class ControllerManager:
         self.updates.add(time_s, self._supervision.now_s() - began_s)
 
     def write(self, time_s: float, period_s: float) -> None:
-        """Hand the commands to the hardware."""
+        """Hand the commands, within their limits, to the hardware."""
+        if self._limiter is not None:
+            self._limiter.enforce(period_s)
         trouble = self.resources.write(time_s, period_s)
         if trouble:
             self._stop_troubled(trouble, "write")
@@ -369,6 +378,8 @@ class ControllerManager:
         active = [c for c in self._chain.in_order() if c.is_active]
         self._commanding = tuple(c for c in active if c.commands)
         self._broadcasting = tuple(c for c in active if not c.commands)
+        if self._limiter is not None:
+            self._limiter.claimed({name for c in active for name in c.commands})
         if self.resources.exported.states():
             self._resolve_inactive()
         self._activity_changed()

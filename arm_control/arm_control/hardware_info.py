@@ -24,6 +24,7 @@ class InterfaceInfo:
         minimum: lowest command, None if not given.
         maximum: highest command, None if not given.
         parameters: every `<param>` of the interface, the ones above included, as text.
+        is_limited: whether its commands may be clamped; not after `<limits enable="false"/>`.
     """
 
     name: str
@@ -31,6 +32,7 @@ class InterfaceInfo:
     minimum: float | None = None
     maximum: float | None = None
     parameters: Mapping[str, str] = field(default_factory=dict)
+    is_limited: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,7 @@ class JointInfo:
         parameters: its `<param>`s, as text.
         mimic: from the URDF's joint of that name; None where it follows no other, or where
             mimic="false" says so.
+        is_limited: whether its commands may be clamped; not after `<limits enable="false"/>`.
     """
 
     name: str
@@ -60,6 +63,7 @@ class JointInfo:
     state_interfaces: tuple[InterfaceInfo, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
     mimic: MimicInfo | None = None
+    is_limited: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +205,7 @@ def _parse_parts(
             state_interfaces=_parse_interfaces(child, "state_interface", here),
             parameters=_parse_parameters(child, here),
             mimic=None if child.get("mimic") == "false" else (mimics or {}).get(name),
+            is_limited=_is_limited(child),
         )
     return tuple(parts.values())
 
@@ -222,8 +227,14 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
             minimum=_parse_number(parameters, "min", where_exactly),
             maximum=_parse_number(parameters, "max", where_exactly),
             parameters=parameters,
+            is_limited=_is_limited(child),
         )
     return tuple(interfaces.values())
+
+
+def _is_limited(element: "etree._Element") -> bool:
+    limits = element.find("limits")
+    return limits is None or limits.get("enable", "true").strip().lower() != "false"
 
 
 def _parse_parameters(element: "etree._Element", where: str) -> dict[str, str]:

@@ -20,6 +20,7 @@ from arm_control.hardware import Hardware
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.pacer import Pacer
 from arm_control.registry import create_hardware
+from arm_control.ros.configured_manager import configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
 from arm_control.ros.description_topic import DescriptionTopic
@@ -55,7 +56,8 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
         found = _wait_for_robot(process, node, descriptions)
         if found is not None:
             description, hardware = found
-            manager = _manager(hardware, node)
+            manager = configured_manager(hardware, node.settings, description)
+            logger.info("update rate is %d Hz", manager.update_rate_hz)
             loop = _loop(process, node, manager)
             ending.callback(loop.join, LOOP_JOIN_TIMEOUT_S)
             ending.callback(loop.stop)
@@ -127,17 +129,6 @@ def _hardware(description: str) -> list[Hardware]:
             "The robot description cannot be used: %s. Correct it and publish it again.", error
         )
         return []
-
-
-def _manager(hardware: Sequence[Hardware], node: ControllerManagerNode) -> ControllerManager:
-    settings = node.settings
-    manager = ControllerManager(hardware, settings.update_rate, settings.policy)
-    manager.bring_up(
-        settings.hardware_components_initial_state.unconfigured,
-        settings.hardware_components_initial_state.inactive,
-    )
-    logger.info("update rate is %d Hz", settings.update_rate)
-    return manager
 
 
 def _loop(

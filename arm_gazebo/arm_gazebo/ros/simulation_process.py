@@ -13,12 +13,11 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
-from arm_control.controller_manager import ControllerManager
 from arm_control.hardware_info import HardwareInfo, parse_hardware_info
 from arm_control.pacer import Pacer
+from arm_control.ros.configured_manager import configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
-from arm_control.ros.manager_settings import ManagerSettings
 from arm_description.urdf import parse_urdf
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.built_model import BuiltModel
@@ -70,7 +69,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         built = _build(settings, hardware_info, sensors, timing)
         simulation = Simulation(built, timing, settings.hold_joints)
         hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
-        manager = _manager(hardware, manager_node.settings)
+        manager = configured_manager(hardware, manager_node.settings, settings.robot_description)
         feeds = [
             ending.enter_context(closing(feed))
             for feed in _feeds(sensors, settings, node.get_namespace())
@@ -146,15 +145,6 @@ def _build(
     )
     built.report.log(logger)
     return built
-
-
-def _manager(hardware: Sequence[SimulatedHardware], settings: ManagerSettings) -> ControllerManager:
-    manager = ControllerManager(hardware, settings.update_rate, settings.policy)
-    manager.bring_up(
-        settings.hardware_components_initial_state.unconfigured,
-        settings.hardware_components_initial_state.inactive,
-    )
-    return manager
 
 
 def _feeds(

@@ -1,0 +1,33 @@
+"""Makes a controller manager as its node's parameters say."""
+
+from collections.abc import Sequence
+
+from arm_control.controller_manager import NO_LIMITS, ControllerManager
+from arm_control.hardware import Hardware
+from arm_control.joint_limits import read_joint_limits
+from arm_control.ros.manager_settings import ManagerSettings
+
+
+def configured_manager(
+    hardware: Sequence[Hardware], settings: ManagerSettings, robot_description: str
+) -> ControllerManager:
+    """Return a manager whose components have reached their initial states.
+
+    Args:
+        hardware: the components' drivers.
+        settings: of its node.
+        robot_description: the URDF that the hardware was made from; has the limits of commands.
+
+    Raises:
+        ArmControlError: a component does not come up, or limits that are asked for cannot be read.
+    """
+    limited = settings.enforce_command_limits
+    manager = ControllerManager(
+        hardware,
+        settings.update_rate,
+        settings.policy,
+        read_joint_limits(robot_description) if limited else NO_LIMITS,
+    )
+    initial = settings.hardware_components_initial_state
+    manager.bring_up(initial.unconfigured, initial.inactive)
+    return manager
