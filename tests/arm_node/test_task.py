@@ -1,0 +1,72 @@
+"""A process that does one thing: how its task ends it."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+PROGRAM = """\
+import sys
+from arm_node.task import run_task
+
+class Mistake(Exception):
+    pass
+
+def task(node, process):
+    {body}
+
+sys.exit(run_task("worker", task, ["worker"], user_errors=(Mistake,)))
+"""
+TIMEOUT_S = 60.0
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[[str], subprocess.Popen[str]]]:
+    """Return a function that runs a task, given as the body of a function."""
+    started: list[subprocess.Popen[str]] = []
+
+    def run(body: str) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, "-c", PROGRAM.format(body=body)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        started.append(process)
+        return process
+
+    yield run
+    for process in started:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "said", "traceback"),
+    [
+        ("return 3", 3, "", False),
+        ("raise Mistake('no such thing')", 1, "[worker]: no such thing", False),
+        ("raise ValueError('oops')", 1, "[worker]: the task failed", True),
+    ],
+)
+def test_its_end_is_that_of_the_process(
+    start: Callable[[str], subprocess.Popen[str]], body: str, code: int, said: str, traceback: bool
+) -> None:
+    process = start(body)
+    output, _ = process.communicate(timeout=TIMEOUT_S)
+    assert process.returncode == code
+    assert said in output
+    assert ("Traceback" in output) is traceback
+
+
+def test_a_signal_is_told_to_the_task(start: Callable[[str], subprocess.Popen[str]]) -> None:
+    process = start("print('at work', flush=True); return 5 if process.wait(60.0) else 4")
+    assert process.stdout is not None
+    assert process.stdout.readline() == "at work\n"
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=TIMEOUT_S)
+    assert process.returncode == 5
