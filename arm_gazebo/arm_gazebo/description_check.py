@@ -24,6 +24,7 @@ from arm_gazebo.errors import GazeboError
 from arm_gazebo.gazebo_tags import GazeboTags, parse_gazebo_tags
 from arm_gazebo.model_builder import DEFAULT_OPTIONS, build_model
 from arm_gazebo.servo_tuning import too_weak, tune
+from arm_gazebo.simulated_hardware import STATES
 
 PERIOD_S = 0.01
 _LINE = re.compile(r"\bline (\d+)")
@@ -119,6 +120,7 @@ def check_description(
         hardware = parse_hardware_info(urdf)
         if not hardware and robot is not None:
             hardware = _made_up(urdf, robot, report)
+        _check_interfaces(hardware, report)
     with _failures(report, source):
         cameras = parse_cameras(urdf)
         tags = parse_gazebo_tags(urdf)
@@ -152,6 +154,23 @@ def _made_up(urdf: str, robot: Robot, report: BuildReport) -> tuple[HardwareInfo
         f"{', '.join(joints) or 'nothing'}",
     )
     return parse_hardware_info(with_hardware(urdf, robot))
+
+
+def _check_interfaces(hardware: Sequence[HardwareInfo], report: BuildReport) -> None:
+    for component in hardware:
+        joints = {joint.name for joint in component.joints}
+        every = (*component.command_interface_names, *component.state_interface_names)
+        left_out = [
+            name
+            for name in dict.fromkeys(every)
+            if name.rpartition("/")[0] not in joints or name.rpartition("/")[2] not in STATES
+        ]
+        if left_out:
+            report.drop(
+                f"<ros2_control name='{component.name}'>",
+                f"not simulated: {', '.join(left_out)}",
+                component.line,
+            )
 
 
 def _check_strength(built: BuiltModel, report: BuildReport) -> None:

@@ -7,6 +7,7 @@ from arm_description.urdf_element import written_name
 from arm_description.xml_document import parse_xml
 from arm_gazebo.build_report import Finding, Outcome
 
+SIMULATED_SENSOR = "camera"
 _SHAPES = {
     "origin": {},
     "geometry": {"box": {}, "cylinder": {}, "sphere": {}, "capsule": {}, "mesh": {}},
@@ -50,12 +51,7 @@ def _unknown(element: Any, read: dict[str, Any], owner: str) -> Iterator[Finding
     for child in element.iterchildren(tag="*"):
         name = written_name(child)
         if name not in read:
-            yield Finding(
-                Outcome.DROPPED,
-                f"<{name}> in {owner}",
-                "it is not part of a URDF",
-                int(child.sourceline or 0),
-            )
+            yield _dropped(child, f"<{name}> in {owner}", "it is not part of a URDF")
         elif read[name] is not None:
             called = child.get("name")
             here = f"{name} '{called}'" if called and element.getparent() is None else owner
@@ -64,16 +60,27 @@ def _unknown(element: Any, read: dict[str, Any], owner: str) -> Iterator[Finding
 
 def _meaningless(root: Any) -> Iterator[Finding]:
     for element in root.findall("transmission"):
-        yield Finding(
-            Outcome.DROPPED,
+        yield _dropped(
+            element,
             f"transmission '{element.get('name')}'",
             "joints are driven directly; what is commanded stands in <ros2_control>",
-            int(element.sourceline or 0),
         )
     for element in root.iterfind("joint/safety_controller"):
-        yield Finding(
-            Outcome.DROPPED,
+        yield _dropped(
+            element,
             f"<safety_controller> of joint '{element.getparent().get('name')}'",
             "the joint stops at its <limit>; soft limits narrow the sliders only",
-            int(element.sourceline or 0),
         )
+    for element in root.iterfind(".//material/texture"):
+        yield _dropped(element, "<texture>", "surfaces have a colour, no picture")
+    for element in root.iterfind("gazebo/sensor"):
+        if element.get("type") != SIMULATED_SENSOR:
+            yield _dropped(
+                element,
+                f"sensor '{element.get('name')}'",
+                f"its type '{element.get('type')}' is not simulated",
+            )
+
+
+def _dropped(element: Any, name: str, reason: str) -> Finding:
+    return Finding(Outcome.DROPPED, name, reason, int(element.sourceline or 0))

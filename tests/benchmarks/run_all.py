@@ -14,7 +14,13 @@ from pathlib import Path
 import harness
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("start_up.py", "control_loop.py", "as_fast_as_possible.py", "camera_rate.py")
+SCRIPTS = (
+    "start_up.py",
+    "control_loop.py",
+    "as_fast_as_possible.py",
+    "camera_rate.py",
+    "load_time.py",
+)
 
 
 def main() -> None:
