@@ -80,12 +80,12 @@ class ControllerSwitcher:
 
         What hangs together with them by commands or exported states goes with them.
         """
-        failed = self._chain.with_group(failed)
-        names = " ".join(controller.name for controller in failed)
+        stopped = self._chain.with_group(failed)
+        names = " ".join(controller.name for controller in stopped)
         logger.error(
             "Deactivating controllers : [ %s ] as their update resulted in an error!", names
         )
-        self.deactivate(failed)
+        self.deactivate(stopped)
         fallbacks = dict.fromkeys(name for c in failed for name in c.fallback_names)
         if not fallbacks:
             logger.error(

@@ -13,6 +13,7 @@ from arm_control.forward_command_controller import (
     ForwardCommandController,
     ForwardCommandParameters,
 )
+from arm_control.joint_trajectory import JointTrajectoryController
 from arm_control.pid_controller import STATE_FIELDS, PidController
 from arm_control.testing import fake_hardware
 
@@ -255,6 +256,28 @@ def test_behind_a_forward_command_controller(running: PidBench) -> None:
     running.manager.switch_controller(SwitchRequest((), ("top",)))
     assert running.tick() == [10.0, 30.0]
     assert running.pid.exported_states.tolist() == [0.0, 0.5]
+
+
+def test_behind_a_joint_trajectory_controller(running: PidBench) -> None:
+    running.manager.switch_controller(SwitchRequest((), ("pid",)))
+    running.measure([0.3, -0.4], [0.0, 0.0])
+    leader = JointTrajectoryController(ControllerContext("jtc", 100))
+    running.manager.load_controller(leader, "jtc")
+    parameters = {
+        "joints": DOFS,
+        "command_joints": ["pid/j0", "pid/j1"],
+        "command_interfaces": ["position"],
+        "state_interfaces": ["position", "velocity"],
+    }
+    running.manager.configure_controller(
+        "jtc", JointTrajectoryController.build_parameters(parameters)
+    )
+    running.activate("jtc pid")
+    # It holds where the joints are.
+    assert running.tick(2) == pytest.approx([0.0, 0.0])
+    assert running.pid.references.tolist() == pytest.approx([0.3, -0.4])
+    running.measure([0.2, -0.4])
+    assert running.tick() == pytest.approx([1.0, 0.0])
 
 
 @pytest.mark.parametrize(

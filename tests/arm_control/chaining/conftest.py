@@ -79,10 +79,11 @@ class ChainBench:
         states: tuple[str, ...] = (),
         references: tuple[str, ...] = (),
         exported: tuple[str, ...] = (),
+        fallback_names: tuple[str, ...] = (),
     ) -> Link:
         """Load and configure a link."""
         link = self.links[name] = Link(ControllerContext(name, 100), self.runs)
-        self.manager.load_controller(link, "test/Link")
+        self.manager.load_controller(link, "test/Link", fallback_names)
         self.manager.configure_controller(
             name, LinkParameters(commands, states, references, exported)
         )

@@ -121,6 +121,32 @@ def test_an_update_that_fails_stops_the_whole_chain(pair: Any) -> None:
     assert not pair.status("low").is_chained
 
 
+def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
+    for name in ("spare_low", "spare_high"):
+        chain.link(name, commands=("j0/position",), references=("x/position",))
+    low = chain.link(
+        "low",
+        commands=("j0/position",),
+        references=("x/position",),
+        fallback_names=("spare_low",),
+    )
+    chain.link(
+        "high",
+        commands=("low/x/position",),
+        references=("x/position",),
+        fallback_names=("spare_high",),
+    )
+    assert chain.switch("low high").ok
+    low.fails = True
+    chain.bench.tick()
+    assert chain.states() == {
+        "high": "inactive",
+        "low": "inactive",
+        "spare_high": "inactive",
+        "spare_low": "active",
+    }
+
+
 def test_hardware_that_fails_takes_the_leaders_of_its_users_along(pair: Any) -> None:
     pair.switch("low high")
     pair.bench.hardware.read_result = HardwareReturn.ERROR
