@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
+from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
 
 
@@ -20,7 +21,9 @@ def _application(process: NodeProcess) -> Iterator[None]:
     def end(missed: int) -> None:
         process.stop(EXIT_FAILED if missed else EXIT_OK)
 
-    process.executor.add_node(PublisherDefined(end))
+    with answers_held_back():
+        node = PublisherDefined(end)
+    process.executor.add_node(node)
     yield
 
 

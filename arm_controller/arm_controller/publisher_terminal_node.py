@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from arm_controller.errors import ArmControllerError
 from arm_controller.input_lines import InputLines
 from arm_controller.terminal_dialogue import TerminalDialogue
+from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
 
 LINGER_S = 0.2
@@ -24,7 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.ros.publisher_terminal import PublisherTerminal
 
-    node = PublisherTerminal(process)
+    with answers_held_back():
+        node = PublisherTerminal(process)
     process.executor.add_node(node)
     with _standard_input() as descriptor, InputLines(descriptor) as lines:
         dialogue = TerminalDialogue(node.joint_names, lines.read_line, _write, node.deliver)
