@@ -43,6 +43,25 @@ def test_a_wildcard_serves_many_controllers_beside_their_own_entries(
     assert states == {("j1/position",)}
 
 
+def test_every_key_that_names_a_controller_serves(control: Any, spawn: Any, file: Any) -> None:
+    keys = {"/a": "j0", "/**/b": "j1", "c": "j2"}
+    entries = {key: node(type=POSITION, joints=[joint]) for key, joint in keys.items()}
+    nested = {"/**": {"d": node(type=POSITION, joints=["j3"])}}
+    spawn("a", "b", "c", "d", "-p", file(entries | nested)).succeed()
+    claimed = {c.name: c.claimed_interfaces for c in control.list()}
+    assert claimed == {name: [f"j{i}/position"] for i, name in enumerate("abcd")}
+
+
+def test_a_file_may_be_known_to_the_manager_alone(
+    control: Any, spawn: Any, file: Any, set_parameter: Callable[..., Any]
+) -> None:
+    path = file({"known": node(joints=["j1"])})
+    assert set_parameter("/controller_manager", "known.type", POSITION).successful
+    assert set_parameter("/controller_manager", "known.params_file", path).successful
+    spawn("known").succeed()
+    assert control.list()[0].claimed_interfaces == ["j1/position"]
+
+
 @pytest.mark.parametrize("order", [("j1", "j2"), ("j2", "j1")])
 def test_of_several_files_the_last_wins(
     control: Any, spawn: Any, file: Any, get_parameter: Callable[..., Any], order: tuple[str, str]
