@@ -1,4 +1,4 @@
-"""Makes a controller manager as its node's parameters say."""
+"""Makes and starts a controller manager as its node's parameters say."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from arm_control.ros.manager_settings import ManagerSettings
 def configured_manager(
     hardware: Sequence[Hardware], settings: ManagerSettings, robot_description: str
 ) -> ControllerManager:
-    """Return a manager whose components have reached their initial states.
+    """Return a manager whose components are still unconfigured; see `bring_up`.
 
     Args:
         hardware: the components' drivers.
@@ -19,15 +19,22 @@ def configured_manager(
         robot_description: the URDF that the hardware was made from; has the limits of commands.
 
     Raises:
-        ArmControlError: a component does not come up, or limits that are asked for cannot be read.
+        ArmControlError: names are used twice, or limits that are asked for cannot be read.
     """
     limited = settings.enforce_command_limits
-    manager = ControllerManager(
+    return ControllerManager(
         hardware,
         settings.update_rate,
         settings.policy,
         read_joint_limits(robot_description) if limited else NO_LIMITS,
     )
+
+
+def bring_up(manager: ControllerManager, settings: ManagerSettings) -> None:
+    """Take the components to their initial states.
+
+    Raises:
+        ArmControlError: one of them does not get there, and that is to be an error.
+    """
     initial = settings.hardware_components_initial_state
     manager.bring_up(initial.unconfigured, initial.inactive)
-    return manager

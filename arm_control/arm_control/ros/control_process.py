@@ -16,11 +16,10 @@ from arm_control.control_cycle import ControlCycle
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
 from arm_control.errors import ArmControlError, HardwareInfoError
-from arm_control.hardware import Hardware
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.pacer import Pacer
 from arm_control.registry import create_hardware
-from arm_control.ros.configured_manager import configured_manager
+from arm_control.ros.configured_manager import bring_up, configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
 from arm_control.ros.description_topic import DescriptionTopic
@@ -55,8 +54,8 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
         descriptions = DescriptionTopic(node)
         found = _wait_for_robot(process, node, descriptions)
         if found is not None:
-            description, hardware = found
-            manager = configured_manager(hardware, node.settings, description)
+            description, manager = found
+            bring_up(manager, node.settings)
             logger.info("update rate is %d Hz", manager.update_rate_hz)
             loop = _loop(process, node, manager)
             ending.callback(loop.join, LOOP_JOIN_TIMEOUT_S)
@@ -77,8 +76,8 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
 
 def _wait_for_robot(
     process: NodeProcess, node: ControllerManagerNode, descriptions: DescriptionTopic
-) -> tuple[str, list[Hardware]] | None:
-    """Return the first description that can be used and its hardware; None where the end came."""
+) -> tuple[str, ControllerManager] | None:
+    """Return the first description that can be used and a manager; None where the end came."""
     description = _description_parameter(node)
     reminder = Throttle(REMINDER_INTERVAL_S)
     reminder.permits()  # A description that is on its way needs no reminder.
@@ -88,10 +87,10 @@ def _wait_for_robot(
     try:
         while not process.stopping:
             if description is not None:
-                hardware = _hardware(description)
-                if hardware:
+                manager = _manager(description, node)
+                if manager is not None:
                     descriptions.use(description)
-                    return description, hardware
+                    return description, manager
             elif reminder.permits():
                 logger.warning(
                     "Waiting for data on 'robot_description' topic to finish initialization"
@@ -115,20 +114,21 @@ def _description_parameter(node: ControllerManagerNode) -> str | None:
     return str(given)
 
 
-def _hardware(description: str) -> list[Hardware]:
-    """Make the hardware of a description; where that cannot be, say why and return none."""
+def _manager(description: str, node: ControllerManagerNode) -> ControllerManager | None:
+    """Make a manager over a description's hardware; where that cannot be, say why."""
     try:
         infos = parse_hardware_info(description)
         if not infos:
             raise HardwareInfoError(
                 "it has no <ros2_control> block, so nothing says what hardware there is"
             )
-        return [create_hardware(info) for info in infos]
+        hardware = [create_hardware(info) for info in infos]
+        return configured_manager(hardware, node.settings, description)
     except (ArmControlError, DescriptionError) as error:
         logger.error(
             "The robot description cannot be used: %s. Correct it and publish it again.", error
         )
-        return []
+        return None
 
 
 def _loop(

@@ -15,7 +15,7 @@ from rclpy.node import Node
 from arm_control.control_loop import ControlLoop
 from arm_control.hardware_info import HardwareInfo, parse_hardware_info
 from arm_control.pacer import Pacer
-from arm_control.ros.configured_manager import configured_manager
+from arm_control.ros.configured_manager import bring_up, configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
 from arm_description.urdf import parse_urdf
@@ -70,6 +70,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         simulation = Simulation(built, timing, settings.hold_joints)
         hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
         manager = configured_manager(hardware, manager_node.settings, settings.robot_description)
+        bring_up(manager, manager_node.settings)
         feeds = [
             ending.enter_context(closing(feed))
             for feed in _feeds(sensors, settings, node.get_namespace())

@@ -75,7 +75,7 @@ def application(
     argv: Sequence[str], start: Sequence[str], paused: bool, process: NodeProcess
 ) -> Iterator[None]:
     """Run the manager over fake hardware, with these controllers active."""
-    from arm_control.ros.configured_manager import configured_manager
+    from arm_control.ros.configured_manager import bring_up, configured_manager
     from arm_control.ros.controller_manager_node import ControllerManagerNode
     from arm_control.ros.controller_manager_server import ControllerManagerServer
 
@@ -84,6 +84,7 @@ def application(
         JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
     )
     manager = configured_manager([hardware], node.settings, URDF)
+    bring_up(manager, node.settings)
     period_s = 1.0 / node.settings.update_rate
     loop = ControlLoop(
         Ticks(manager, period_s), Pacer(period_s), on_failure=lambda _: process.stop(1)

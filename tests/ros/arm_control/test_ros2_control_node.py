@@ -158,6 +158,8 @@ def test_a_robot_is_waited_for_until_a_description_can_be_used(
     waiting.wait_for_line("it has no <ros2_control> block")
     describe(robot(ARM.replace("mock_components/GenericSystem", "no/Such")))
     waiting.wait_for_line("no hardware plugin 'no/Such'; there is mock_components/GenericSystem")
+    describe(robot(ARM, LIFT.replace("'lift'", "'j0'")))
+    waiting.wait_for_line("state interface 'j0/position' belongs to hardware component 'Arm'")
     assert "list_controllers" not in services()
     describe(robot(ARM))
     assert control_of("/waiting").states() == {}
