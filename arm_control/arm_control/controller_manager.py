@@ -13,8 +13,8 @@ from arm_control.controller_switch import SwitchRequest, SwitchResult
 from arm_control.controller_switcher import ControllerSwitcher
 from arm_control.errors import ControllerManagerError
 from arm_control.guarded import log_failure, raise_failure
-from arm_control.hardware import Hardware, HardwareReturn
-from arm_control.hardware_component import HardwareComponent
+from arm_control.hardware import Hardware
+from arm_control.hardware_keeper import HardwareKeeper
 from arm_control.joint_limits import JointLimits
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.managed_controller import ManagedController
@@ -83,7 +83,6 @@ class ControllerManager:
         if update_rate_hz < 1:
             raise ControllerManagerError(f"update_rate must be positive, not {update_rate_hz} Hz")
         self.update_rate_hz = update_rate_hz
-        self._policy = policy
         self._supervision = RunSupervision(
             samples=STATISTICS_S * update_rate_hz,
             on_exception=log_failure if policy.handle_exceptions else raise_failure,
@@ -102,6 +101,9 @@ class ControllerManager:
         self._chain = ControllerChain(self._controllers, self.resources.exported)
         self._switcher = ControllerSwitcher(
             self._controllers, self.resources, self._lifecycle, self._chain
+        )
+        self._keeper = HardwareKeeper(
+            self._controllers, self.resources, self._chain, self._switcher, policy
         )
         self._observers: list[ManagerObserver] = []
 
@@ -151,29 +153,18 @@ class ControllerManager:
             ControllerManagerError: a name is unknown, or a component did not get there and the
                 policy does not let that pass.
         """
-        targets = dict.fromkeys(self.resources.components, LifecycleState.ACTIVE)
-        targets.update(dict.fromkeys(inactive, LifecycleState.INACTIVE))
-        targets.update(dict.fromkeys(unconfigured, LifecycleState.UNCONFIGURED))
-        for name in targets:
-            self._component(name)
-        for members in self.resources.groups():
-            try:
-                self._bring_up_together({name: targets[name] for name in members})
-            except ControllerManagerError as error:
-                if self._policy.end_on_initial_state_failure:
-                    raise
-                logger.error("%s", error)
+        try:
+            self._keeper.bring_up(unconfigured, inactive)
+        finally:
+            self._hardware_changed()
         self.read(0.0, 0.0)
 
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
         """Walk a component to a state; controllers stop where their interfaces vanish."""
-        self._component(name)
-        if target in (LifecycleState.UNCONFIGURED, LifecycleState.FINALIZED):
-            self._deactivate(self._users_of({name}))
-        reason = self.resources.set_component_state(name, target)
-        self._hardware_changed()
-        if reason:
-            raise ControllerManagerError(reason)
+        try:
+            self._keeper.set_state(name, target)
+        finally:
+            self._hardware_changed()
 
     def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
         """Return every component."""
@@ -275,17 +266,14 @@ class ControllerManager:
 
     def shutdown(self) -> None:
         """Deactivate and finalize every controller, then every component."""
-        self._deactivate([c for c in self._chain.in_order() if c.is_active])
+        self._switcher.deactivate([c for c in self._chain.in_order() if c.is_active])
+        self._select_active()
         for controller in self._controllers.values():
             if controller.state is LifecycleState.INACTIVE:
                 self._lifecycle.clean_up(controller)
             if controller.state is not LifecycleState.FINALIZED:
                 self._lifecycle.shut_down(controller)
-        for name, component in self.resources.components.items():
-            if component.state is not LifecycleState.FINALIZED:
-                reason = self.resources.set_component_state(name, LifecycleState.FINALIZED)
-                if reason:
-                    logger.error("%s", reason)
+        self._keeper.shut_down()
         self._activity_changed()
 
     def _clean_up(self, controller: ManagedController) -> None:
@@ -296,26 +284,6 @@ class ControllerManager:
                 f"controller '{controller.name}' was not cleaned up: {reason}"
             )
 
-    def _component(self, name: str) -> HardwareComponent:
-        component = self.resources.components.get(name)
-        if component is None:
-            known = ", ".join(self.resources.components) or "no component"
-            raise ControllerManagerError(f"no hardware component '{name}'; there is {known}")
-        return component
-
-    def _bring_up_together(self, targets: Mapping[str, LifecycleState]) -> None:
-        try:
-            for step in (LifecycleState.INACTIVE, LifecycleState.ACTIVE):
-                for name, target in targets.items():
-                    if target >= step:
-                        self.set_hardware_component_state(name, step)
-        except ControllerManagerError:
-            if len(targets) > 1:
-                for name in targets:
-                    self.resources.set_component_state(name, LifecycleState.UNCONFIGURED)
-                self._hardware_changed()
-            raise
-
     def _find(self, name: str, action: str) -> ManagedController:
         controller = self._controllers.get(name)
         if controller is None:
@@ -325,48 +293,17 @@ class ControllerManager:
             )
         return controller
 
-    def _deactivate(self, controllers: Sequence[ManagedController]) -> None:
-        self._switcher.deactivate(controllers)
-        self._select_active()
-
     def _replace_failed(self, failed: Sequence[ManagedController]) -> None:
         self._switcher.replace_failed(failed)
         self._select_active()
 
     def _stop_troubled(self, trouble: Sequence[Trouble], exchange: str) -> None:
-        """Take components down that failed, or deactivate those that asked for it."""
-        for component, outcome in trouble:
-            if outcome is HardwareReturn.DEACTIVATE:
-                logger.error("hardware component '%s' deactivates itself", component.name)
-                if self._policy.stop_with_self_deactivated_hardware:
-                    self._deactivate(self._users_of({component.name}, commanding_only=True))
-                self.resources.set_component_state(component.name, LifecycleState.INACTIVE)
-            else:
-                logger.error(
-                    "Deactivating following hardware components as their %s cycle resulted in "
-                    "an error: [ %s ]",
-                    exchange,
-                    component.name,
-                )
-                self._deactivate(self._users_of({component.name}))
-                self.resources.take_down(component)
+        self._keeper.stop_troubled(trouble, exchange)
         self._hardware_changed()
-
-    def _users_of(
-        self, components: set[str], *, commanding_only: bool = False
-    ) -> Sequence[ManagedController]:
-        """Return the active controllers that use one of these, and those that command them."""
-        return self._chain.with_preceding(
-            c
-            for c in self._controllers.values()
-            if c.is_active
-            and self.resources.components_of(() if commanding_only else c.states, c.commands)
-            & components
-        )
 
     def _hardware_changed(self) -> None:
         self._resolve_inactive()
-        self._activity_changed()
+        self._select_active()
 
     def _resolve_inactive(self) -> None:
         """Let configured controllers see what is available now."""
