@@ -3,7 +3,8 @@
     python fake_manager.py [--start NAME ...] [--paused] [--ros-args ...]
 
 Writes "ready" on standard output once the services are there. A line on its standard input acts
-on it: "pause", "resume", "block" and "unblock" (the loop thread), "fail read".
+on it: "pause", "resume", "block" and "unblock" (the loop thread), and what the hardware does next:
+"fail read", "fail write", "deactivate", "recover".
 """
 
 import argparse
@@ -66,6 +67,12 @@ def obey(loop: ControlLoop, hardware: FakeHardware) -> None:
                 unblocked.set()
             case ["fail", "read"]:
                 hardware.read_result = HardwareReturn.ERROR
+            case ["fail", "write"]:
+                hardware.write_result = HardwareReturn.ERROR
+            case ["deactivate"]:
+                hardware.write_result = HardwareReturn.DEACTIVATE
+            case ["recover"]:
+                hardware.read_result = hardware.write_result = HardwareReturn.OK
         sys.stdout.write(f"{line.strip()} done\n")
         sys.stdout.flush()
 

@@ -1,0 +1,54 @@
+"""A controller that fails when told to, by its parameter `fault`."""
+
+import threading
+from dataclasses import dataclass
+
+from arm_control import Controller, ControllerContext, InterfaceConfiguration, ReturnType, parameter
+
+BLOCKED_S = 0.15
+"""Fifteen periods: far too long, and short enough for everybody else to get a word in."""
+
+
+@dataclass(frozen=True, slots=True)
+class FaultyParameters:
+    """What to command, and how to fail."""
+
+    joints: tuple[str, ...] = parameter((), "Joints whose position it commands")
+    fault: str = parameter(
+        "none", "What its update does", one_of=("none", "raise", "error", "block")
+    )
+
+
+class FaultyController(Controller[FaultyParameters]):
+    """Commands 0 until it fails."""
+
+    parameters_type = FaultyParameters
+
+    def __init__(self, context: ControllerContext) -> None:
+        super().__init__(context)
+        self._parameters = FaultyParameters()
+
+    def command_interface_configuration(self) -> InterfaceConfiguration:
+        return InterfaceConfiguration.individual(
+            f"{joint}/position" for joint in self._parameters.joints
+        )
+
+    def state_interface_configuration(self) -> InterfaceConfiguration:
+        return InterfaceConfiguration.none()
+
+    def on_configure(self, parameters: FaultyParameters) -> None:
+        self._parameters = parameters
+
+    def update_parameters(self, parameters: FaultyParameters) -> None:
+        self._parameters = parameters
+
+    def update(self, time_s: float, period_s: float) -> ReturnType:
+        match self._parameters.fault:
+            case "raise":
+                raise RuntimeError("out of order")
+            case "error":
+                return ReturnType.ERROR
+            case "block":
+                threading.Event().wait(BLOCKED_S)
+        self.commands.write(0.0)
+        return ReturnType.OK
