@@ -38,6 +38,8 @@ class MeshData:
 
     def check(self) -> None:
         """Raise a MeshError that says why MuJoCo could not draw this mesh."""
+        if self.vertices.shape[1:] != (3,) or self.faces.shape[1:] != (3,):
+            raise MeshError("a vertex without three coordinates or a face that is no triangle")
         if len(self.vertices) < FEWEST_VERTICES or not len(self.faces):
             raise MeshError(f"only {len(self.vertices)} vertices and {len(self.faces)} triangles")
         if not np.isfinite(self.vertices).all():
@@ -56,7 +58,8 @@ def merged(vertices: NDArray[np.float32], rgba: Color | None = None) -> MeshData
         vertices: shape (3 f, 3), three rows for each triangle.
         rgba: colour of the mesh.
     """
-    rows = np.ascontiguousarray(vertices + np.float32(0))  # -0 and 0 are the same place
+    with np.errstate(invalid="ignore"):  # what is no number is told by `check`
+        rows = np.ascontiguousarray(vertices + np.float32(0))  # -0 and 0 are the same place
     keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).ravel()
     _, first, index = np.unique(keys, return_index=True, return_inverse=True)
     return MeshData(rows[first].astype(np.float64), index.reshape(-1, 3).astype(np.int32), rgba)

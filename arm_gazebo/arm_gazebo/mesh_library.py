@@ -1,9 +1,10 @@
 """The meshes of one model: each file read once, each part an asset of the MjSpec."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import mujoco
 import numpy as np
@@ -18,6 +19,8 @@ from arm_gazebo.mesh_data import Color, MeshData, Scale
 from arm_gazebo.mesh_part import MeshPart
 from arm_gazebo.scene_file import read_scene
 from arm_gazebo.stl_file import read_stl
+
+T = TypeVar("T")
 
 STL_SUFFIX = ".stl"
 SCENE_SUFFIXES = (".obj", ".dae", ".glb", ".gltf", ".ply", ".off", ".3mf")
@@ -62,7 +65,12 @@ class MeshLibrary:
         Raises:
             MeshError: the file cannot be found or read; the message names it.
         """
-        return tuple(part.scaled(mesh.scale) for part in self._read(self._resolve(mesh)))
+        path = self._resolve(mesh)
+        parts = self._read(path)
+        try:
+            return _usable(parts, lambda part: part.scaled(mesh.scale))
+        except MeshError as error:
+            raise MeshError(f"cannot use the mesh {path}: {error}") from error
 
     def assets(self, mesh: Mesh) -> tuple[MeshAsset, ...]:
         """Return the parts of a mesh to be drawn, added to the specification if they are new.
@@ -86,9 +94,8 @@ class MeshLibrary:
         path = self._resolve(mesh)
         key = (path, mesh.scale, add)
         if key not in self._assets:
-            parts = [part.scaled(mesh.scale) for part in self._read(path)]
             self._assets[key] = tuple(
-                MeshAsset(add(path.stem, part), part.drawn.rgba) for part in parts
+                MeshAsset(add(path.stem, part), part.drawn.rgba) for part in self.parts(mesh)
             )
         return self._assets[key]
 
@@ -134,11 +141,11 @@ class MeshLibrary:
     def _read_or_remember(self, path: Path) -> tuple[MeshPart, ...]:
         _check_file(path)
         if self._cache is None or path.suffix.lower() in SCATTERED_SUFFIXES:
-            return _usable(_read_parts(path))
+            return _usable(_read_parts(path), MeshPart.of)
         key = self._cache.key(path.suffix.lower(), _contents(path))
         parts = self._cache.load(key)
         if parts is None:
-            parts = _usable(_read_parts(path))
+            parts = _usable(_read_parts(path), MeshPart.of)
             self._cache.store(key, parts)
         return parts
 
@@ -165,13 +172,13 @@ def _contents(path: Path) -> Iterator[bytes]:
         yield materials.read_bytes() if materials.is_file() else b""
 
 
-def _usable(meshes: Sequence[MeshData]) -> tuple[MeshPart, ...]:
-    """Return the parts that can be drawn; exporters leave empty ones behind."""
+def _usable(parts: Iterable[T], made: Callable[[T], MeshPart]) -> tuple[MeshPart, ...]:
+    """Return what is made of the parts that can be drawn; exporters leave empty ones behind."""
     usable = []
     problem = MeshError("nothing in it")
-    for mesh in meshes:
+    for part in parts:
         try:
-            usable.append(MeshPart.of(mesh))
+            usable.append(made(part))
         except MeshError as error:
             problem = error
     if not usable:

@@ -5,9 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh_data import MeshData, Scale
 from arm_gazebo.mesh_simplification import outermost, simplified
 
+FARTHEST_M = 1e3
+SMALLEST_M = 1e-6
 FLAT = 1e-9
 """Thickness over size below which a mesh has no convex hull."""
 
@@ -37,8 +40,19 @@ class MeshPart:
         return cls(simplified(mesh), outermost(mesh.vertices), len(mesh.faces))
 
     def scaled(self, scale: Scale) -> "MeshPart":
-        """Return the part scaled along its axes."""
-        return MeshPart(self.drawn.scaled(scale), self.hull * scale, self.triangles)
+        """Return the part scaled along its axes, in m.
+
+        Raises:
+            MeshError: it is of no size that a part can have; MuJoCo's sums would not bear it.
+        """
+        part = MeshPart(self.drawn.scaled(scale), self.hull * scale, self.triangles)
+        farthest = float(np.abs(part.hull).max())
+        size = float(np.ptp(part.hull, axis=0).max())
+        if not farthest < FARTHEST_M:
+            raise MeshError(f"it reaches {farthest:.3g} m far; at most {FARTHEST_M:g} m are used")
+        if not size > SMALLEST_M:
+            raise MeshError(f"it is only {size:.3g} m large")
+        return part
 
     @property
     def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -108,6 +108,21 @@ def test_scale(parts, tmp_path, box):
     assert extent(model) == pytest.approx([1.0, 0.2, 0.15], abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("scale", "reason"),
+    [
+        ("1e9 1e9 1e9", "it reaches 1.5e+08 m far"),
+        ("0 0 0", "only 0 m large"),
+        ("1e-9 0 0", "only"),
+    ],
+)
+def test_scale_that_no_part_can_have_is_a_missing_mesh(parts, tmp_path, box, scale, reason):
+    box.export(tmp_path / "box.stl")
+    uses = [shape(tmp_path / "box.stl", scale, tag) for tag in ("visual", "collision")]
+    [warning] = parts.build(robot_with(*uses)).report.warnings
+    assert reason in warning.message
+
+
 def test_mirrored_mesh_keeps_its_outside_outside(parts, tmp_path):
     wedge = trimesh.creation.cone(0.1, 0.3)
     wedge.export(tmp_path / "cone.stl")
