@@ -69,7 +69,7 @@ def _meaningless(root: Any) -> Iterator[Finding]:
         yield _dropped(
             element,
             f"<safety_controller> of joint '{element.getparent().get('name')}'",
-            "the joint stops at its <limit>; soft limits bound commands under enforce_command_limits",
+            "the joint stops at its <limit>; soft limits count under enforce_command_limits",
         )
     for element in root.iterfind(".//material/texture"):
         yield _dropped(element, "<texture>", "surfaces have a colour, no picture")
