@@ -32,8 +32,8 @@ from arm_node.process import EXIT_FAILED, NodeProcess
 LISTENING_S = 0.1
 REMINDER_INTERVAL_S = 1.0
 LOOP_JOIN_TIMEOUT_S = 5.0
-CATCH_UP_PERIODS = 0.5
-"""A cycle that was missed is left out: hardware has no use for commands in quick succession."""
+CATCH_UP_PERIODS = 0.75
+"""A late cycle is made up for, a missed one left out: commands in a burst are of no use."""
 
 logger = logging.getLogger("controller_manager")
 
@@ -141,7 +141,7 @@ def _loop(
         period_s,
         clock=DeadlineClock(simulated) if simulated else None,
         catch_up_s=CATCH_UP_PERIODS * period_s,
-        print_warnings=node.settings.overruns.print_warnings and not simulated,
+        print_warnings=node.settings.overruns.print_warnings,
     )
     cycle = ControlCycle(manager, simulated or SystemClock())
     loop = ControlLoop(cycle, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
