@@ -1,0 +1,165 @@
+"""How far a fault reaches: to whom it belongs, and no further."""
+
+from typing import Any
+
+import pytest
+
+from arm_control import ControllerManager, LifecycleState, SwitchRequest
+from arm_control.hardware import HardwareReturn
+from arm_control.testing import FakeHardware, fake_hardware
+
+NAMES = ("arm", "gripper", "camera")
+EVERYBODY = ("arm_mover", "gripper_mover", "camera_watcher", "watcher")
+USERS = {
+    "arm": {"arm_mover", "watcher"},
+    "gripper": {"gripper_mover", "watcher"},
+    "camera": {"camera_watcher", "watcher"},
+}
+COMMANDERS = {"arm": {"arm_mover"}, "gripper": {"gripper_mover"}, "camera": set[str]()}
+
+
+class Cell:
+    """An arm, a gripper and a camera; who moves them, who watches one, who watches all."""
+
+    def __init__(self, bench: Any) -> None:
+        self.bench = bench
+        self.hardware: dict[str, FakeHardware] = {
+            name: fake_hardware(
+                (name,),
+                name=name,
+                command_interfaces=() if name == "camera" else ("position",),
+                state_interfaces=("position",),
+            )
+            for name in NAMES
+        }
+        bench.manager = ControllerManager(tuple(self.hardware.values()), 100)
+        bench.manager.bring_up()
+        for name in ("arm", "gripper"):
+            bench.configure(
+                f"{name}_mover", commands=(f"{name}/position",), states=(f"{name}/position",)
+            )
+        bench.configure("camera_watcher", states=("camera/position",))
+        bench.configure("watcher", states=tuple(f"{name}/position" for name in NAMES))
+        assert bench.manager.switch_controller(SwitchRequest(EVERYBODY)).ok
+
+    @property
+    def active(self) -> set[str]:
+        """Names of the controllers that run."""
+        return {name for name, state in self.bench.states().items() if state == "active"}
+
+    @property
+    def components(self) -> dict[str, str]:
+        """State of each component."""
+        return {c.name: c.state.label for c in self.bench.manager.list_hardware_components()}
+
+
+@pytest.fixture
+def cell(bench: Any) -> Cell:
+    """Return the cell with everything running."""
+    return Cell(bench)
+
+
+@pytest.mark.parametrize("broken", [("arm",), ("gripper",), ("camera",), ("arm", "camera"), NAMES])
+@pytest.mark.parametrize("result", ["read_result", "write_result"])
+def test_an_error_of_hardware_stops_exactly_its_users(
+    cell: Cell, broken: tuple[str, ...], result: str
+) -> None:
+    for name in broken:
+        setattr(cell.hardware[name], result, HardwareReturn.ERROR)
+    cell.bench.tick(2)
+    stopped = set().union(*(USERS[name] for name in broken))
+    assert cell.active == set(EVERYBODY) - stopped
+    assert cell.components == {
+        name: "unconfigured" if name in broken else "active" for name in NAMES
+    }
+
+
+@pytest.mark.parametrize("broken", [("arm",), ("camera",), ("arm", "gripper")])
+def test_hardware_that_deactivates_itself_stops_exactly_who_commands_it(
+    cell: Cell, broken: tuple[str, ...]
+) -> None:
+    for name in broken:
+        cell.hardware[name].write_result = HardwareReturn.DEACTIVATE
+    cell.bench.tick(2)
+    stopped = set().union(*(COMMANDERS[name] for name in broken))
+    assert cell.active == set(EVERYBODY) - stopped
+    assert cell.components == {name: "inactive" if name in broken else "active" for name in NAMES}
+
+
+@pytest.mark.parametrize("outcome", [HardwareReturn.ERROR, HardwareReturn.DEACTIVATE])
+def test_after_a_fault_all_of_it_can_run_again(cell: Cell, outcome: HardwareReturn) -> None:
+    cell.hardware["arm"].write_result = outcome
+    cell.bench.tick()
+    cell.hardware["arm"].write_result = HardwareReturn.OK
+    cell.bench.manager.set_hardware_component_state("arm", LifecycleState.ACTIVE)
+    stopped = tuple(set(EVERYBODY) - cell.active)
+    assert cell.bench.manager.switch_controller(SwitchRequest(stopped)).ok
+    cell.bench.tick(2)
+    assert cell.active == set(EVERYBODY)
+
+
+def test_hardware_that_cannot_clean_up_after_its_error_is_finalized(cell: Cell) -> None:
+    cell.hardware["arm"].read_result = HardwareReturn.ERROR
+    cell.hardware["arm"].refused.add("on_cleanup")
+    cell.bench.tick()
+    assert cell.components["arm"] == "finalized"
+
+
+@pytest.mark.parametrize("step", ["cleanup", "shutdown"])
+def test_a_controller_that_raises_on_its_way_out_goes_nevertheless(
+    bench: Any, caplog: pytest.LogCaptureFixture, step: str
+) -> None:
+    bench.configure("bad").raises.add(step)
+    bench.manager.unload_controller("bad")
+    assert bench.states() == {}
+    assert f"bad broke in {step}" in caplog.text
+
+
+def test_each_failed_controller_gets_its_own_fallbacks(bench: Any) -> None:
+    for name, joint in (("spare0", "j0"), ("spare1", "j1")):
+        bench.configure(name, commands=(f"{joint}/position",))
+    bad = [
+        bench.configure(f"bad{i}", commands=(f"j{i}/position",), fallback_names=(f"spare{i}",))
+        for i in (0, 1)
+    ]
+    bench.manager.switch_controller(SwitchRequest(("bad0", "bad1")))
+    for probe in bad:
+        probe.fails_update = True
+    bench.tick()
+    assert bench.states() == {
+        "bad0": "inactive",
+        "bad1": "inactive",
+        "spare0": "active",
+        "spare1": "active",
+    }
+
+
+def test_a_controller_may_have_several_fallbacks_one_of_them_running(bench: Any) -> None:
+    bench.configure("watcher", states=("j0/position",))
+    bench.configure("mover", commands=("j0/position",))
+    bad = bench.configure("bad", commands=("j0/position",), fallback_names=("mover", "watcher"))
+    bench.manager.switch_controller(SwitchRequest(("bad", "watcher")))
+    bad.fails_update = True
+    bench.tick(2)
+    assert bench.states() == {"bad": "inactive", "mover": "active", "watcher": "active"}
+    # It went on running, it was not restarted.
+    assert bench.events.count("watcher activate") == 1
+
+
+def test_a_fallback_that_fails_too_is_stopped_in_its_turn(bench: Any) -> None:
+    bench.configure("spare", commands=("j0/position",)).fails_update = True
+    bench.configure("bad", commands=("j0/position",), fallback_names=("spare",)).fails_update = True
+    bench.manager.switch_controller(SwitchRequest(("bad",)))
+    bench.tick(3)
+    assert bench.states() == {"bad": "inactive", "spare": "inactive"}
+
+
+def test_observers_hear_of_every_fault(cell: Cell, observer: Any) -> None:
+    cell.bench.manager.add_observer(observer)
+    cell.hardware["camera"].read_result = HardwareReturn.ERROR
+    cell.bench.tick()
+    assert {(name, label) for name, label, _, _ in observer.transitions} == {
+        ("camera_watcher", "deactivate"),
+        ("watcher", "deactivate"),
+    }
+    assert observer.changes > 0
