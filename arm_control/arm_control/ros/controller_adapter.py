@@ -5,10 +5,14 @@ from typing import Any, Generic, TypeVar
 
 from rclpy.executors import Executor
 from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+from rclpy.subscription import Subscription
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller import Controller
 from arm_control.errors import ControllerError
+from arm_control.ros.executor_bridge import run_on_executor
 
 ControllerT = TypeVar("ControllerT", bound=Controller[Any])
 
@@ -50,4 +54,25 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
 
     @abstractmethod
     def on_cleanup(self) -> None:
-        """Destroy what `on_configure` created."""
+        """Destroy what `on_configure` created, with `destroy`; may be called again without."""
+
+    def destroy(self, *end_points: Publisher | Subscription | Service) -> None:
+        """Destroy end points of the node; not on the executor's thread.
+
+        Done by the executor: it stumbles over one that goes while it gathers what to wait for.
+        """
+
+        def destroy_all() -> None:
+            for end_point in end_points:
+                if isinstance(end_point, Publisher):
+                    self.node.destroy_publisher(end_point)
+                elif isinstance(end_point, Subscription):
+                    self.node.destroy_subscription(end_point)
+                else:
+                    self.node.destroy_service(end_point)
+
+        executor = self.node.executor
+        if executor is None:
+            destroy_all()
+        elif end_points:
+            run_on_executor(executor, destroy_all)

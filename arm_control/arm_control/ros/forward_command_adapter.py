@@ -37,7 +37,7 @@ class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
     def on_cleanup(self) -> None:
         """Unsubscribe."""
         if self._subscription is not None:
-            self.node.destroy_subscription(self._subscription)
+            self.destroy(self._subscription)
             self._subscription = None
 
     def values_of(self, message: Any) -> Sequence[float]:

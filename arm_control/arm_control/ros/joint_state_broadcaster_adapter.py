@@ -38,8 +38,7 @@ class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
     def on_cleanup(self) -> None:
         """Destroy the publishers."""
         self.controller.sink = None
-        for publisher in self._publishers:
-            self.node.destroy_publisher(publisher)
+        self.destroy(*self._publishers)
         self._publishers = ()
 
 

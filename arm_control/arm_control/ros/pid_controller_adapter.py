@@ -25,27 +25,24 @@ WARNING_INTERVAL_S = 1.0
 class PidControllerAdapter(ControllerAdapter[PidController]):
     """Gives the controller its end points."""
 
-    _subscriptions: tuple[Subscription, ...] = ()
-    _publisher: Publisher | None = None
-    _service: Service | None = None
+    _end_points: tuple[Publisher | Service | Subscription, ...] = ()
 
     def on_configure(self, parameters: PidControllerParameters) -> None:
         """Create the end points."""
         self._throttle = Throttle(WARNING_INTERVAL_S)
-        self._publisher = self.node.create_publisher(
+        publisher = self.node.create_publisher(
             MultiDOFStateStamped, "~/controller_state", QoSPresetProfiles.SYSTEM_DEFAULT.value
         )
-        self.controller.sink = PidStatePublisher(self._publisher, parameters.state_dof_names)
-        self._service = self.node.create_service(
-            SetBool, "~/set_feedforward_control", self._set_feedforward
-        )
-        self._subscriptions = (
+        self.controller.sink = PidStatePublisher(publisher, parameters.state_dof_names)
+        self._end_points = (
+            publisher,
+            self.node.create_service(SetBool, "~/set_feedforward_control", self._set_feedforward),
             self.node.create_subscription(
                 MultiDOFCommand, "~/reference", self._take_reference, REFERENCE_QOS
             ),
         )
         if parameters.use_external_measured_states:
-            self._subscriptions += (
+            self._end_points += (
                 self.node.create_subscription(
                     MultiDOFCommand, "~/measured_state", self._take_measured, REFERENCE_QOS
                 ),
@@ -54,15 +51,8 @@ class PidControllerAdapter(ControllerAdapter[PidController]):
     def on_cleanup(self) -> None:
         """Destroy the end points."""
         self.controller.sink = None
-        for subscription in self._subscriptions:
-            self.node.destroy_subscription(subscription)
-        self._subscriptions = ()
-        if self._service is not None:
-            self.node.destroy_service(self._service)
-            self._service = None
-        if self._publisher is not None:
-            self.node.destroy_publisher(self._publisher)
-            self._publisher = None
+        self.destroy(*self._end_points)
+        self._end_points = ()
 
     def _take_reference(self, message: MultiDOFCommand) -> None:
         self._complain("reference", self.controller.offer(*_parts(message)))
