@@ -1,23 +1,34 @@
 """The controllers of a world that is already up: one spawner after the other, each when ready."""
 
 from launch_py import DeclareLaunchArgument, LaunchDescription, ProcessExited
+from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.ros import FindPackageShare, Node
-from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_py.substitutions import (
+    EqualsSubstitution,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    PathJoinSubstitution,
+)
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the spawners of the broadcaster and of the position controller."""
-    controllers = PathJoinSubstitution(
-        [FindPackageShare("arm_control"), "config", "arm_control.yaml"]
+    """Return the spawners of the broadcaster and of what commands positions."""
+    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+    file = IfElseSubstitution(
+        is_ros1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
+    )
+    controllers = PathJoinSubstitution([FindPackageShare("arm_control"), "config", file])
+    manager = IfElseSubstitution(
+        is_ros1, if_value="/arm/controller_manager", else_value="/controller_manager"
     )
 
-    def spawner(name: str, **options: object) -> Node:
+    def spawner(*names: str, **options: object) -> Node:
         return Node(
             package="arm_control",
             executable="spawner",
-            exec_name=f"spawner_{name}",
+            exec_name=f"spawner_{names[0]}",
             arguments=[
-                name,
+                *names,
                 "--controller-manager",
                 LaunchConfiguration("controller_manager"),
                 "--param-file",
@@ -28,9 +39,22 @@ def generate_launch_description() -> LaunchDescription:
         )
 
     broadcaster = spawner("joint_state_broadcaster")
-    position = spawner("position_controller", depends_on=broadcaster)
+    position = spawner(
+        "position_controller", depends_on=broadcaster, condition=UnlessCondition(is_ros1)
+    )
+    single = spawner(
+        *(f"j{i}p_controller" for i in range(4)),
+        depends_on=broadcaster,
+        condition=IfCondition(is_ros1),
+    )
     return LaunchDescription(
         [
+            DeclareLaunchArgument(
+                "interface",
+                default_value="ros2",
+                choices=["ros2", "ros1"],
+                description="one controller of all joints, or as in ROS 1 one for each under /arm",
+            ),
             DeclareLaunchArgument(
                 "controllers",
                 default_value=controllers,
@@ -38,10 +62,11 @@ def generate_launch_description() -> LaunchDescription:
             ),
             DeclareLaunchArgument(
                 "controller_manager",
-                default_value="/controller_manager",
+                default_value=manager,
                 description="the controller manager's node",
             ),
             broadcaster,
             position,
+            single,
         ]
     )

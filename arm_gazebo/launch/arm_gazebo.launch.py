@@ -30,35 +30,6 @@ def by_interface(ros2: str, ros1: str) -> IfElseSubstitution:
     return IfElseSubstitution(IS_ROS1, if_value=ros1, else_value=ros2)
 
 
-def arguments() -> dict[str, DeclareLaunchArgument]:
-    """Return the arguments that depend on the interface, by name."""
-    controllers = PathJoinSubstitution(
-        [
-            FindPackageShare("arm_control"),
-            "config",
-            by_interface("arm_control.yaml", "arm_control_ros1.yaml"),
-        ]
-    )
-    single = ",".join(f"j{i}p_controller" for i in range(4))
-    defaults = {
-        "controllers": (
-            controllers,
-            "parameter file of the controller manager and its controllers",
-        ),
-        "namespace": (by_interface("", "arm"), "of all nodes of the robot"),
-        "spawn": (
-            by_interface(
-                "joint_state_broadcaster,position_controller", f"joint_state_broadcaster,{single}"
-            ),
-            "controllers to start with the simulation, with commas",
-        ),
-    }
-    return {
-        name: DeclareLaunchArgument(name, default_value=default, description=description)
-        for name, (default, description) in defaults.items()
-    }
-
-
 def panels() -> list[ReadyPanel]:
     """Return what the user is told, one for each interface."""
     return [
@@ -91,7 +62,7 @@ def panels() -> list[ReadyPanel]:
 def generate_launch_description() -> LaunchDescription:
     """Return the world with controllers, and the controller node without a pose."""
     world = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "arm_world.launch.py"])
-    declared = arguments()
+    single = ",".join(f"j{i}p_controller" for i in range(4))
     return LaunchDescription(
         [
             DeclareLaunchArgument(
@@ -100,10 +71,22 @@ def generate_launch_description() -> LaunchDescription:
                 choices=["ros2", "ros1"],
                 description="one controller of all joints, or as in ROS 1 one for each under /arm",
             ),
-            *declared.values(),
+            DeclareLaunchArgument(
+                "namespace",
+                default_value=by_interface("", "arm"),
+                description="of all nodes of the robot",
+            ),
+            DeclareLaunchArgument(
+                "spawn",
+                default_value=by_interface(
+                    "joint_state_broadcaster,position_controller",
+                    f"joint_state_broadcaster,{single}",
+                ),
+                description="controllers to start with the simulation, with commas",
+            ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(world),
-                launch_arguments={name: LaunchConfiguration(name) for name in declared},
+                launch_arguments={"spawn": LaunchConfiguration("spawn")},
             ),
             Node(
                 package="arm_controller",

@@ -9,7 +9,13 @@ import shlex
 from launch_py import DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
-from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
+from launch_py.substitutions import (
+    Call,
+    EqualsSubstitution,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    PathJoinSubstitution,
+)
 
 DESCRIPTION_ARGUMENTS = {
     "j0_pos": ("0.0", "where j0 starts, in rad"),
@@ -42,13 +48,26 @@ def assignments(**arguments: str) -> str:
 def generate_launch_description() -> LaunchDescription:
     """Return the simulation of the arm."""
     model = PathJoinSubstitution([FindPackageShare("arm_description"), "urdf", "arm.urdf.xacro"])
-    controllers = PathJoinSubstitution(
-        [FindPackageShare("arm_control"), "config", "arm_control.yaml"]
+    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+    file = IfElseSubstitution(
+        is_ros1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
     )
+    controllers = PathJoinSubstitution([FindPackageShare("arm_control"), "config", file])
     simulation = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "sim.launch.py"])
     return LaunchDescription(
         [
             DeclareLaunchArgument("model", default_value=model, description="URDF or xacro file"),
+            DeclareLaunchArgument(
+                "interface",
+                default_value="ros2",
+                choices=["ros2", "ros1"],
+                description="one controller of all joints, or as in ROS 1 one for each under /arm",
+            ),
+            DeclareLaunchArgument(
+                "namespace",
+                default_value=IfElseSubstitution(is_ros1, if_value="arm"),
+                description="of all nodes of the robot",
+            ),
             DeclareLaunchArgument(
                 "controllers",
                 default_value=controllers,

@@ -21,7 +21,10 @@ def test_four_topics_move_the_arm_and_states_come_at_50_hz(launch, client):
     from sensor_msgs.msg import JointState
     from std_msgs.msg import Float64
 
-    launch("interface:=ros1", "camera:=none").wait_until_ready()
+    # In two steps, as the original is started.
+    world = launch("arm_gazebo", "arm_world.launch.py", "interface:=ros1", "camera:=none")
+    world.wait_until_ready()
+    assert launch("arm_control", "arm_control.launch.py", "interface:=ros1").wait() == 0
     states = client.subscribe(JointState, "/arm/joint_states")
     pose = [0.3, 0.2, -0.4, 0.5]
     for index, position in enumerate(pose):
