@@ -1,10 +1,18 @@
 """Any robot in any world: the simulation with its controllers, and the state publisher."""
 
-from launch_py import DeclareLaunchArgument, LaunchDescription, LogInfo, Notified, Shutdown
+from launch_py import (
+    DeclareLaunchArgument,
+    ExecuteProcess,
+    LaunchDescription,
+    LogInfo,
+    Notified,
+    Shutdown,
+)
 from launch_py.actions import OpaqueFunction
+from launch_py.conditions import IfCondition
 from launch_py.launch_context import LaunchContext
-from launch_py.ros import Node
-from launch_py.substitutions import LaunchConfiguration
+from launch_py.ros import FindPackageShare, Node
+from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 
 ROBOT_ARGUMENTS = {
     "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
@@ -41,6 +49,7 @@ NODE_ARGUMENTS = {
         ["info", "warn", "error", "fatal"],
     ),
     "use_sim_time": ("true", "the state publisher's clock is the simulation's", ["true", "false"]),
+    "use_rviz": ("false", "start RViz; it comes with a ROS 2 installation", ["true", "false"]),
 }
 
 
@@ -125,6 +134,21 @@ def generate_launch_description() -> LaunchDescription:
             *declared(ROBOT_ARGUMENTS),
             *declared(SIMULATION_ARGUMENTS),
             *declared(NODE_ARGUMENTS),
+            DeclareLaunchArgument(
+                "rviz_config_file",
+                default_value=PathJoinSubstitution(
+                    [FindPackageShare("arm_description"), "config", "rviz", "arm.rviz"]
+                ),
+                description="what RViz shows",
+            ),
             OpaqueFunction(function=simulate),
+            ExecuteProcess(
+                cmd=[
+                    *("rviz2", "-d", LaunchConfiguration("rviz_config_file")),
+                    *("--ros-args", "-p", ["use_sim_time:=", LaunchConfiguration("use_sim_time")]),
+                ],
+                name="rviz2",
+                condition=IfCondition(LaunchConfiguration("use_rviz")),
+            ),
         ]
     )

@@ -1,5 +1,6 @@
 """The world without controllers, the other rates, and every refusal of the simulation node."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -99,6 +100,20 @@ def test_gazebos_words_reach_the_simulation(launch):
     launched = launch("arm_gazebo", "arm_gazebo.launch.py", "gz_args:=-r -v 1 empty.sdf", "--print")
     assert launched.wait() == 0, launched.output
     assert "--log-level error" in launched.output
+
+
+def test_rviz_opens_where_there_is_one(launch, tmp_path):
+    program = tmp_path / "rviz2"
+    program.write_text("#!/bin/sh\necho shows $*\n")
+    program.chmod(0o755)
+    launched = launch(
+        *("arm_gazebo", "arm_world.launch.py", "camera:=none"),
+        *("use_rviz:=true", "rviz_config_file:=/my/lab.rviz"),
+        PATH=f"{tmp_path}:{os.environ['PATH']}",
+    )
+    launched.wait_for_line("shows -d /my/lab.rviz --ros-args -p use_sim_time:=true")
+    launched.wait_until_ready()
+    assert launched.stop() == 0, launched.output
 
 
 def test_an_update_rate_of_zero_is_refused(launch, tmp_path):
