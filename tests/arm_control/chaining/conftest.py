@@ -1,5 +1,6 @@
 """Controllers that hang together, and hardware under them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -121,6 +122,12 @@ class ChainBench:
 @pytest.fixture
 def chain(bench: Any) -> ChainBench:
     return ChainBench(bench)
+
+
+@pytest.fixture
+def new_chain(bench: Any) -> Callable[[], ChainBench]:
+    """Return a function that makes a bench of its own."""
+    return lambda: ChainBench(type(bench)())
 
 
 @pytest.fixture
