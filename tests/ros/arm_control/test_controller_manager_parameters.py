@@ -33,19 +33,66 @@ def parameters_of(client: Any) -> Callable[[str], dict[str, Any]]:
     return read
 
 
-def test_the_managers_parameters(control: Any, parameters_of: Any) -> None:
+THRESHOLDS = {
+    "controller_manager": ("periodicity",),
+    "controllers": ("periodicity", "execution_time"),
+    "hardware_components": ("periodicity", "execution_time"),
+}
+FIGURES = {
+    ("periodicity", "mean_error"): (5.0, 10.0),
+    ("periodicity", "standard_deviation"): (5.0, 10.0),
+    ("execution_time", "mean_error"): (1000.0, 2000.0),
+    ("execution_time", "standard_deviation"): (100.0, 200.0),
+}
+READ_ONLY = {
+    "defaults.allow_controller_activation_with_inactive_hardware": False,
+    "defaults.deactivate_controllers_on_hardware_self_deactivate": True,
+    "enforce_command_limits": False,
+    "handle_exceptions": True,
+    "hardware_components_initial_state.shutdown_on_initial_state_failure": True,
+}
+
+
+def threshold_parameters() -> dict[str, float]:
+    """Return the thresholds of ros2_control by name."""
+    return {
+        f"diagnostics.threshold.{owner}.{quantity}.{figure}.{level}": value
+        for owner, quantities in THRESHOLDS.items()
+        for (quantity, figure), values in FIGURES.items()
+        for level, value in zip(("warn", "error"), values, strict=True)
+        if quantity in quantities
+    }
+
+
+def test_the_managers_parameters(control: Any, parameters_of: Any, client: Any) -> None:
+    from rcl_interfaces.srv import DescribeParameters
+
     control.load("position_controller")
     parameters = parameters_of("/controller_manager")
     expected = {
         "update_rate": 100,
         "defaults.switch_controller.strictness": "best_effort",
+        "hardware_components_initial_state.inactive": [],
         "hardware_components_initial_state.unconfigured": [],
         "overruns.print_warnings": True,
+        "diagnostic_updater.period": 1.0,
+        "diagnostic_updater.use_fqn": False,
         "position_controller.type": POSITION,
         "position_controller.fallback_controllers": [],
         "position_controller.node_options_args": [],
+        **threshold_parameters(),
+        **READ_ONLY,
     }
     assert {name: parameters[name] for name in expected} == expected
+    descriptions = client.call(
+        DescribeParameters,
+        "/controller_manager/describe_parameters",
+        DescribeParameters.Request(names=list(expected)),
+    ).descriptors
+    assert {d.name for d in descriptions if d.read_only} == set(READ_ONLY)
+    assert all(
+        d.description for d in descriptions if not d.name.startswith("position_controller.t")
+    )
 
 
 def test_a_controllers_parameters(control: Any, parameters_of: Any) -> None:
@@ -111,6 +158,11 @@ def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> N
                 "ros__parameters": {
                     "jsb": {"type": BROADCASTER, "fallback_controllers": []},
                     "hardware_components_initial_state": {"inactive": []},
+                    # For real-time kernels and hardware: accepted, as by a real one.
+                    "lock_memory": True,
+                    "thread_priority": 50,
+                    "cpu_affinity": [0, 1],
+                    "overruns": {"manage": True},
                 }
             },
             "/**/jsb": {"ros__parameters": {"joints": []}},
@@ -124,6 +176,10 @@ def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> N
     [
         ({"update_rate": 0}, "parameter 'update_rate' must be above 0, but is 0"),
         ({"update_rate": "fast"}, "parameter 'update_rate' must be of type int, not 'fast'"),
+        (
+            {"diagnostics.threshold.controllers.execution_time.mean_error.warn": 0.0},
+            "execution_time.mean_error.warn' must be above 0, but is 0.0",
+        ),
         (
             {"defaults": {"switch_controller": {"strictness": "lax"}}},
             "must be one of best_effort, strict, but is 'lax'",

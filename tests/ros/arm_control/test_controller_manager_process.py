@@ -1,5 +1,6 @@
 """A manager's process: namespaces, failures, the end."""
 
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -56,3 +57,38 @@ def test_it_ends_with_code_0(run_manager: Any, paused: tuple[str, ...]) -> None:
     )
     assert program.stop() == 0
     assert "Traceback" not in program.output
+
+
+def test_commands_are_kept_within_the_limits_of_the_description(
+    run_manager: Any, control_of: Any, client: Any
+) -> None:
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    types = {
+        "jsb.type": BROADCASTER,
+        "mover.type": "position_controllers/JointGroupPositionController",
+    }
+    run_manager(
+        "--start",
+        "jsb",
+        "mover",
+        parameters={
+            "/**/controller_manager": {
+                "ros__parameters": {"enforce_command_limits": True, **types}
+            },
+            "/**/mover": {"ros__parameters": {"joints": ["j0", "j1"]}},
+        },
+        ros_arguments=("-r", "__ns:=/limited"),
+    )
+    states = client.subscribe(JointState, "/limited/joint_states", 1000)
+    client.publisher(Float64MultiArray, "/limited/mover/commands").publish(
+        Float64MultiArray(data=[9.0, -0.5])
+    )
+    messages = states.wait_until(
+        lambda messages: messages and messages[-1].position[0] >= 3.0, "j0 at its upper limit"
+    )
+    assert messages[-1].position[:2].tolist() == pytest.approx([3.0, -0.5])
+    # 2 rad/s at 100 Hz; a message that was lost on the way lets a step look longer.
+    path = [(m.header.stamp.sec + m.header.stamp.nanosec * 1e-9, m.position[0]) for m in messages]
+    assert all(b[1] - a[1] <= 2.0 * (b[0] - a[0]) + 1e-6 for a, b in pairwise(path))
