@@ -31,7 +31,12 @@ class WithoutInterfaces(PathFinder):
 sys.meta_path[sys.meta_path.index(PathFinder)] = WithoutInterfaces
 """
 
-ARGUMENTS = {"arm": ["launch"], "spawner": ["position_controller"]}
+ARGUMENTS = {
+    "arm": ["launch"],
+    "spawner": ["position_controller"],
+    "unspawner": ["position_controller"],
+    "hardware_spawner": ["HardwareInterface", "--activate"],
+}
 SUPERVISOR = "launch_py"
 """Knows nothing of the interfaces, so it can only pass on what its processes say."""
 
