@@ -22,15 +22,27 @@ class CollisionMasks:
     conaffinity: int
 
 
-WORLD_ONLY = CollisionMasks(contype=2, conaffinity=WORLD_CONTYPE)
-"""Touches the world, and not what has the same masks."""
-SELF_TOO = CollisionMasks(contype=2, conaffinity=WORLD_CONTYPE | 2)
-"""Touches the world and what has the same masks."""
+MOST_LAYERS = 30
+"""A mask has 32 bits; the world has one, and a sign is none."""
 
 
-def masks_for(self_collide: bool) -> CollisionMasks:
-    """Return the masks of a robot's collisions."""
-    return SELF_TOO if self_collide else WORLD_ONLY
+@dataclass(frozen=True, slots=True)
+class CollisionLayer:
+    """Which robot of several a shape belongs to: it touches the world and the other robots."""
+
+    index: int = 0
+    count: int = 1
+
+    def masks(self, self_collide: bool) -> CollisionMasks:
+        """Return the masks of the robot's shapes; `self_collide` ones touch each other, too."""
+        own = 2 << self.index
+        others = sum(2 << index for index in range(self.count)) - own
+        return CollisionMasks(own, WORLD_CONTYPE | others | (own if self_collide else 0))
+
+
+def with_self(masks: CollisionMasks) -> CollisionMasks:
+    """Return masks that touch shapes of the same robot besides."""
+    return CollisionMasks(masks.contype, masks.conaffinity | masks.contype)
 
 
 def leave_out_neighbours(

@@ -22,7 +22,8 @@ from arm_gazebo.default_control import commandable_joints, with_hardware
 from arm_gazebo.description_leftovers import leftovers
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.gazebo_tags import GazeboTags, parse_gazebo_tags
-from arm_gazebo.model_builder import DEFAULT_OPTIONS, build_model
+from arm_gazebo.model_builder import build_model
+from arm_gazebo.robot_part import DEFAULT_OPTIONS
 from arm_gazebo.servo_tuning import too_weak, tune
 from arm_gazebo.simulated_hardware import STATES
 

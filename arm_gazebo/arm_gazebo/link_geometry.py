@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
 from arm_description.transforms import quaternion_from_rpy
 from arm_gazebo.build_report import BuildReport
-from arm_gazebo.collision_policy import masks_for
+from arm_gazebo.collision_policy import CollisionMasks, with_self
 from arm_gazebo.errors import MeshError
 from arm_gazebo.gazebo_tags import GazeboTags
 from arm_gazebo.mesh_data import Color
@@ -48,7 +48,7 @@ class LinkGeometry:
         meshes: the model's meshes.
         default: values of what is not set: the world file's own defaults are for the world.
         tags: what the description says about friction, colours and self-collision.
-        self_collide: whether links touch each other, whatever the tags say.
+        masks: what collisions touch, where the tags say nothing else.
         strict: whether a mesh that cannot be had is an error.
         report: gets a warning for every shape that is replaced.
     """
@@ -58,14 +58,14 @@ class LinkGeometry:
         meshes: MeshLibrary,
         default: mujoco.MjsDefault,
         tags: GazeboTags,
-        self_collide: bool,
+        masks: CollisionMasks,
         strict: bool,
         report: BuildReport,
     ) -> None:
         self._meshes = meshes
         self._default = default
         self._tags = tags
-        self._self_collide = self_collide
+        self._masks = masks
         self._strict = strict
         self._report = report
         self._reported: set[str] = set()
@@ -77,7 +77,7 @@ class LinkGeometry:
             MeshError: strict, and a mesh cannot be had.
         """
         tags = self._tags.link(link.name)
-        masks = masks_for(self._self_collide or tags.self_collide)
+        masks = with_self(self._masks) if tags.self_collide else self._masks
         for visual in link.visuals:
             shapes = tuple(self._shapes(visual.geometry, link))
             # A file of several colours knows better than the one colour of the URDF.
