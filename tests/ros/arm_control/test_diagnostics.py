@@ -163,3 +163,26 @@ def test_the_level_of_a_logger_can_be_asked_for_and_set(client: Any, control: An
     assert answer.levels[0].level == LoggerLevel.LOG_LEVEL_FATAL
     request.levels[0].level = LoggerLevel.LOG_LEVEL_INFO
     assert client.call(SetLoggerLevels, set_levels, request).results[0].successful
+
+
+def test_a_manager_without_a_robot_says_what_it_waits_for(run: Any, client: Any) -> None:
+    from diagnostic_msgs.msg import DiagnosticArray
+
+    program = run(
+        "-m",
+        "arm_control.ros2_control_node",
+        "--ros-args",
+        *("-r", "__ns:=/waiting"),
+        *("-p", "diagnostic_updater.period:=0.1"),
+        *("-p", "diagnostic_updater.use_fqn:=true"),
+    )
+    prefix = "/waiting/controller_manager: "
+    messages = client.subscribe(DiagnosticArray, "/diagnostics").wait_until(
+        lambda messages: any(m.status[0].name.startswith(prefix) for m in messages),
+        "a report of the waiting manager",
+    )
+    statuses = [s for m in messages for s in m.status if s.name.startswith(prefix)]
+    assert {s.name for s in statuses} == {prefix + task for task in TASKS}
+    assert {(s.level, s.message) for s in statuses} == {(WARN, "Waiting for robot description....")}
+    assert program.stop() == 0
+    assert "Traceback" not in program.output
