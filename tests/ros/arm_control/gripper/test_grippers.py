@@ -21,6 +21,13 @@ def active(control: Any) -> Any:
     return control
 
 
+@pytest.fixture
+def patient(active: Any, set_parameter: Any) -> Any:
+    """Let goals beyond the joint's limit last for ever; return the manager's client."""
+    assert set_parameter(f"/{GRIPPER}", "stall_timeout", 1e6).successful
+    return active
+
+
 def count_actions(client: Any) -> int:
     return client.node.count_services(SEND_GOAL)
 
@@ -70,9 +77,8 @@ def test_a_joint_that_cannot_go_on_is_a_success_where_stalling_is_allowed(
     assert (answer.result.reached_goal, answer.result.stalled) == (False, True)
 
 
-def test_a_cancelled_goal_ends_with_an_empty_result(active: Any, grip: Any) -> None:
-    grip(-0.2).wait()
-    goal = grip(-3.0)
+def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> None:
+    goal = grip(BEYOND_ITS_LIMIT)
     assert goal.cancel() == 1
     answer = goal.wait()
     assert answer.status == CANCELED
@@ -80,16 +86,16 @@ def test_a_cancelled_goal_ends_with_an_empty_result(active: Any, grip: Any) -> N
     assert not answer.result.stalled
 
 
-def test_a_new_goal_cancels_the_one_before(active: Any, grip: Any) -> None:
-    first = grip(-3.0)
+def test_a_new_goal_cancels_the_one_before(patient: Any, grip: Any) -> None:
+    first = grip(BEYOND_ITS_LIMIT)
     second = grip(-0.3)
     assert first.wait().status == CANCELED
     assert second.wait().status == SUCCEEDED
 
 
-def test_deactivation_aborts_the_goal(active: Any, grip: Any) -> None:
-    goal = grip(-3.0)
-    assert active.switch([], [GRIPPER]).ok
+def test_deactivation_aborts_the_goal(patient: Any, grip: Any) -> None:
+    goal = grip(BEYOND_ITS_LIMIT)
+    assert patient.switch([], [GRIPPER]).ok
     answer = goal.wait()
     assert answer.status == ABORTED
     assert not answer.result.reached_goal
