@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
-from arm_control.errors import ArmControlError
+from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.manager_diagnostics import ManagerDiagnostics
 from arm_control.refusals import Refusals
@@ -93,6 +93,9 @@ class ControllerManagerServer:
         self._thread.stop()
         try:
             self._plane.shutdown()
+        except LoopStoppedError:
+            # A tick failed. The manager belongs to no other thread any more.
+            self._manager.shutdown()
         except ArmControlError as error:
             logger.warning("controllers were not shut down: %s", error)
 

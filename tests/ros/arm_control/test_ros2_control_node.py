@@ -1,5 +1,6 @@
 """The stand-alone controller manager in a process of its own, on mock hardware."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -41,6 +42,7 @@ PARAMETERS = {
     "controller_manager": {
         "ros__parameters": {
             "robot_description": robot(ARM, LIFT, SCALE),
+            "thread_priority": 20,
             "hardware_components_initial_state": {"unconfigured": ["Lift"]},
             "jsb.type": BROADCASTER,
             "arm.type": "position_controllers/JointGroupPositionController",
@@ -223,6 +225,13 @@ def test_with_use_sim_time_it_goes_by_the_clock(
 def test_a_description_by_parameter_is_deprecated(manager: Any, control: Any) -> None:
     manager.wait_for_line("[Deprecated] Passing the robot description parameter directly")
     assert control.states() == {}
+
+
+def test_its_loop_runs_at_the_priority_asked_for(manager: Any, control: Any) -> None:
+    threads = Path(f"/proc/{manager.process.pid}/task").iterdir()
+    policies = {os.sched_getscheduler(int(thread.name)) for thread in threads}
+    refused = "runs without SCHED_FIFO priority 20" in manager.output
+    assert (os.SCHED_FIFO in policies) is not refused
 
 
 # Hardware
