@@ -8,11 +8,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rclpy.client import Client
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
 from arm_control.clock import MonotonicClock
 from arm_control.errors import ManagerUnreachableError, WaitInterruptedError
 from arm_control.throttle import Throttle
+from arm_node.process import first_line
 
 POLL_S = 0.02
 PATIENCE_S = 1.0
@@ -47,16 +49,24 @@ class ServiceCaller:
             services: their types by name below the server's.
             timeout_s: how long to wait for an answer before asking again.
             interrupted: says whether to give up waiting.
+
+        Raises:
+            ManagerUnreachableError: no node can have that name.
         """
         self._log = logging.getLogger(node.get_logger().name)
         self._server = server
         self._interrupted = interrupted
         self._timeout_s = timeout_s
         # All at once and early: an answer is lost while the server does not know its client yet.
-        self._clients: dict[str, Client] = {
-            service: node.create_client(type_, f"{server}/{service}")
-            for service, type_ in services.items()
-        }
+        try:
+            self._clients: dict[str, Client] = {
+                service: node.create_client(type_, f"{server}/{service}")
+                for service, type_ in services.items()
+            }
+        except NameValidationException as error:
+            raise ManagerUnreachableError(
+                f"no controller manager can be named '{server}': {first_line(error).rstrip(':')}"
+            ) from error
 
     def wait_for(self, service: str, timeout_s: float) -> None:
         """Wait until a service is offered; 0 for ever."""
