@@ -17,12 +17,8 @@ import psutil
 
 from arm_control.errors import ArmControlError
 from arm_gazebo import arm_gazebo_node
-from arm_gazebo.ros import simulation_process
 
-broken = mock.patch.object(
-    simulation_process, sys.argv.pop(1), side_effect=ArmControlError("not today")
-)
-with broken:
+with mock.patch(sys.argv.pop(1), side_effect=ArmControlError("not today")):
     code = arm_gazebo_node.main()
 threads = [thread.name for thread in threading.enumerate() if thread is not threading.main_thread()]
 print(code, threads, psutil.Process().children())
@@ -42,7 +38,14 @@ def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("broken", ["Simulation", "ControllerManagerServer", "_supervise"])
+@pytest.mark.parametrize(
+    "broken",
+    [
+        "arm_gazebo.simulation.Simulation.__init__",
+        "arm_control.ros.controller_manager_server.ControllerManagerServer.__init__",
+        "arm_gazebo.camera_feed.CameraFeed.start",
+    ],
+)
 def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):
     run = subprocess.run(
         [
