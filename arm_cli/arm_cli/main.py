@@ -1,44 +1,46 @@
 """Entry point of the `arm` command: finds the verb and leaves the rest to it."""
 
+import os
+import signal
 import sys
 from collections.abc import Sequence
 
-from arm_cli.verbs import VERBS
+from arm_cli.errors import StoppedError
+from arm_cli.verbs import ARM
 
-EXIT_USAGE = 2
 DISTRIBUTION = "arm-suite"
+EXIT_BROKEN_PIPE = 128 + signal.SIGPIPE
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
+    if "_ARGCOMPLETE" in os.environ:
+        from arm_cli.word_completion import complete_words
+
+        complete_words()
     words = list(sys.argv[1:] if argv is None else argv)
-    if not words or words[0] in ("-h", "--help", "help"):
-        print(_help())
-        return 0 if words else EXIT_USAGE
-    if words[0] in ("-V", "--version"):
+    if words[:1] in (["-V"], ["--version"]):
         print(_version())
         return 0
-    verb = next((verb for verb in VERBS if verb.name == words[0]), None)
-    if verb is None:
-        print(f"arm: {_unknown(words[0])}", file=sys.stderr)
-        return EXIT_USAGE
-    return verb.run(words[1:])
+    try:
+        # Whoever reads from a pipe sees each line when it is printed.
+        sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
+        code = ARM.run("arm", words)
+        sys.stdout.flush()
+        return code
+    except StoppedError as stopped:
+        return stopped.exit_code
+    except KeyboardInterrupt:
+        return int(signal.SIGINT)
+    except BrokenPipeError:
+        return _leave_broken_pipe()
 
 
-def _help() -> str:
-    width = max(len(verb.name) for verb in VERBS)
-    return "\n".join(
-        [
-            "usage: arm [-h] [--version] VERB ...",
-            "",
-            "Simulated robot arms on ROS 2, from pip.",
-            "",
-            "verbs:",
-            *(f"  {verb.name:<{width}}  {verb.help}" for verb in VERBS),
-            "",
-            "`arm VERB --help` explains a verb.",
-        ]
-    )
+def _leave_broken_pipe() -> int:
+    # The reader, `head` for example, has had enough. Python flushes stdout once more at exit and
+    # would complain.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return EXIT_BROKEN_PIPE
 
 
 def _version() -> str:
@@ -48,11 +50,3 @@ def _version() -> str:
         return f"arm {version(DISTRIBUTION)}"
     except PackageNotFoundError:
         return f"arm (the distribution {DISTRIBUTION} is not installed)"
-
-
-def _unknown(word: str) -> str:
-    from launch_py.near_names import describe_known
-
-    what = "option" if word.startswith("-") else "verb"
-    known = [verb.name for verb in VERBS] if what == "verb" else ["--help", "--version"]
-    return f"no {what} {word!r}; {describe_known(word, known)}"

@@ -132,6 +132,26 @@ class Packages:
         known = describe_known(name, files | {script.name for script in own}, "it has")
         raise NotFoundError(f"package {package!r} has no executable {name!r}; {known}")
 
+    def names(self) -> list[str]:
+        """Return the names of all packages, sorted."""
+        return sorted(self._indexed_packages())
+
+    def executables(self) -> list[tuple[str, str]]:
+        """Return package and name of all executables that packages have, sorted."""
+        indexed = self._indexed_packages()
+        found = {(s.package, s.name) for s in self._console_scripts() if s.package in indexed}
+        for prefix in self._prefixes:
+            for package in indexed:
+                folder = os.path.join(prefix, "lib", package)
+                if os.path.isdir(folder):
+                    found.update(
+                        (package, name)
+                        for name in os.listdir(folder)
+                        if os.path.isfile(f"{folder}/{name}")
+                        and os.access(f"{folder}/{name}", os.X_OK)
+                    )
+        return sorted(found)
+
     def _indexed_packages(self) -> set[str]:
         names: set[str] = set()
         for prefix in self._prefixes:

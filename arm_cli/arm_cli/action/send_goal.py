@@ -1,0 +1,72 @@
+"""`arm action send_goal`: send a goal and wait for its result."""
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from arm_cli.errors import UsageError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.names import absolute_name
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with
+from launch_py.near_names import describe_known
+
+if TYPE_CHECKING:
+    from arm_cli.ros.goal import GoalSender
+    from arm_cli.ros.session import Session
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("action_name", help="such as /gripper_action_controller/gripper_cmd"),
+        completers.actions,
+    )
+    parser.add_argument("action_type", help="such as control_msgs/action/GripperCommand")
+    parser.add_argument("goal", nargs="?", default="", help="fields of the goal as YAML")
+    parser.add_argument("--stdin", action="store_true", help="read the goal from stdin")
+    parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback, too")
+
+
+def run(options: argparse.Namespace) -> None:
+    """Send the goal, print what becomes of it; Ctrl-C cancels it.
+
+    Raises:
+        NotFoundError: there is no such type.
+        UsageError: the action has another type.
+        MessageError: the values do not fit the goal.
+    """
+    type_ = InterfaceIndex().find(options.action_type, ("action",))
+    from arm_cli.messages.filling import fill_message, read_yaml
+
+    class_ = load_class(type_)
+    text = sys.stdin.read() if options.stdin else options.goal
+    filled = fill_message(class_.Goal(), read_yaml(text, f"{type_.full_name} goal"))
+    for note in filled.notes:
+        print(f"arm action send_goal: {note}", file=sys.stderr)
+    with connect() as session:
+        from arm_cli.ros.goal import GoalSender
+
+        sender = GoalSender(session, class_, absolute_name(options.action_name))
+        _wait_for_server(session, sender, type_.full_name)
+        sender.send(filled, options.feedback)
+
+
+def _wait_for_server(session: "Session", sender: "GoalSender", type_name: str) -> None:
+    from arm_cli.ros.graph import Graph
+
+    graph = Graph(session)
+    print("Waiting for an action server to become available...")
+
+    def ready() -> bool:
+        others = graph.offered_action_types(sender.name)
+        if others and type_name not in others:
+            raise UsageError(f"{sender.name} is a {', '.join(others)}, not a {type_name}")
+        return sender.is_ready()
+
+    def notice() -> str:
+        near = describe_known(sender.name, [n for n in graph.actions() if n != sender.name])
+        return f"no server of {sender.name} yet{f'; {near}' if near.startswith('did') else ''}"
+
+    session.wait_until(ready, notice)

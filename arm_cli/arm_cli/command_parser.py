@@ -1,0 +1,58 @@
+"""The argument parser of every verb: errors are one sentence and name what was near."""
+
+import argparse
+from collections.abc import Sequence
+from typing import NoReturn
+
+EXIT_USAGE = 2
+
+
+class CommandParser(argparse.ArgumentParser):
+    """An ArgumentParser without abbreviations, with short errors."""
+
+    def __init__(self, program: str, description: str) -> None:
+        """Make it for a verb, such as "arm topic echo"."""
+        super().__init__(prog=program, description=description, allow_abbrev=False)
+
+    def parse_words(self, words: Sequence[str]) -> argparse.Namespace:
+        """Return the options; what is wrong with the words ends the process with exit code 2."""
+        options, unknown = self.parse_known_intermixed_args(words)
+        if not unknown:
+            return options
+        word = unknown[0]
+        if not word.startswith("-"):
+            self.error(f"too many words, from {word!r} on")
+        from launch_py.near_names import describe_known
+
+        known = [name for name in self._option_string_actions if name.startswith("--")]
+        self.error(f"no option {word}; {describe_known(word, known)}")
+
+    def error(self, message: str) -> NoReturn:
+        """Say it in one line and end with exit code 2."""
+        self.exit(EXIT_USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def positive_number(text: str) -> float:
+    """Convert an option's value to a float above 0, for argparse."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number above 0")
+    return value
+
+
+def whole_number(text: str) -> int:
+    """Convert an option's value to an int of at least 0, for argparse."""
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
+    return int(text)
+
+
+def positive_whole_number(text: str) -> int:
+    """Convert an option's value to an int of at least 1, for argparse."""
+    value = whole_number(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError("0 is too small: at least 1")
+    return value

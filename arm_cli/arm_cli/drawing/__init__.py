@@ -1,0 +1,1 @@
+"""Graphs as SVG, Mermaid, DOT and PDF. Knows nothing of ROS."""

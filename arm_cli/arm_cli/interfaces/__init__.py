@@ -1,0 +1,1 @@
+"""Interface types: what is installed, and what their files say. Knows no rclpy."""

@@ -1,0 +1,1 @@
+"""Rates, bandwidths and delays over windows of messages. Knows no rclpy."""

@@ -1,0 +1,189 @@
+"""YAML text into a message, with errors that name the field and what would have fitted.
+
+As ros2 does, a number with a fraction in an integer field is truncated; here it is said. `auto`
+for a header and `now` for a stamp stand for the time at which the message is sent.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from rosidl_parser.definition import (
+    AbstractGenericString,
+    AbstractNestedType,
+    Array,
+    BasicType,
+    BoundedSequence,
+    NamespacedType,
+)
+
+from arm_cli.errors import MessageError
+from arm_cli.messages.field_types import FLOATS, INTEGER_RANGES, message_class, slots, type_name
+
+_TRUTH = {"true": True, "false": False, "1": True, "0": False}
+_NUMBER = (int, float, str)
+
+
+@dataclass(frozen=True, slots=True)
+class FilledMessage:
+    """A message with its values.
+
+    Attributes:
+        message: the message itself.
+        notes: what was taken differently from how it was written, a sentence each.
+        stamps: messages and their fields that get the time of sending.
+    """
+
+    message: Any
+    notes: list[str] = field(default_factory=list)
+    stamps: list[tuple[Any, str]] = field(default_factory=list)
+
+    def stamp(self, time: Any) -> None:
+        """Put a builtin_interfaces/Time into every field that asked for it."""
+        for owner, name in self.stamps:
+            setattr(owner, name, time)
+
+
+def read_yaml(text: str, type_: str) -> Any:
+    """Return the values that a YAML text holds; empty text holds none.
+
+    Raises:
+        MessageError: it is no YAML, or no mapping from fields to values.
+    """
+    import yaml
+
+    try:
+        values = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f" at character {mark.index + 1}" if mark else ""
+        problem = getattr(error, "problem", None) or str(error)
+        raise MessageError(f"the values are no YAML{where}: {problem}") from error
+    if values is None:
+        return {}
+    if not isinstance(values, dict):
+        raise MessageError(
+            f"the values of a {type_} are written 'field: value', but {text!r} is a "
+            f"{type(values).__name__}; is it quoted for the shell?"
+        )
+    return values
+
+
+def fill_message(message: Any, values: dict[str, Any]) -> FilledMessage:
+    """Set a message's fields.
+
+    Raises:
+        MessageError: no such field, or a value that does not fit.
+    """
+    filled = FilledMessage(message)
+    _Filler(filled).fill(message, values, "")
+    return filled
+
+
+class _Filler:
+    def __init__(self, filled: FilledMessage) -> None:
+        self._filled = filled
+
+    def fill(self, message: Any, values: Any, path: str) -> None:
+        types = slots(message)
+        if not isinstance(values, dict):
+            raise MessageError(
+                f"{path}: {values!r} where a message is expected (fields: {', '.join(types)})"
+            )
+        for name, value in values.items():
+            if name not in types:
+                raise MessageError(_unknown_field(str(name), path, list(types)))
+            self._set(message, str(name), types[name], value, f"{path}.{name}" if path else name)
+
+    def _set(self, message: Any, name: str, type_: Any, value: Any, path: str) -> None:
+        if value == "now" and type_name(type_) == "builtin_interfaces/msg/Time":
+            self._filled.stamps.append((message, name))
+        elif value == "auto" and type_name(type_) == "std_msgs/msg/Header":
+            self._filled.stamps.append((getattr(message, name), "stamp"))
+        elif isinstance(type_, NamespacedType):
+            self.fill(getattr(message, name), value, path)
+        else:
+            setattr(message, name, self._convert(type_, value, path))
+
+    def _convert(self, type_: Any, value: Any, path: str) -> Any:
+        if isinstance(type_, AbstractNestedType):
+            return self._list(type_, value, path)
+        if isinstance(type_, NamespacedType):
+            element = message_class(type_)()
+            self.fill(element, value, path)
+            return element
+        if isinstance(type_, AbstractGenericString):
+            return _string(type_, value, path)
+        return self._basic(type_, value, path)
+
+    def _list(self, type_: AbstractNestedType, value: Any, path: str) -> Any:
+        if isinstance(value, str) and type_name(type_.value_type) in ("byte", "uint8", "char"):
+            value = list(value.encode())
+        if not isinstance(value, list):
+            raise MessageError(f"{path}: {value!r} is no list ({type_name(type_)})")
+        if isinstance(type_, Array) and len(value) != type_.size:
+            raise MessageError(
+                f"{path}: {len(value)} values, {type_name(type_)} holds {type_.size}"
+            )
+        if isinstance(type_, BoundedSequence) and len(value) > type_.maximum_size:
+            raise MessageError(
+                f"{path}: {len(value)} values, {type_name(type_)} holds {type_.maximum_size}"
+            )
+        return [
+            self._convert(type_.value_type, item, f"{path}[{index}]")
+            for index, item in enumerate(value)
+        ]
+
+    def _basic(self, type_: BasicType, value: Any, path: str) -> Any:
+        name = type_name(type_)
+        if name == "bool":
+            truth = _TRUTH.get(str(value).lower())
+            if truth is None:
+                raise MessageError(f"{path}: {value!r} is neither true nor false (bool)")
+            return truth
+        if name in FLOATS:
+            return _number(value, name, path)
+        number = self._integer(value, name, path)
+        return bytes([number]) if name == "byte" else number
+
+    def _integer(self, value: Any, name: str, path: str) -> int:
+        number = _number(value, name, path)
+        if number != number or number in (float("inf"), float("-inf")):
+            raise MessageError(f"{path}: {value!r} is no whole number ({name})")
+        # A float has 53 bits: what is an int already must not go through one.
+        whole = value if isinstance(value, int) else int(number)
+        if whole != number:
+            self._filled.notes.append(f"{path}: {value} is truncated to {whole} ({name})")
+        low, high = INTEGER_RANGES.get(name, (0, 255))
+        if not low <= whole <= high:
+            raise MessageError(f"{path}: {whole} does not fit {name} ({low} to {high})")
+        return int(whole)
+
+
+def _number(value: Any, name: str, path: str) -> float:
+    # YAML 1.1 reads 1e-3, which has no point, as text.
+    if isinstance(value, _NUMBER) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except (ValueError, OverflowError):
+            pass
+    raise MessageError(f"{path}: {value!r} is no number ({name})")
+
+
+def _string(type_: AbstractGenericString, value: Any, path: str) -> str:
+    if isinstance(value, (dict, list)):
+        raise MessageError(f"{path}: {value!r} is no text ({type_name(type_)})")
+    text = "" if value is None else str(value)
+    if type_.has_maximum_size() and len(text) > type_.maximum_size:  # pyright: ignore[reportAttributeAccessIssue]
+        raise MessageError(
+            f"{path}: {len(text)} characters, {type_name(type_)} holds {type_.maximum_size}"  # pyright: ignore[reportAttributeAccessIssue]
+        )
+    return text
+
+
+def _unknown_field(name: str, path: str, known: list[str]) -> str:
+    import difflib
+
+    near = difflib.get_close_matches(name, known, n=1)
+    guess = f"; did you mean {near[0]!r}?" if near else ""
+    where = f" in {path}" if path else ""
+    return f"no field {name!r}{where}{guess} (fields: {', '.join(known) or 'none'})"

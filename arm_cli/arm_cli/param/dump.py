@@ -1,0 +1,50 @@
+"""`arm param dump`: all parameters of a node as YAML."""
+
+import argparse
+from typing import Any
+
+from arm_cli.names import absolute_name
+from arm_cli.output import add_json_argument, print_json
+from arm_cli.param.target import add_node_argument, open_parameters
+from arm_cli.parameter_values import read_value
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    add_json_argument(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the parameters, in the form that `arm param load` and launch files read.
+
+    Raises:
+        NotFoundError: there is no such node.
+        UnansweredError: the node does not answer.
+    """
+    with open_parameters(options.node_name) as parameters:
+        names = parameters.names()
+        values = [read_value(value) for value in parameters.values(names)] if names else []
+    content = {
+        absolute_name(options.node_name): {
+            "ros__parameters": nest(dict(zip(names, values, strict=True)))
+        }
+    }
+    if options.json:
+        print_json(content)
+        return
+    import yaml
+
+    print(yaml.safe_dump(content, default_flow_style=False))
+
+
+def nest(values: dict[str, Any]) -> dict[str, Any]:
+    """Return values of dotted names as dicts in dicts."""
+    nested: dict[str, Any] = {}
+    for name, value in values.items():
+        *groups, last = name.split(".")
+        inner = nested
+        for group in groups:
+            inner = inner.setdefault(group, {})
+        inner[last] = value
+    return nested

@@ -1,0 +1,83 @@
+"""Parameter values as text, and text as parameter values."""
+
+from typing import Any
+
+TYPE_NAMES = (
+    "not set",
+    "boolean",
+    "integer",
+    "double",
+    "string",
+    "byte array",
+    "boolean array",
+    "integer array",
+    "double array",
+    "string array",
+)
+"""In the order of rcl_interfaces/msg/ParameterType."""
+
+LABELS = (
+    "Parameter not set.",
+    "Boolean value is:",
+    "Integer value is:",
+    "Double value is:",
+    "String value is:",
+    "Byte values are:",
+    "Boolean values are:",
+    "Integer values are:",
+    "Double values are:",
+    "String values are:",
+)
+
+_FIELDS = tuple(f"{name.replace(' ', '_').replace('boolean', 'bool')}_value" for name in TYPE_NAMES)
+_SCALARS: tuple[tuple[type, int], ...] = ((bool, 1), (int, 2), (float, 3), (str, 4))
+NOT_SET = 0
+_ARRAY_OFFSET = 5
+
+
+def read_value(value: Any) -> Any:
+    """Return what a rcl_interfaces/msg/ParameterValue holds, None where it holds nothing."""
+    if value.type == NOT_SET:
+        return None
+    content = getattr(value, _FIELDS[value.type])
+    return list(content) if value.type >= _ARRAY_OFFSET else content
+
+
+def write_value(value: Any, text: str) -> None:
+    """Put a word of the command line into a ParameterValue.
+
+    As with ros2, the word is read as YAML, which tells the type; what fits no type is a string. A
+    list that mixes whole and other numbers is one of doubles.
+    """
+    import yaml
+
+    try:
+        content = yaml.safe_load(text)
+    except yaml.YAMLError:
+        content = text
+    if not set_value(value, content):
+        set_value(value, text)
+
+
+def set_value(value: Any, content: Any) -> bool:
+    """Put a Python value into a ParameterValue; return whether it is of a type that fits."""
+    if isinstance(content, list):
+        return _set_list(value, content)
+    for class_, number in _SCALARS:
+        if type(content) is class_:
+            value.type = number
+            setattr(value, _FIELDS[number], content)
+            return True
+    return False
+
+
+def _set_list(value: Any, content: list[Any]) -> bool:
+    kinds = {type(item) for item in content}
+    if kinds == {int, float}:
+        content, kinds = [float(item) for item in content], {float}
+    for class_, number in _SCALARS:
+        if kinds <= {class_}:
+            value.type = number + _ARRAY_OFFSET
+            setattr(value, _FIELDS[value.type], content)
+            return True
+    return False

@@ -1,0 +1,38 @@
+"""Where every verb that talks to ROS begins."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from arm_cli.errors import UsageError
+from arm_node.environment import MissingInterfacesError, prepare_environment
+from launch_py.child_environment import dds_profile
+
+if TYPE_CHECKING:
+    from arm_cli.ros.session import Session
+
+PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+
+
+@contextmanager
+def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Session"]:
+    """Give a node for this command; see `open_session`.
+
+    The process announces itself as often as the launched ones do, unless the user has a profile:
+    whoever is there answers at once.
+
+    Raises:
+        UsageError: an interface package is missing; the message says the fix.
+    """
+    try:
+        prepare_environment()
+    except MissingInterfacesError as error:
+        raise UsageError(str(error)) from error
+    profile = dds_profile(os.environ)
+    if profile is not None:
+        os.environ.setdefault(PROFILE_VARIABLE, str(profile))
+    from arm_cli.ros.session import open_session
+
+    with open_session(name, use_sim_time) as session:
+        yield session

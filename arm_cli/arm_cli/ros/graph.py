@@ -1,0 +1,266 @@
+"""The ROS graph as this process has discovered it.
+
+There is no daemon that knows the graph already: every command discovers it anew, in some tenths
+of a second. `settle` says when that is enough for a list: nothing new has come for a while, and
+every end point has been attributed to a node, which its process says by a message of its own. What
+is asked for by name is there as soon as it has been discovered; only what is missing waits.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+from rclpy.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.node import NodeNameNonExistentError
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from arm_cli.errors import NotFoundError
+from arm_cli.names import absolute_name, is_hidden, this_domain
+from arm_cli.ros.session import Session
+from launch_py.near_names import describe_known
+
+QUIET_S = 0.35
+"""So long nothing new has come: more than the 0.25 s between announcements of launched nodes."""
+EMPTY_S = 1.0
+"""Nobody else has been found for so long: there is nobody."""
+SETTLED_S = 3.0
+"""A graph that never comes to rest is as good as it gets by now."""
+
+_UNATTRIBUTED = "_NODE_NAME_UNKNOWN_"
+
+Found = TypeVar("Found")
+
+Types = dict[str, list[str]]
+"""Types by name, sorted by name."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class NodeName:
+    """A node's namespace and name."""
+
+    namespace: str
+    name: str
+
+    @property
+    def full_name(self) -> str:
+        """The absolute name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """How much of the graph is known.
+
+    Attributes:
+        nodes: other nodes.
+        endpoints: their publishers and subscriptions.
+        services: servers of services.
+        attributed: whether it is known of every end point which node it belongs to.
+    """
+
+    nodes: int
+    endpoints: int
+    services: int
+    attributed: bool
+
+
+class Graph:
+    """Looks at the graph through a session's node."""
+
+    def __init__(self, session: Session) -> None:
+        """Use the session's node."""
+        self._session = session
+        self._node = session.node
+        self._own = absolute_name(session.node.get_name())
+
+    def settle(self) -> None:
+        """Wait until the graph is complete, as far as one can tell."""
+        self._session.wait_until(_Settling(self, self._session.started_s).done)
+
+    def survey(self) -> "Survey":
+        """Return what is known of others right now."""
+        names = [name for name, _ in self._node.get_topic_names_and_types()]
+        infos = [i for name in names for i in (*self.publishers(name), *self.subscriptions(name))]
+        services = self._node.get_service_names_and_types()
+        return Survey(
+            nodes=len(self.nodes(hidden=True)),
+            endpoints=len(infos),
+            services=sum(self.server_count(name) for name, _ in services),
+            attributed=not any(i.node_name == _UNATTRIBUTED for i in infos),
+        )
+
+    def nodes(self, hidden: bool = False) -> list[NodeName]:
+        """Return the nodes but this command's own, sorted; one entry for each of a name."""
+        names = [
+            NodeName(namespace, name)
+            for name, namespace in self._node.get_node_names_and_namespaces()
+        ]
+        return sorted(
+            node
+            for node in names
+            if node.full_name != self._own and (hidden or not is_hidden(node.full_name))
+        )
+
+    def topics(self, hidden: bool = False) -> Types:
+        """Return the topics that somebody else has, with their types."""
+        found = _sorted(self._node.get_topic_names_and_types(), hidden)
+        return {
+            name: types
+            for name, types in found.items()
+            if self.publishers(name) or self.subscriptions(name)
+        }
+
+    def services(self, hidden: bool = False) -> Types:
+        """Return the services that somebody offers or uses, with their types."""
+        return _sorted(self._node.get_service_names_and_types(), hidden)
+
+    def actions(self) -> Types:
+        """Return the actions with their types."""
+        return _sorted(get_action_names_and_types(self._node), hidden=True)
+
+    def publishers(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return who else publishes a topic."""
+        return self._others(self._node.get_publishers_info_by_topic(topic))
+
+    def subscriptions(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return who else subscribes to a topic."""
+        return self._others(self._node.get_subscriptions_info_by_topic(topic))
+
+    def client_count(self, service: str) -> int:
+        """Return how many clients a service has."""
+        return self._node.count_clients(service)
+
+    def server_count(self, service: str) -> int:
+        """Return how many servers a service has."""
+        return self._node.count_services(service)
+
+    def offered_types(self, service: str) -> list[str]:
+        """Return the types with which other nodes offer a service."""
+        return self._offered(self.served_by, service)
+
+    def offered_action_types(self, action: str) -> list[str]:
+        """Return the types with which other nodes offer an action."""
+        return self._offered(self.action_servers_of, action)
+
+    def published_by(self, node: NodeName) -> Types:
+        """Return the topics that a node publishes."""
+        return self._by_node(self._node.get_publisher_names_and_types_by_node, node)
+
+    def subscribed_by(self, node: NodeName) -> Types:
+        """Return the topics that a node subscribes to."""
+        return self._by_node(self._node.get_subscriber_names_and_types_by_node, node)
+
+    def served_by(self, node: NodeName) -> Types:
+        """Return the services that a node offers."""
+        return self._by_node(self._node.get_service_names_and_types_by_node, node)
+
+    def called_by(self, node: NodeName) -> Types:
+        """Return the services that a node has clients of."""
+        return self._by_node(self._node.get_client_names_and_types_by_node, node)
+
+    def action_servers_of(self, node: NodeName) -> Types:
+        """Return the actions that a node serves."""
+        return self._by_node(partial(get_action_server_names_and_types_by_node, self._node), node)
+
+    def action_clients_of(self, node: NodeName) -> Types:
+        """Return the actions that a node has clients of."""
+        return self._by_node(partial(get_action_client_names_and_types_by_node, self._node), node)
+
+    def find_topic(self, name: str) -> list[str]:
+        """Return the types of a topic as soon as it is discovered.
+
+        Raises:
+            NotFoundError: there is none; the message names near ones.
+        """
+        return self._find("topic", name, lambda: self.topics(hidden=True))
+
+    def find_publishers(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return a topic's publishers as soon as one is discovered; none where there is none."""
+        settling = _Settling(self, self._session.started_s)
+        self._session.wait_until(lambda: bool(self.publishers(topic)) or settling.done())
+        return self.publishers(topic)
+
+    def find_service(self, name: str) -> list[str]:
+        """Return the types of a service as soon as it is discovered.
+
+        Raises:
+            NotFoundError: there is none; the message names near ones.
+        """
+        return self._find("service", name, lambda: self.services(hidden=True))
+
+    def find_action(self, name: str) -> list[str]:
+        """Return the types of an action as soon as it is discovered.
+
+        Raises:
+            NotFoundError: there is none; the message names near ones.
+        """
+        return self._find("action", name, self.actions)
+
+    def find_node(self, name: str) -> NodeName:
+        """Return a node as soon as it is discovered.
+
+        Raises:
+            NotFoundError: there is none; the message names near ones.
+        """
+        full_name = absolute_name(name)
+
+        def nodes() -> dict[str, NodeName]:
+            return {node.full_name: node for node in self.nodes(hidden=True)}
+
+        return self._find("node", full_name, nodes)
+
+    def _find(self, what: str, name: str, found: Callable[[], dict[str, Found]]) -> Found:
+        name = absolute_name(name)
+        settling = _Settling(self, self._session.started_s)
+        self._session.wait_until(lambda: name in found() or settling.done())
+        there = found()
+        if name in there:
+            return there[name]
+        known = [other for other in there if not is_hidden(other)]
+        raise NotFoundError(f"no {what} {name!r} on {this_domain()}; {describe_known(name, known)}")
+
+    def _others(self, infos: list[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
+        own = self._own
+        return [i for i in infos if NodeName(i.node_namespace, i.node_name).full_name != own]
+
+    def _offered(self, offers: Callable[[NodeName], Types], name: str) -> list[str]:
+        found = (offers(node).get(name, []) for node in self.nodes(hidden=True))
+        return sorted({type_ for types in found for type_ in types})
+
+    def _by_node(
+        self, ask: Callable[[str, str], list[tuple[str, list[str]]]], node: NodeName
+    ) -> Types:
+        try:
+            return _sorted(ask(node.name, node.namespace), hidden=True)
+        except NodeNameNonExistentError:
+            # It went away since it was listed.
+            return {}
+
+
+class _Settling:
+    """Says when the graph has come to rest."""
+
+    def __init__(self, graph: Graph, started_s: float) -> None:
+        self._graph = graph
+        self._started_s = started_s
+        self._seen: Survey | None = None
+        self._changed_s = started_s
+
+    def done(self) -> bool:
+        now = time.monotonic()
+        survey = self._graph.survey()
+        if survey != self._seen:
+            self._seen, self._changed_s = survey, now
+        age_s = now - self._started_s
+        quiet = survey.attributed and now - self._changed_s >= QUIET_S
+        return age_s >= SETTLED_S or (quiet and (survey.nodes > 0 or age_s >= EMPTY_S))
+
+
+def _sorted(found: list[tuple[str, list[str]]], hidden: bool) -> Types:
+    return {name: types for name, types in sorted(found) if hidden or not is_hidden(name)}

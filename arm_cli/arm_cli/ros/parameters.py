@@ -1,0 +1,71 @@
+"""The parameter services of a node."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterValue
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    ListParameters,
+    SetParameters,
+)
+
+from arm_cli.errors import NotFoundError
+from arm_cli.ros.graph import NodeName
+from arm_cli.ros.service_call import call_service
+from arm_cli.ros.session import Session
+from launch_py.near_names import describe_known
+
+
+class NodeParameters:
+    """Asks one node. Every method raises UnansweredError where it does not answer."""
+
+    def __init__(self, session: Session, node: NodeName) -> None:
+        """Ask a node, with a session's node."""
+        self._session = session
+        self._node = node
+
+    def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+        """Return the names of its parameters, sorted."""
+        request = ListParameters.Request(prefixes=list(prefixes))
+        return sorted(self._call(ListParameters, "list_parameters", request).result.names)
+
+    def values(self, names: Sequence[str]) -> list[ParameterValue]:
+        """Return the values of parameters, in their order; fewer where one is not declared."""
+        request = GetParameters.Request(names=list(names))
+        return list(self._call(GetParameters, "get_parameters", request).values)
+
+    def value(self, name: str) -> ParameterValue:
+        """Return the value of one parameter.
+
+        Raises:
+            NotFoundError: the node has no such parameter; the message names near ones.
+        """
+        values = self.values([name])
+        if values and values[0].type:
+            return values[0]
+        known = self.names()
+        if name in known:
+            return values[0] if values else ParameterValue()
+        raise self.unknown(name, known)
+
+    def descriptors(self, names: Sequence[str]) -> list[ParameterDescriptor]:
+        """Return the descriptors of parameters."""
+        request = DescribeParameters.Request(names=list(names))
+        return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
+
+    def set(self, values: Mapping[str, ParameterValue]) -> list[Any]:
+        """Set parameters, each on its own; return a SetParametersResult for each."""
+        parameters = [Parameter(name=name, value=value) for name, value in values.items()]
+        request = SetParameters.Request(parameters=parameters)
+        return list(self._call(SetParameters, "set_parameters", request).results)
+
+    def unknown(self, name: str, known: Sequence[str]) -> NotFoundError:
+        """Return the error about a parameter that the node does not have."""
+        hint = describe_known(name, known, "it has")
+        return NotFoundError(f"{self._node.full_name} has no parameter {name!r}; {hint}")
+
+    def _call(self, service_class: Any, service: str, request: Any) -> Any:
+        name = f"{self._node.full_name}/{service}"
+        return call_service(self._session, service_class, name, request)

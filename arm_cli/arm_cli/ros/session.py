@@ -1,0 +1,160 @@
+"""A node for the duration of one command.
+
+Everything happens in the main thread: what waits, spins. SIGINT and SIGTERM set a flag that is
+looked at between two spins, so a command never ends in the middle of a callback and can tidy up
+(a goal is cancelled) while its node still works.
+"""
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+from rclpy.utilities import try_shutdown
+
+from arm_cli.errors import StoppedError
+from arm_node.discovery import answers_held_back
+
+POLL_S = 0.02
+PATIENCE_S = 1.0
+"""Whoever waits longer than this is told what for."""
+
+
+class Session:
+    """The node of this command, and the ways to wait with it. Use it in the main thread."""
+
+    def __init__(self, node: Node, executor: SingleThreadedExecutor) -> None:
+        """Take over a node that the executor has."""
+        self.node = node
+        self.started_s = time.monotonic()
+        self._executor = executor
+        self._stopped_by: int | None = None
+
+    def stop(self, number: int, _frame: FrameType | None = None) -> None:
+        """Let whatever waits raise a StoppedError; a signal handler."""
+        self._stopped_by = number
+
+    def go_on(self) -> None:
+        """Forget a signal, to tidy up with a working node."""
+        self._stopped_by = None
+
+    def clock_ns(self) -> int:
+        """Return the time of the node's clock in ns."""
+        return self.node.get_clock().now().nanoseconds
+
+    def clock_s(self) -> float:
+        """Return the time of the node's clock in s."""
+        return self.clock_ns() * 1e-9
+
+    def spin_once(self, timeout_s: float = POLL_S) -> None:
+        """Serve one callback, or wait that long for one.
+
+        Raises:
+            StoppedError: a signal came.
+        """
+        self._executor.spin_once(timeout_sec=timeout_s)
+        if self._stopped_by is not None:
+            raise StoppedError(self._stopped_by)
+
+    def wait_until(
+        self,
+        condition: Callable[[], bool],
+        waiting_for: Callable[[], str] | None = None,
+        timeout_s: float | None = None,
+    ) -> bool:
+        """Spin until the condition holds; return whether it does, within the time-out.
+
+        Args:
+            condition: asked after every callback and every 20 ms.
+            waiting_for: says after a second, on stderr, what is waited for; None says nothing.
+            timeout_s: None waits for ever.
+
+        Raises:
+            StoppedError: a signal came.
+        """
+        start = time.monotonic()
+        while not condition():
+            waited = time.monotonic() - start
+            if timeout_s is not None and waited >= timeout_s:
+                return False
+            if waiting_for is not None and waited >= PATIENCE_S:
+                print(waiting_for(), file=sys.stderr, flush=True)
+                waiting_for = None
+            self.spin_once()
+        return True
+
+    def spin_for(self, duration_s: float) -> None:
+        """Spin for some seconds.
+
+        Raises:
+            StoppedError: a signal came.
+        """
+        self.wait_until(lambda: False, timeout_s=duration_s)
+
+    def spin_forever(self) -> None:
+        """Spin until a signal comes, which raises a StoppedError."""
+        while True:
+            self.spin_once(0.1)
+
+    def result(self, future: Future, timeout_s: float | None = None) -> Any:
+        """Return a future's result, None where it has none within the time-out.
+
+        Raises:
+            StoppedError: a signal came.
+        """
+        self.wait_until(future.done, timeout_s=timeout_s)
+        return future.result() if future.done() else None
+
+
+@contextmanager
+def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterator[Session]:
+    """Give a node that is hidden from lists, and as light as can be.
+
+    Args:
+        name: of the node; by default hidden and unique.
+        use_sim_time: whether the node's clock follows /clock.
+    """
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    executor = SingleThreadedExecutor()
+    try:
+        with answers_held_back():
+            node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
+        executor.add_node(node)
+        session = Session(node, executor)
+        with _signals_handled(session):
+            yield session
+        executor.shutdown(timeout_sec=1.0)
+        node.destroy_node()
+    finally:
+        try_shutdown()
+
+
+def _make_node(name: str, use_sim_time: bool) -> Node:
+    settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
+    return Node(
+        name,
+        start_parameter_services=False,
+        enable_rosout=False,
+        parameter_overrides=[Parameter(key, value=value) for key, value in settings.items()],
+    )
+
+
+@contextmanager
+def _signals_handled(session: Session) -> Iterator[None]:
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    previous = {number: signal.signal(number, session.stop) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)

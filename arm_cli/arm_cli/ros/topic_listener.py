@@ -1,0 +1,86 @@
+"""A subscription to a topic whose type the graph tells."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+
+from arm_cli.errors import NotFoundError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.names import absolute_name, is_hidden, this_domain
+from arm_cli.ros.graph import Graph
+from arm_cli.ros.qos import MEASURING, matching_profile
+from arm_cli.ros.session import Session
+from launch_py.near_names import describe_known
+
+
+class TopicListener:
+    """Listens to one topic.
+
+    Attributes:
+        topic: its absolute name.
+    """
+
+    def __init__(self, session: Session, topic: str) -> None:
+        """Prepare to listen with a session's node."""
+        self.topic = absolute_name(topic)
+        self._session = session
+        self._graph = Graph(session)
+
+    def find_class(self) -> type:
+        """Return the message class of the topic as soon as it is discovered.
+
+        Raises:
+            NotFoundError: there is no such topic, or its type is not installed.
+        """
+        return self._class_of(self._graph.find_topic(self.topic))
+
+    def wait_for_class(self) -> type:
+        """Return the message class of the topic, once somebody publishes it.
+
+        Raises:
+            NotFoundError: its type is not installed.
+        """
+        types: list[str] = []
+
+        def found() -> bool:
+            types[:] = self._graph.topics(hidden=True).get(self.topic, [])
+            return bool(types)
+
+        self._session.wait_until(found, self._not_there)
+        return self._class_of(types)
+
+    def matching_profile(self) -> QoSProfile:
+        """Return the quality of service that fits those who publish the topic by now."""
+        return matching_profile(self._graph.find_publishers(self.topic))
+
+    def subscribe(
+        self,
+        message_class: type,
+        callback: Callable[..., None],
+        profile: QoSProfile = MEASURING,
+        raw: bool = False,
+    ) -> Subscription:
+        """Subscribe; the callback gets the messages, as bytes where `raw`."""
+        node = self._session.node
+        return node.create_subscription(message_class, self.topic, callback, profile, raw=raw)
+
+    def silence(self) -> str:
+        """Say why no message may have come."""
+        if self._graph.publishers(self.topic):
+            return f"waiting for a message on {self.topic}"
+        return f"waiting for a publisher of {self.topic}"
+
+    def _not_there(self) -> str:
+        known = [name for name in self._graph.topics() if not is_hidden(name)]
+        near = describe_known(self.topic, known)
+        hint = f"; {near}" if near.startswith("did") else ""
+        return f"waiting for topic {self.topic} on {this_domain()}{hint}"
+
+    def _class_of(self, types: list[str]) -> Any:
+        if len(types) > 1:
+            raise NotFoundError(
+                f"{self.topic} carries messages of several types: {', '.join(types)}; name one"
+            )
+        return load_class(InterfaceIndex().find(types[0], ("msg",)))

@@ -1,0 +1,85 @@
+"""`arm run`: an executable of a package, in place of this process."""
+
+import argparse
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+
+from arm_cli.errors import NotFoundError, UsageError
+from arm_cli.word_completion import complete_with
+from launch_py.child_environment import default_environment, for_program
+from launch_py.errors import LaunchError
+from launch_py.packages import Packages
+
+COURSE_EXECUTABLES: dict[tuple[str, str], tuple[str, str, tuple[str, ...]]] = {
+    ("arm_control", "arm_controller"): (
+        "arm_controller",
+        "arm_controller_node",
+        ("--ros-args", "-p", "desired_param:=[1.0, 0.5, 0.1, 0.5]"),
+    ),
+    ("arm_control", "publisher_terminal"): ("arm_controller", "publisher_terminal", ()),
+    ("arm_control", "publisher_defined"): ("arm_controller", "publisher_defined", ()),
+}
+"""Executables of the course project, by package and name there: what does the same here."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(parser.add_argument("package_name", help="such as arm_controller"), packages)
+    complete_with(
+        parser.add_argument("executable_name", help="such as publisher_terminal"), executables
+    )
+    parser.add_argument("argv", nargs=argparse.REMAINDER, help="its arguments")
+    parser.add_argument("--prefix", default="", help="put before it, such as 'gdb -ex run --args'")
+
+
+def run(words: Sequence[str]) -> int:
+    """Become the executable; what follows its name is passed on to it.
+
+    Raises:
+        NotFoundError: there is no such package or executable; the message names near ones.
+        UsageError: the prefix cannot be started.
+    """
+    from arm_cli.command_parser import CommandParser
+
+    parser = CommandParser("arm run", "Run an executable of a package.")
+    add_arguments(parser)
+    options = parser.parse_args(words)
+    command = find_command(options.package_name, options.executable_name)
+    full = [*shlex.split(options.prefix), *command, *options.argv]
+    interactive = sys.stdout.isatty()
+    added = default_environment(os.environ, None, None, interactive)
+    environment = for_program(full[0], {**os.environ, **added})
+    sys.stdout.flush()
+    try:
+        os.execvpe(full[0], full, environment)
+    except OSError as error:
+        raise UsageError(f"cannot start {full[0]}: {error.strerror}") from error
+
+
+def find_command(package: str, name: str) -> tuple[str, ...]:
+    """Return the command line of an executable, by its name here or in a course project.
+
+    Raises:
+        NotFoundError: there is no such package or executable.
+    """
+    installed = Packages(os.environ)
+    try:
+        return installed.executable(package, name)
+    except LaunchError as error:
+        if (package, name) in COURSE_EXECUTABLES:
+            home, here, arguments = COURSE_EXECUTABLES[package, name]
+            return (*installed.executable(home, here), *arguments)
+        raise NotFoundError(str(error)) from error
+
+
+def packages(**_: object) -> list[str]:
+    """Return the packages with executables, for the Tab key."""
+    return sorted({package for package, _ in Packages(os.environ).executables()})
+
+
+def executables(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Return the executables of the package that was typed, for the Tab key."""
+    wanted = parsed_args.package_name
+    return [name for package, name in Packages(os.environ).executables() if package == wanted]

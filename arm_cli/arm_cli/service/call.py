@@ -1,0 +1,89 @@
+"""`arm service call`: call a service."""
+
+import argparse
+import sys
+import time
+from typing import Any
+
+from arm_cli.command_parser import positive_number
+from arm_cli.errors import UsageError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.names import absolute_name
+from arm_cli.output import add_json_argument, print_json
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with
+from launch_py.near_names import describe_known
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("service_name", help="such as /controller_manager/list_controllers"),
+        completers.services,
+    )
+    parser.add_argument("service_type", help="such as std_srvs/srv/Trigger")
+    parser.add_argument(
+        "values", nargs="?", default="", help="fields of the request as YAML, such as '{a: 1}'"
+    )
+    parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
+    parser.add_argument(
+        "-r", "--rate", type=positive_number, metavar="HZ", help="call again and again"
+    )
+    add_json_argument(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Call the service and print its answer.
+
+    Raises:
+        NotFoundError: there is no such type.
+        UsageError: the service has another type.
+        MessageError: the values do not fit the request.
+    """
+    type_ = InterfaceIndex().find(options.service_type, ("srv",))
+    from arm_cli.messages.filling import fill_message, read_yaml
+
+    class_ = load_class(type_)
+    text = sys.stdin.read() if options.stdin else options.values
+    filled = fill_message(class_.Request(), read_yaml(text, f"{type_.full_name} request"))
+    for note in filled.notes:
+        print(f"arm service call: {note}", file=sys.stderr)
+    name = absolute_name(options.service_name)
+    with connect() as session:
+        client = session.node.create_client(class_, name)
+        _wait_for_server(session, client, type_.full_name)
+        while True:
+            start_s = time.monotonic()
+            if not options.json:
+                print(f"requester: making request: {filled.message!r}\n")
+            answer = session.result(client.call_async(filled.message))
+            if options.json:
+                from arm_cli.messages.text import to_plain
+
+                print_json(to_plain(answer))
+            else:
+                print(f"response:\n{answer!r}\n")
+            if options.rate is None:
+                return
+            session.spin_for(max(0.0, start_s + 1.0 / options.rate - time.monotonic()))
+
+
+def _wait_for_server(session: Any, client: Any, type_name: str) -> None:
+    from arm_cli.ros.graph import Graph
+
+    graph = Graph(session)
+    name = client.srv_name
+
+    def ready() -> bool:
+        offered = graph.offered_types(name)
+        if offered and type_name not in offered:
+            raise UsageError(f"{name} is a {', '.join(offered)}, not a {type_name}")
+        return client.service_is_ready()
+
+    def notice() -> str:
+        near = describe_known(name, [known for known in graph.services() if known != name])
+        hint = f" {near}" if near.startswith("did") else ""
+        return f"waiting for service to become available...{hint}"
+
+    session.wait_until(ready, notice)

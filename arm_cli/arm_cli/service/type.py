@@ -1,0 +1,27 @@
+"""`arm service type`: a service's type."""
+
+import argparse
+
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("service_name", help="such as /controller_manager/list_controllers"),
+        completers.services,
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the type.
+
+    Raises:
+        NotFoundError: there is no such service.
+    """
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        print(*Graph(session).find_service(options.service_name), sep="\n")

@@ -1,0 +1,67 @@
+"""`arm tf view_frames`: the tree of frames as a picture."""
+
+import argparse
+import time
+from pathlib import Path
+
+from arm_cli.command_parser import positive_number
+from arm_cli.drawing.digraph import Digraph, Edge, Vertex
+from arm_cli.drawing.picture_file import write_picture
+from arm_cli.frames.frame_log import FrameHistory, FrameLog
+from arm_cli.ros.connection import connect
+from arm_cli.tf.listening import listen
+
+LISTEN_S = 5.0
+BROADCASTER = "default_authority"
+"""What tf2 says of everybody who broadcasts over ROS 2."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "-t",
+        "--wait-time",
+        type=positive_number,
+        default=LISTEN_S,
+        metavar="SECONDS",
+        help=f"listen so long (default {LISTEN_S:g})",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="STEM", help="file name without suffix (default frames_DATE)"
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Write the picture, and its source for graphviz beside it.
+
+    Raises:
+        UnansweredError: nobody publishes transforms.
+        UsageError: the file cannot be written.
+    """
+    stem = options.output or time.strftime("frames_%Y-%m-%d_%H.%M.%S")
+    print(f"Listening to tf data for {options.wait_time:g} seconds...")
+    with connect() as session:
+        log = listen(session, options.wait_time)
+    print("Generating graph...")
+    print(f"Exported graph to {write_picture(frame_graph(log), Path(stem), 'TB')}")
+
+
+def frame_graph(log: FrameLog) -> Digraph:
+    """Return the tree of frames to be drawn."""
+    return Digraph(
+        tuple(Vertex(name, name) for name in log.names()),
+        tuple(Edge(h.parent, name, _describe(h)) for name, h in sorted(log.frames.items())),
+    )
+
+
+def _describe(history: FrameHistory) -> str:
+    oldest, latest = (0.0, 0.0) if history.static else (history.stamps_s[0], history.stamps_s[-1])
+    return "\n".join(
+        [
+            f"Broadcaster: {BROADCASTER}",
+            f"Average rate: {history.rate_hz:.3f}",
+            f"Buffer length: {0.0 if history.static else history.span_s:.3f}",
+            f"Most recent transform: {latest:.6f}",
+            f"Oldest transform: {oldest:.6f}",
+        ]
+    )

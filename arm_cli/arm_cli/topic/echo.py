@@ -1,0 +1,186 @@
+"""`arm topic echo`: the messages of a topic."""
+
+import argparse
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
+from arm_cli.errors import UnansweredError, UsageError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.output import add_json_argument, print_json
+from arm_cli.qos_options import add_qos_arguments, qos_choice
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with, message_names
+
+TRUNCATE_LENGTH = 128
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
+    )
+    complete_with(
+        parser.add_argument("message_type", nargs="?", help="by default the topic's own"),
+        message_names,
+    )
+    parser.add_argument("--once", action="store_true", help="end after one message")
+    parser.add_argument(
+        "-n", "--times", type=positive_whole_number, metavar="N", help="end after N messages"
+    )
+    parser.add_argument(
+        "--timeout", type=positive_number, metavar="SECONDS", help="end after so many seconds"
+    )
+    parser.add_argument("--field", metavar="PATH", help="only a part, such as pose.position")
+    parser.add_argument(
+        "--filter", metavar="EXPRESSION", help="only messages m for which this Python is true"
+    )
+    parser.add_argument(
+        "-i", "--include-message-info", action="store_true", help="also when it was sent and came"
+    )
+    _add_format_arguments(parser)
+    add_qos_arguments(parser, "what fits the topic's publishers")
+
+
+def _add_format_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--csv", action="store_true", help="values separated by commas")
+    add_json_argument(parser)
+    parser.add_argument("--raw", action="store_true", help="the bytes as they came")
+    parser.add_argument("--flow-style", action="store_true", help="collections in one line")
+    parser.add_argument("--no-arr", action="store_true", help="arrays are only described")
+    parser.add_argument("--no-str", action="store_true", help="strings are only described")
+    parser.add_argument("-f", "--full-length", action="store_true", help="truncate nothing")
+    parser.add_argument(
+        "-l",
+        "--truncate-length",
+        type=whole_number,
+        default=TRUNCATE_LENGTH,
+        metavar="N",
+        help=f"longer arrays and strings are cut (default {TRUNCATE_LENGTH})",
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the messages.
+
+    Raises:
+        UsageError: options that exclude each other, or a filter that is no Python.
+        NotFoundError: no such topic, type or field.
+        UnansweredError: no message within `--timeout`.
+    """
+    printer = _printer(options)
+    class_ = None
+    if options.message_type:
+        class_ = load_class(InterfaceIndex().find(options.message_type, ("msg",)))
+        printer.check(class_)
+    with connect() as session:
+        from arm_cli.ros.qos import qos_profile
+        from arm_cli.ros.topic_listener import TopicListener
+
+        listener = TopicListener(session, options.topic_name)
+        if class_ is None:
+            class_ = listener.find_class()
+            printer.check(class_)
+        choice = qos_choice(options)
+        profile = (
+            qos_profile(choice, "sensor_data") if choice.is_given else listener.matching_profile()
+        )
+        listener.subscribe(class_, printer.take, profile, raw=options.raw)
+        start_s = time.monotonic()
+        session.wait_until(lambda: printer.count > 0, listener.silence, options.timeout)
+        rest_s = None if options.timeout is None else options.timeout + start_s - time.monotonic()
+        session.wait_until(printer.is_done, timeout_s=rest_s)
+    if printer.count == 0:
+        raise UnansweredError(f"no message on {listener.topic} within {options.timeout:g} s")
+
+
+def _printer(options: argparse.Namespace) -> "MessagePrinter":
+    from arm_cli.messages.field_path import FieldPath
+    from arm_cli.messages.text import Abridgement
+
+    if options.once and options.times is not None:
+        raise UsageError("--once or --times, not both")
+    if options.raw and (options.field or options.csv or options.json or options.filter):
+        raise UsageError("--raw prints bytes: no --field, --filter, --csv or --json with it")
+    return MessagePrinter(
+        style=next((s for s in ("raw", "json", "csv") if getattr(options, s)), "yaml"),
+        flow_style=options.flow_style,
+        abridgement=Abridgement(
+            None if options.full_length or options.json else options.truncate_length,
+            options.no_arr,
+            options.no_str,
+        ),
+        path=FieldPath.parse(options.field) if options.field else None,
+        accepts=_filter(options.filter),
+        with_info=options.include_message_info,
+        limit=1 if options.once else options.times,
+    )
+
+
+def _filter(expression: str | None) -> Callable[[Any], bool]:
+    if expression is None:
+        return lambda _: True
+    try:
+        code = compile(expression, "--filter", "eval")
+    except SyntaxError as error:
+        raise UsageError(f"--filter {expression!r} is no Python expression") from error
+    return lambda message: bool(eval(code, {"m": message}))
+
+
+@dataclass(slots=True)
+class MessagePrinter:
+    """Prints messages in one of the styles, until there have been enough.
+
+    Attributes:
+        count: messages printed so far.
+    """
+
+    style: str
+    flow_style: bool
+    abridgement: Any
+    path: Any
+    accepts: Callable[[Any], bool]
+    with_info: bool
+    limit: int | None
+    count: int = field(default=0, init=False)
+
+    def check(self, message_class: type) -> None:
+        """Check the field against the type.
+
+        Raises:
+            MessageError: there is no such field.
+        """
+        if self.path is not None:
+            self.path.check(message_class)
+
+    def is_done(self) -> bool:
+        """Return whether there have been enough."""
+        return self.limit is not None and self.count >= self.limit
+
+    def take(self, message: Any, info: dict[str, Any]) -> None:
+        """Print a message; what comes after the last one is dropped."""
+        if self.is_done():
+            return
+        part = message if self.path is None else self.path.of(message)
+        if self.accepts(part):
+            self._print(part, info if self.with_info else {})
+            self.count += 1
+
+    def _print(self, part: Any, info: dict[str, Any]) -> None:
+        from arm_cli.messages.text import is_message, to_csv, to_plain, to_yaml
+
+        if self.style == "json":
+            plain = to_plain(part, self.abridgement)
+            print_json({"info": info, "message": plain} if info else plain)
+        elif self.style == "csv":
+            values = [str(value) for value in info.values()]
+            print(",".join([*values, to_csv(part, self.abridgement)]))
+        else:
+            shown = to_yaml(part, self.abridgement, self.flow_style) if is_message(part) else part
+            header = "".join(f"{key}: {value}\n" for key, value in info.items())
+            if header:
+                print(header, end="---\n")
+            print(shown, end="---\n" if is_message(part) else "\n---\n")

@@ -1,0 +1,193 @@
+"""`arm topic pub`: publish a message, at a rate or some times."""
+
+import argparse
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
+from arm_cli.errors import NotFoundError, UnansweredError, UsageError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.names import absolute_name
+from arm_cli.qos_options import add_qos_arguments, qos_choice
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with, message_names
+from launch_py.near_names import describe_known
+
+if TYPE_CHECKING:
+    from arm_cli.messages.filling import FilledMessage
+    from arm_cli.ros.session import Session
+
+KEEP_ALIVE_S = 0.1
+AFTER_MATCH_S = 0.2
+"""What is sent at the very moment of the match may be lost."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("topic_name", help="such as /position_controller/commands"),
+        completers.topics,
+    )
+    complete_with(
+        parser.add_argument("message_type", help="such as std_msgs/msg/Float64MultiArray"),
+        message_names,
+    )
+    parser.add_argument(
+        "values", nargs="?", default="", help="fields as YAML, such as 'data: [0.0, 0.5]'"
+    )
+    parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
+    parser.add_argument("--yaml-file", metavar="FILE", help="read the values from a file")
+    parser.add_argument(
+        "-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"
+    )
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("-1", "--once", action="store_true", help="publish once and end")
+    group.add_argument(
+        "-t", "--times", type=positive_whole_number, metavar="N", help="publish N times and end"
+    )
+    parser.add_argument(
+        "-w",
+        "--wait-matching-subscriptions",
+        type=whole_number,
+        metavar="N",
+        help="begin when N subscriptions are there (default 1 with --once or --times, else 0)",
+    )
+    parser.add_argument(
+        "--max-wait-time-secs", type=positive_number, metavar="SECONDS", help="for them"
+    )
+    parser.add_argument(
+        "-p",
+        "--print",
+        type=whole_number,
+        default=1,
+        metavar="N",
+        help="print every Nth message only; 0 prints none",
+    )
+    parser.add_argument(
+        "--keep-alive",
+        type=positive_number,
+        default=KEEP_ALIVE_S,
+        metavar="SECONDS",
+        help=f"stay so long after the last message (default {KEEP_ALIVE_S})",
+    )
+    parser.add_argument("-n", "--node-name", metavar="NAME", help="name of the publishing node")
+    parser.add_argument(
+        "-s", "--use-sim-time", action="store_true", help="'auto' and 'now' go by /clock"
+    )
+    add_qos_arguments(parser, "reliable, volatile, the last 10")
+
+
+def run(options: argparse.Namespace) -> None:
+    """Publish.
+
+    Raises:
+        NotFoundError: there is no such type.
+        MessageError: the values do not fit it.
+        UnansweredError: no subscription within `--max-wait-time-secs`.
+    """
+    type_ = InterfaceIndex().find(options.message_type, ("msg",))
+    from arm_cli.messages.filling import fill_message, read_yaml
+
+    filled = fill_message(load_class(type_)(), read_yaml(_values(options), type_.full_name))
+    for note in filled.notes:
+        print(f"arm topic pub: {note}", file=sys.stderr)
+    times = 1 if options.once else options.times
+    wanted = options.wait_matching_subscriptions
+    with connect(options.node_name, options.use_sim_time) as session:
+        publication = _Publication(
+            session,
+            absolute_name(options.topic_name),
+            type_.full_name,
+            filled,
+            options.print,
+        )
+        publication.open(options)
+        publication.wait_for(
+            (0 if times is None else 1) if wanted is None else wanted, options.max_wait_time_secs
+        )
+        print("publisher: beginning loop")
+        publication.repeat(times, 1.0 / options.rate)
+        session.spin_for(options.keep_alive)
+
+
+def _values(options: argparse.Namespace) -> str:
+    given = [bool(options.values), options.stdin, options.yaml_file is not None]
+    if sum(given) > 1:
+        raise UsageError("the values: as a word, by --stdin or by --yaml-file, not twice")
+    if options.stdin:
+        return sys.stdin.read()
+    if options.yaml_file is None:
+        return options.values
+    try:
+        return Path(options.yaml_file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise NotFoundError(f"--yaml-file {options.yaml_file}: {error}") from error
+
+
+@dataclass(slots=True)
+class _Publication:
+    session: "Session"
+    topic: str
+    type_name: str
+    filled: "FilledMessage"
+    print_every: int
+    publisher: Any = None
+
+    def open(self, options: argparse.Namespace) -> None:
+        from arm_cli.ros.qos import qos_profile
+
+        profile = qos_profile(qos_choice(options), "default")
+        message_class = type(self.filled.message)
+        self.publisher = self.session.node.create_publisher(message_class, self.topic, profile)
+
+    def wait_for(self, subscriptions: int, timeout_s: float | None) -> None:
+        if not subscriptions:
+            return
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(self.session)
+
+        def matched() -> bool:
+            ends = (*graph.subscriptions(self.topic), *graph.publishers(self.topic))
+            self._check_type({info.topic_type for info in ends})
+            return self.publisher.get_subscription_count() >= subscriptions
+
+        def notice() -> str:
+            text = f"Waiting for at least {subscriptions} matching subscription(s)..."
+            near = describe_known(self.topic, graph.topics())
+            there = graph.subscriptions(self.topic)
+            return f"{text} {near}" if near.startswith("did") and not there else text
+
+        if not self.session.wait_until(matched, notice, timeout_s):
+            raise UnansweredError(
+                f"{subscriptions} subscription(s) of {self.topic} did not come within "
+                f"{timeout_s:g} s"
+            )
+        self.session.spin_for(AFTER_MATCH_S)
+
+    def _check_type(self, types: set[str]) -> None:
+        if types and self.type_name not in types:
+            raise UsageError(
+                f"{self.topic} carries {', '.join(sorted(types))}, not {self.type_name}"
+            )
+
+    def repeat(self, times: int | None, period_s: float) -> None:
+        count = 0
+
+        def publish() -> None:
+            nonlocal count
+            if count == times:
+                return
+            count += 1
+            self.filled.stamp(self.session.node.get_clock().now().to_msg())
+            if self.print_every and count % self.print_every == 0:
+                print(f"publishing #{count}: {self.filled.message!r}\n")
+            self.publisher.publish(self.filled.message)
+
+        publish()
+        timer = self.session.node.create_timer(period_s, publish)
+        self.session.wait_until(lambda: count == times)
+        timer.cancel()

@@ -1,0 +1,26 @@
+"""`arm topic type`: a topic's type."""
+
+import argparse
+
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the type.
+
+    Raises:
+        NotFoundError: there is no such topic.
+    """
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        print(*Graph(session).find_topic(options.topic_name), sep="\n")

@@ -1,0 +1,99 @@
+"""Frames: poses, lookups through the tree, and the tree as text."""
+
+import math
+
+import pytest
+
+from arm_cli.errors import NotFoundError
+from arm_cli.frames.frame_log import FrameLog
+from arm_cli.frames.lookup_text import describe_lookup
+from arm_cli.frames.pose import Pose
+from arm_cli.tf.view_frames import frame_graph
+
+HALF = math.sqrt(0.5)
+QUARTER_TURN = (0.0, 0.0, HALF, HALF)
+"""Of 90 degrees about z."""
+
+
+@pytest.fixture
+def log():
+    log = FrameLog()
+    log.add("world", "base", 0.0, Pose((0.0, 0.0, 1.0)), static=True)
+    for stamp_s in (1.0, 1.1, 1.2):
+        log.add("base", "arm", stamp_s, Pose((1.0, 0.0, 0.0), QUARTER_TURN), static=False)
+    log.add("arm", "hand", 0.0, Pose((0.5, 0.0, 0.0)), static=True)
+    log.add("base", "camera", 0.0, Pose((0.0, 2.0, 0.0)), static=True)
+    return log
+
+
+def test_a_pose_and_its_inverse_cancel():
+    pose = Pose((1.0, 2.0, 3.0), (0.5, -0.5, 0.5, 0.5))
+    both = pose.then(pose.inverse())
+    assert both.translation == pytest.approx((0.0, 0.0, 0.0))
+    assert both.quaternion == pytest.approx((0.0, 0.0, 0.0, 1.0))
+
+
+def test_roll_pitch_and_yaw():
+    assert Pose(quaternion=QUARTER_TURN).rpy() == pytest.approx((0.0, 0.0, math.pi / 2))
+    assert Pose(quaternion=(0.0, HALF, 0.0, HALF)).rpy()[1] == pytest.approx(math.pi / 2)
+
+
+def test_a_lookup_goes_down_the_tree(log):
+    lookup = log.lookup("world", "hand")
+    assert lookup.pose.translation == pytest.approx((1.0, 0.5, 1.0))
+    assert lookup.stamp_s == 1.2
+
+
+def test_a_lookup_goes_up_and_across(log):
+    assert log.lookup("hand", "world").pose.translation == pytest.approx((-0.5, 1.0, -1.0))
+    across = log.lookup("camera", "hand")
+    assert across.pose.translation == pytest.approx((1.0, -1.5, 0.0))
+    assert log.lookup("world", "camera").stamp_s == 0.0
+
+
+def test_what_cannot_be_looked_up_is_said(log):
+    with pytest.raises(NotFoundError, match="no frame 'hnd'; did you mean 'hand'"):
+        log.lookup("world", "hnd")
+    log.add("moon", "rock", 0.0, Pose(), static=True)
+    with pytest.raises(NotFoundError, match="hang on 'world' and 'moon'"):
+        log.lookup("hand", "rock")
+
+
+def test_frames_in_a_loop_end_nothing(log):
+    log.add("b", "a", 0.0, Pose(), static=True)
+    log.add("a", "b", 0.0, Pose(), static=True)
+    assert log.lookup("a", "b").pose.translation == (0.0, 0.0, 0.0)
+    assert "world" in list(log.draw_tree())
+
+
+def test_the_tree_as_text(log):
+    assert list(log.draw_tree()) == [
+        "world",
+        "└── base  (static)",
+        "    ├── arm  (10.0 Hz)",
+        "    │   └── hand  (static)",
+        "    └── camera  (static)",
+    ]
+
+
+def test_a_lookup_as_text(log):
+    assert describe_lookup(log.lookup("base", "arm")).splitlines() == [
+        "At time 1.200000000",
+        "- Translation: [1.000, 0.000, 0.000]",
+        "- Rotation: in Quaternion (xyzw) [0.000, 0.000, 0.707, 0.707]",
+        "- Rotation: in RPY (radian) [0.000, 0.000, 1.571]",
+        "- Rotation: in RPY (degree) [0.000, 0.000, 90.000]",
+        "- Matrix:",
+        "  0.000 -1.000  0.000  1.000",
+        "  1.000  0.000  0.000  0.000",
+        "  0.000  0.000  1.000  0.000",
+        "  0.000  0.000  0.000  1.000",
+    ]
+
+
+def test_the_tree_as_a_graph(log):
+    graph = frame_graph(log)
+    assert [vertex.key for vertex in graph.vertices] == ["arm", "base", "camera", "hand", "world"]
+    (edge,) = (edge for edge in graph.edges if edge.target == "arm")
+    assert edge.source == "base"
+    assert "Average rate: 10.000\nBuffer length: 0.200" in edge.label

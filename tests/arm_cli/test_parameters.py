@@ -1,0 +1,79 @@
+"""Parameter values of the command line and of files."""
+
+from pathlib import Path
+
+import pytest
+from rcl_interfaces.msg import ParameterType, ParameterValue
+
+from arm_cli.errors import MessageError, NotFoundError
+from arm_cli.param.dump import nest
+from arm_cli.param.load import read_parameters
+from arm_cli.parameter_values import LABELS, TYPE_NAMES, read_value, write_value
+
+
+@pytest.mark.parametrize(
+    ("text", "type_", "content"),
+    [
+        ("true", ParameterType.PARAMETER_BOOL, True),
+        ("7", ParameterType.PARAMETER_INTEGER, 7),
+        ("0.5", ParameterType.PARAMETER_DOUBLE, 0.5),
+        ("hello", ParameterType.PARAMETER_STRING, "hello"),
+        ("[1, 2]", ParameterType.PARAMETER_INTEGER_ARRAY, [1, 2]),
+        ("[1.0, 0.5]", ParameterType.PARAMETER_DOUBLE_ARRAY, [1.0, 0.5]),
+        ("[1, 0.5]", ParameterType.PARAMETER_DOUBLE_ARRAY, [1.0, 0.5]),
+        ("[true]", ParameterType.PARAMETER_BOOL_ARRAY, [True]),
+        ("[a, b]", ParameterType.PARAMETER_STRING_ARRAY, ["a", "b"]),
+        ("[a, 1]", ParameterType.PARAMETER_STRING, "[a, 1]"),
+        ("{a: 1}", ParameterType.PARAMETER_STRING, "{a: 1}"),
+        ("a: b: c", ParameterType.PARAMETER_STRING, "a: b: c"),
+        ("", ParameterType.PARAMETER_STRING, ""),
+    ],
+)
+def test_a_word_becomes_a_value_of_the_type_it_looks_like(text, type_, content):
+    value = ParameterValue()
+    write_value(value, text)
+    assert (value.type, read_value(value)) == (type_, content)
+
+
+def test_names_and_labels_are_in_the_order_of_the_types():
+    assert TYPE_NAMES[ParameterType.PARAMETER_DOUBLE_ARRAY] == "double array"
+    assert LABELS[ParameterType.PARAMETER_STRING_ARRAY] == "String values are:"
+    assert read_value(ParameterValue()) is None
+
+
+def test_dotted_names_become_dicts():
+    assert nest({"a.b.c": 1, "a.d": 2, "e": 3}) == {"a": {"b": {"c": 1}, "d": 2}, "e": 3}
+
+
+def read(tmp_path: Path, text: str, *sections: str):
+    path = tmp_path / "params.yaml"
+    path.write_text(text)
+    return read_parameters(path, list(sections))
+
+
+def test_a_file_is_read_for_its_node(tmp_path):
+    text = "/n:\n  ros__parameters: {a: {b: 1}, c: 2}\n/**:\n  ros__parameters: {c: 3, d: 4}\n"
+    assert read(tmp_path, text, "/**", "/n") == {"a.b": 1, "c": 2, "d": 4}
+
+
+def test_a_file_may_leave_out_the_slash(tmp_path):
+    assert read(tmp_path, "n:\n  ros__parameters: {a: 1}\n", "/n") == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "sentence"),
+    [
+        ("/m:\n  ros__parameters: {a: 1}\n", NotFoundError, "nothing for /n, but for /m"),
+        ("/n: {a: 1}\n", MessageError, "no 'ros__parameters:' below"),
+        ("[1]\n", MessageError, "is no parameter file"),
+        ("{", MessageError, "is no YAML"),
+    ],
+)
+def test_a_file_that_does_not_fit_is_refused(tmp_path, text, error, sentence):
+    with pytest.raises(error, match=sentence):
+        read(tmp_path, text, "/n")
+
+
+def test_a_file_that_is_not_there_is_said(tmp_path):
+    with pytest.raises(NotFoundError, match="no parameter file"):
+        read_parameters(tmp_path / "none.yaml", ["/n"])
