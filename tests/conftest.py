@@ -1,4 +1,4 @@
-"""What tests of several packages share: a ROS domain of their own."""
+"""What tests of several packages share: a ROS domain of their own, patience with the machine."""
 
 import fcntl
 import os
@@ -7,6 +7,11 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# How long an example takes says more about the machine than about the code.
+settings.register_profile("patient", deadline=None)
+settings.load_profile("patient")
 
 DOMAIN_IDS = range(1, 102)
 """ROS domain ids whose ports no operating system hands out by itself."""

@@ -84,14 +84,35 @@ class ControllerChain:
             visit(controller)
         return tuple(ordered.values())
 
+    def from_below(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
+        """Return these so that whoever follows comes first; else as they come.
+
+        That is the order to start them in; they are stopped the other way round.
+        """
+        wanted = tuple(controllers)
+        ordered: dict[str, ManagedController] = {}
+        visited: set[str] = set()
+
+        def visit(controller: ManagedController) -> None:
+            if controller.name in visited or controller not in wanted:
+                return
+            visited.add(controller.name)
+            for follower in self.following(controller):
+                visit(follower)
+            ordered[controller.name] = controller
+
+        for controller in wanted:
+            visit(controller)
+        return tuple(ordered.values())
+
     def with_preceding(
         self, controllers: Iterable[ManagedController]
     ) -> tuple[ManagedController, ...]:
-        """Return these and all active ones that precede them, as they run."""
+        """Return these and all active ones that precede them."""
         return self._closure(controllers, self.preceding)
 
     def with_group(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
-        """Return these and all active ones that they hang together with, as they run."""
+        """Return these and all active ones that they hang together with."""
         return self._closure(controllers, lambda c: (*self.preceding(c), *self.following(c)))
 
     def _newest_first(self) -> tuple[ManagedController, ...]:

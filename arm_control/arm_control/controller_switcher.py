@@ -71,7 +71,7 @@ class ControllerSwitcher:
         if not controllers:
             return
         self._leave_modes(controllers)
-        for controller in controllers:
+        for controller in self._from_above(controllers):
             self._lifecycle.deactivate(controller)
         self._set_chained_modes()
 
@@ -105,9 +105,9 @@ class ControllerSwitcher:
         )
 
     def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
-        stuck = [c for c in plan.deactivate if self._lifecycle.deactivate(c)]
+        stuck = [c for c in self._from_above(plan.deactivate) if self._lifecycle.deactivate(c)]
         self._set_chained_modes(plan.activate)
-        refused = [c for c in plan.activate if self._lifecycle.activate(c)]
+        refused = self._activate(plan.activate)
         if refused:
             self._set_chained_modes()
             self._leave_modes(refused)
@@ -116,6 +116,26 @@ class ControllerSwitcher:
         if stuck or refused:
             return _failed(refused, stuck)
         return _succeeded(plan, request)
+
+    def _activate(self, controllers: Sequence[ManagedController]) -> list[ManagedController]:
+        """Activate these from below; return those that could not be."""
+        refused: list[ManagedController] = []
+        for controller in self._chain.from_below(controllers):
+            missing = [c.name for c in self._chain.following(controller) if c in refused]
+            if missing:
+                logger.error(
+                    "controller '%s' is not activated, because %s was not",
+                    controller.name,
+                    " ".join(missing),
+                )
+            if missing or self._lifecycle.activate(controller):
+                refused.append(controller)
+        return refused
+
+    def _from_above(
+        self, controllers: Sequence[ManagedController]
+    ) -> tuple[ManagedController, ...]:
+        return self._chain.from_below(controllers[::-1])[::-1]
 
     def _leave_modes(self, controllers: Iterable[ManagedController]) -> None:
         stop = [name for controller in controllers for name in controller.commands]

@@ -74,7 +74,7 @@ class SwitchPlanner:
         return plan
 
     def _keep_chains(self, plan: SwitchPlan) -> SwitchPlan:
-        """Leave out what would break a chain, until nothing would; return the rest as it runs."""
+        """Leave out what would break a chain, until nothing would."""
         while True:
             activate = self._accepted(plan.activate, lambda c, p=plan: self._why_not_lead(c, p))
             deactivate = self._accepted(
@@ -82,16 +82,8 @@ class SwitchPlanner:
             )
             kept = SwitchPlan(tuple(activate), tuple(deactivate))
             if kept == plan:
-                break
+                return plan
             plan = kept
-        if not any(map(self._chain.following, (*plan.activate, *plan.deactivate))):
-            return plan
-        # A controller stops before those that it commands, and starts after them.
-        order = [controller.name for controller in self._chain.in_order()]
-        return SwitchPlan(
-            tuple(sorted(plan.activate, key=lambda c: -order.index(c.name))),
-            tuple(sorted(plan.deactivate, key=lambda c: order.index(c.name))),
-        )
 
     def _known(self, names: Sequence[str], action: str) -> list[ManagedController]:
         """Return the controllers of these names, each once; unknown names end it or are dropped."""
@@ -159,6 +151,8 @@ class SwitchPlanner:
 
     def _why_not_lead(self, controller: ManagedController, plan: SwitchPlan) -> str:
         """Say which of the controllers that follow would not be active."""
+        if controller.is_active and controller not in plan.deactivate:
+            return f"Controller with name '{controller.name}' is already active."
         for follower in self._chain.following(controller):
             if follower in plan.activate:
                 continue

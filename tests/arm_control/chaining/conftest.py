@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control import ControllerContext, InterfaceConfiguration, ReturnType, SwitchRequest
+from arm_control import (
+    ControllerContext,
+    ControllerError,
+    InterfaceConfiguration,
+    ReturnType,
+    SwitchRequest,
+)
 from arm_control.chainable_controller import ChainableController
 from arm_control.controller_switch import Strictness, SwitchResult
 from arm_control.forward_command_controller import (
@@ -34,6 +40,7 @@ class Link(ChainableController[LinkParameters]):
         self.runs = runs
         self.topic: float = np.nan
         self.fails = False
+        self.refuses_to_start = False
         self._parameters = LinkParameters()
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
@@ -50,6 +57,10 @@ class Link(ChainableController[LinkParameters]):
 
     def on_configure(self, parameters: LinkParameters) -> None:
         self._parameters = parameters
+
+    def on_activate(self) -> None:
+        if self.refuses_to_start:
+            raise ControllerError(f"{self.name} does not want to start")
 
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
         self.references[:] = self.topic

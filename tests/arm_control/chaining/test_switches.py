@@ -104,6 +104,31 @@ def test_a_whole_chain_can_be_restarted(pair: Any) -> None:
     assert pair.status("low").is_chained
 
 
+def test_whoever_is_commanded_is_not_restarted_alone(pair: Any) -> None:
+    pair.switch("low high")
+    pair.links["low"].references[:] = 7.0
+    result = pair.switch("low", "low", Strictness.BEST_EFFORT)
+    assert "no controllers need to be activated or deactivated" in result.message
+    # It was left alone altogether.
+    assert pair.links["low"].references.tolist() == [7.0]
+
+
+@pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
+def test_without_whom_it_commands_a_leader_does_not_start(
+    chain: Any, strictness: Strictness
+) -> None:
+    chain.link("low", commands=("j0/position",), references=("x/position",)).refuses_to_start = True
+    chain.link("high", commands=("low/x/position",), references=("x/position",))
+    chain.link("other", commands=("j1/position",), references=("x/position",))
+    result = chain.switch("low high other", strictness=strictness)
+    assert "Unable to activate controllers: [ low high ]" in result.message
+    assert chain.states() == {
+        "other": "inactive" if strictness is Strictness.STRICT else "active",
+        "high": "inactive",
+        "low": "inactive",
+    }
+
+
 def test_hardware_hears_of_its_own_interfaces_only(pair: Any) -> None:
     pair.switch("low high")
     assert pair.bench.hardware.mode_switches == [(("j0/position",), ())]
