@@ -51,6 +51,25 @@ def startable_controllers(path: Path | str, known_types: frozenset[str]) -> Star
     return Startable(tuple(names), tuple(remarks))
 
 
+def controllers_below(namespace: str, controllers: Path | Mapping[Any, Any]) -> Mapping[str, Any]:
+    """Return the content of a controllers' file with its nodes in a namespace.
+
+    Nodes that the file puts somewhere itself, by a slash in front, stay there.
+
+    Args:
+        namespace: without slashes around it.
+        controllers: the file, or its content.
+
+    Raises:
+        SettingsError: the file cannot be read, or names no controllers.
+    """
+    content = _read(controllers) if isinstance(controllers, Path) else controllers
+    return {
+        str(node) if str(node).startswith("/") else f"/{namespace}/{node}": entry
+        for node, entry in content.items()
+    }
+
+
 def _read(path: Path | str) -> Mapping[Any, Any]:
     import yaml  # Only here: most launches name their controllers.
 

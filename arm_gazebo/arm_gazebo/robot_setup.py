@@ -45,6 +45,14 @@ class RobotSetup:
     package_path: tuple[Path, ...]
     remarks: tuple[str, ...]
 
+    def parameters(self) -> dict[str, str]:
+        """Return the parameters of the simulation's node that are about the robot."""
+        return {
+            "robot_description": self.description,
+            "spawn": ",".join(self.spawn),
+            "package_path": os.pathsep.join(map(str, self.package_path)),
+        }
+
 
 def set_up_robot(
     model: str,

@@ -34,13 +34,13 @@ class SimulationTick:
 
     def __init__(
         self,
-        manager: ControllerManager,
+        managers: Sequence[ControllerManager],
         simulation: Simulation,
         clock: ClockPublisher,
         feeds: Sequence[Feed],
         period_s: float,
     ) -> None:
-        self._manager = manager
+        self._managers = tuple(managers)
         self._simulation = simulation
         self._clock = clock
         self._feeds = feeds
@@ -48,15 +48,18 @@ class SimulationTick:
 
     def __call__(self) -> None:
         """Advance everything by one control period."""
-        manager, simulation, period_s = self._manager, self._simulation, self._period_s
+        managers, simulation, period_s = self._managers, self._simulation, self._period_s
         time_s = simulation.time_s
-        manager.update(time_s, period_s)
-        manager.write(time_s, period_s)
+        for manager in managers:
+            manager.update(time_s, period_s)
+            manager.write(time_s, period_s)
         simulation.advance()
         time_s = simulation.time_s
-        manager.read(time_s, period_s)
+        for manager in managers:
+            manager.read(time_s, period_s)
         # The clock first: nobody shall see a stamp that lies ahead of the time they know.
         self._clock.publish(time_s)
-        manager.publish(time_s, period_s)
+        for manager in managers:
+            manager.publish(time_s, period_s)
         for feed in self._feeds:
             feed.publish_due(time_s, simulation.data)

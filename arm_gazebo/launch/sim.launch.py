@@ -10,6 +10,7 @@ from launch_py import (
 )
 from launch_py.actions import OpaqueFunction
 from launch_py.conditions import IfCondition
+from launch_py.errors import UsageError
 from launch_py.launch_context import LaunchContext
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
@@ -28,11 +29,17 @@ ROBOT_ARGUMENTS = {
     ),
     "package_path": ("", "folders for package://, besides the model's own package, with colons"),
     "namespace": ("", "of all nodes of the robot"),
+    "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
+    "pose": ("", 'of the root in the world, in m and rad: "[x, y, z, roll, pitch, yaw]"'),
+    "robots": (
+        "",
+        "YAML file of several robots in one world, instead of a model: NAMESPACE: {model: FILE, "
+        "and model_args, controllers, spawn, package_path, base, pose}",
+    ),
 }
 
 SIMULATION_ARGUMENTS = {
     "world": ("empty", "a shipped world (empty, objects), or a MuJoCo XML file"),
-    "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
     "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible"),
     "physics_step": ("0.0", "in s; 0 chooses one of at most 2 ms that fits the control rate"),
     "hold_joints": ("true", "joints that no controller claims hold their position"),
@@ -75,7 +82,7 @@ def take_gz_args(context: LaunchContext) -> None:
 
 
 def simulate(context: LaunchContext) -> list:
-    """Return the robot's nodes, and what was made up for it."""
+    """Return the nodes of a robot, or of several, and what was made up for them."""
     # Here, so that --show-args needs nothing but this file.
     from arm_gazebo.display import check_display
     from arm_gazebo.robot_setup import set_up_robot
@@ -83,6 +90,10 @@ def simulate(context: LaunchContext) -> list:
     words = context.launch_configurations
     if words["headless"] == "false":
         check_display()
+    if words["robots"]:
+        return simulate_several(words["robots"])
+    if not words["model"]:
+        raise UsageError("launch argument 'model' (URDF or xacro file) is empty: give model:=FILE")
     setup = set_up_robot(
         words["model"],
         words["model_args"],
@@ -90,41 +101,67 @@ def simulate(context: LaunchContext) -> list:
         words["spawn"],
         words["package_path"],
     )
-    settings = {
-        "robot_description": setup.description,
-        "spawn": ",".join(setup.spawn),
-        "package_path": ":".join(str(folder) for folder in setup.package_path),
-        **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS},
-    }
-    simulation = Node(
+    place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
+    return [
+        *(LogInfo(msg=remark) for remark in setup.remarks),
+        simulation({**setup.parameters(), **place}, [setup.controllers], words["namespace"]),
+        state_publisher(setup.description, words["namespace"]),
+    ]
+
+
+def simulate_several(path: str) -> list:
+    """Return the nodes of the robots that a file names, in one world."""
+    from arm_gazebo.controllers_file import controllers_below
+    from arm_gazebo.robot_setup import set_up_robot
+    from arm_gazebo.robots_file import read_robots_file
+
+    settings: dict = {}
+    controllers, others = [], []
+    for name, robot in read_robots_file(path).items():
+        setup = set_up_robot(
+            robot.model, robot.model_args, robot.controllers, robot.spawn, robot.package_path
+        )
+        controllers.append(controllers_below(name, setup.controllers))
+        settings[name] = {**setup.parameters(), "base": robot.base}
+        if robot.pose:
+            settings[name]["pose"] = list(robot.pose)
+        others += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
+        others.append(state_publisher(setup.description, name))
+    return [simulation({"robots": list(settings), **settings}, controllers), *others]
+
+
+def simulation(settings: dict, controllers: list, namespace: str = "") -> Node:
+    """Return the node that simulates; `settings` are what its arguments do not tell."""
+    every = {**settings, **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS}}
+    return Node(
         package="arm_gazebo",
         executable="arm_gazebo_node",
-        namespace=words["namespace"],
-        parameters=[setup.controllers, {"arm_gazebo": {"ros__parameters": settings}}],
+        namespace=namespace,
+        parameters=[*controllers, {"arm_gazebo": {"ros__parameters": every}}],
         ros_arguments=["--log-level", LaunchConfiguration("log_level")],
         ready=Notified(),
         on_exit=Shutdown(),
     )
-    state_publisher = Node(
+
+
+def state_publisher(description: str, namespace: str) -> Node:
+    """Return the node that publishes where a robot's links are."""
+    use_sim_time = LaunchConfiguration("use_sim_time")
+    return Node(
         package="arm_description",
         executable="robot_state_publisher",
-        namespace=words["namespace"],
-        parameters=[
-            {
-                "robot_description": setup.description,
-                "use_sim_time": LaunchConfiguration("use_sim_time"),
-            }
-        ],
+        namespace=namespace,
+        exec_name=f"{namespace}_state_publisher" if namespace else None,
+        parameters=[{"robot_description": description, "use_sim_time": use_sim_time}],
         ready=Notified(),
     )
-    return [*(LogInfo(msg=remark) for remark in setup.remarks), simulation, state_publisher]
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the simulation and the state publisher."""
     return LaunchDescription(
         [
-            DeclareLaunchArgument("model", description="URDF or xacro file"),
+            DeclareLaunchArgument("model", default_value="", description="URDF or xacro file"),
             DeclareLaunchArgument(
                 "gz_args",
                 default_value="",

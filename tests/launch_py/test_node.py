@@ -90,12 +90,14 @@ def test_parameters_may_be_meant_for_one_node_of_several(expand):
     each = {
         "arm_gazebo": {"ros__parameters": {"rate": 100}},
         "controller": {"ros__parameters": {"joints": ["j0"]}},
+        "/right/controller": {"ros__parameters": {"joints": ["j1"]}},
     }
     plan = expand([node(namespace="left", parameters=[each])])
     assert parameters(plan) == [
         {
             "/left/arm_gazebo": {"ros__parameters": {"rate": 100}},
             "/left/controller": {"ros__parameters": {"joints": ["j0"]}},
+            "/right/controller": {"ros__parameters": {"joints": ["j1"]}},
         }
     ]
     assert not any("__node" in str(word) for word in words(plan))

@@ -7,6 +7,7 @@ pytestmark = pytest.mark.ros
 
 FRAME = '<link name="base_link"/><link name="upper"/><link name="lower"/>'
 LIMIT = '<limit lower="-2" upper="2" effort="20" velocity="2"/>'
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 JOINTS = f"""
 <joint name="shoulder" type="revolute"><parent link="base_link"/><child link="upper"/>
   <origin xyz="0 0 1"/><axis xyz="0 1 0"/>{LIMIT}</joint>
@@ -40,6 +41,39 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare):
         ),
         "the pose is reached",
     )
+
+
+def test_two_robots_in_one_world_do_not_hear_each_other(launch, client, tmp_path):
+    from controller_manager_msgs.srv import ListControllers
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    text = f'<robot name="$(arg p)" {XACRO}><xacro:arg name="p" default=""/>{FRAME}{JOINTS}</robot>'
+    for name in ("base_link", "upper", "lower", "shoulder", "elbow"):
+        text = text.replace(f'"{name}"', f'"$(arg p){name}"')
+    (tmp_path / "arm.xacro").write_text(text)
+    robots = tmp_path / "robots.yaml"
+    robots.write_text(
+        "left: {model: arm.xacro, model_args: 'p:=left_'}\n"
+        "right: {model: arm.xacro, model_args: 'p:=right_', pose: [0, 0.5, 0, 0, 0, 0]}\n"
+    )
+    launch("arm_gazebo", "sim.launch.py", f"robots:={robots}").wait_until_ready()
+    left = client.subscribe(JointState, "/left/joint_states")
+    right = client.subscribe(JointState, "/right/joint_states")
+    client.publisher(Float64MultiArray, "/left/position_controller/commands").publish(
+        Float64MultiArray(data=[0.6, 0.6])
+    )
+    moved = left.wait_until(
+        lambda m: bool(m) and np.allclose(m[-1].position, 0.6, atol=0.005), "the left arm is there"
+    )[-1]
+    stood = right.wait_for(1)[-1]
+    assert sorted(moved.name) == ["left_elbow", "left_shoulder"]
+    assert sorted(stood.name) == ["right_elbow", "right_shoulder"]
+    assert np.allclose(stood.position, 0.0, atol=0.005)
+    service = "/right/controller_manager/list_controllers"
+    listed = client.call(ListControllers, service, ListControllers.Request()).controller
+    claimed = {name for controller in listed for name in controller.claimed_interfaces}
+    assert claimed == {"right_shoulder/position", "right_elbow/position"}
 
 
 def test_a_model_that_is_no_robot_is_a_sentence(launch, tmp_path):

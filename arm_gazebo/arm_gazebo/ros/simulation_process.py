@@ -13,23 +13,17 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
-from arm_control.hardware_info import HardwareInfo, parse_hardware_info
 from arm_control.pacer import Pacer
-from arm_control.ros.configured_manager import bring_up, configured_manager
-from arm_control.ros.controller_manager_node import ControllerManagerNode
-from arm_control.ros.controller_manager_server import ControllerManagerServer
-from arm_description.urdf import parse_urdf
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.camera_feed import CameraFeed
-from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
 from arm_gazebo.display import check_display
 from arm_gazebo.errors import SettingsError
-from arm_gazebo.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.mesh_cache import cache_folder
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.model_builder import build_world
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
+from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
@@ -61,42 +55,35 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             node = Node(NODE_NAME)
         process.executor.add_node(node)
         settings = read_settings(node)
-        manager_node = ControllerManagerNode(arguments)
-        nodes.callback(manager_node.destroy_node)
-        timing = physics_timing(manager_node.settings.update_rate, settings.physics_step_s)
-        hardware_info = _hardware_info(settings)
-        sensors = parse_cameras(settings.robot_description)
-        built = _build(settings, hardware_info, sensors, timing)
+        robots = []
+        for robot_settings in settings.robots:
+            robots.append(ManagedRobot(robot_settings, arguments))
+            nodes.callback(robots[-1].destroy_nodes)
+        timing = _timing(robots, settings)
+        built = _build(robots, settings, timing)
         simulation = Simulation(built, timing, settings.hold_joints)
-        hardware = [SimulatedHardware(simulation, info) for info in hardware_info]
-        manager = configured_manager(hardware, manager_node.settings, settings.robot_description)
-        bring_up(manager, manager_node.settings)
+        for robot in robots:
+            robot.drive(simulation)
         feeds = [
             ending.enter_context(closing(feed))
-            for feed in _feeds(sensors, settings, node.get_namespace())
+            for feed in _feeds(robots, settings, node.get_namespace())
         ]
-        tick = SimulationTick(manager, simulation, RosClockPublisher(node), feeds, timing.period_s)
+        managers = [robot.manager for robot in robots]
+        tick = SimulationTick(managers, simulation, RosClockPublisher(node), feeds, timing.period_s)
         pacer = Pacer(
             timing.period_s,
             real_time_factor=settings.real_time_factor,
-            print_warnings=manager_node.settings.overruns.print_warnings,
+            print_warnings=robots[0].node.settings.overruns.print_warnings,
         )
         loop = ControlLoop(tick, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
         ending.enter_context(_standing_still(loop))
-        server = ControllerManagerServer(
-            manager_node,
-            manager,
-            loop,
-            process.executor,
-            robot_description=settings.robot_description,
-        )
-        nodes.pop_all()
-        nodes.callback(server.destroy_nodes)
-        ending.callback(server.shutdown)
-        server.start_controllers(settings.spawn)
+        for robot in robots:
+            ending.callback(robot.shutdown)
+            robot.serve(loop, process.executor)
         loop.resume()
         for feed in feeds:
             feed.start(built.model)
+        hardware = [component for robot in robots for component in robot.hardware]
         _supervise(node, pacer, simulation, hardware, feeds)
         yield
 
@@ -112,44 +99,31 @@ def _standing_still(loop: ControlLoop) -> Iterator[None]:
         loop.join(LOOP_JOIN_TIMEOUT_S)
 
 
-def _hardware_info(settings: SimulationSettings) -> tuple[HardwareInfo, ...]:
-    hardware_info = parse_hardware_info(settings.robot_description)
-    if not hardware_info:
-        raise SettingsError(
-            "the robot description has no <ros2_control> block, so nothing says which joints are "
-            "commanded; add one with a <joint> and its interfaces for each"
-        )
-    return hardware_info
+def _timing(robots: Sequence[ManagedRobot], settings: SimulationSettings) -> PhysicsTiming:
+    """Return period and step of the one loop that all robots share."""
+    rates = {robot.node.settings.update_rate: robot.node for robot in robots}
+    if len(rates) > 1:
+        each = ", ".join(f"{n.get_fully_qualified_name()} {rate} Hz" for rate, n in rates.items())
+        raise SettingsError(f"robots in one world have one update_rate, not several: {each}")
+    return physics_timing(robots[0].node.settings.update_rate, settings.physics_step_s)
 
 
 def _build(
-    settings: SimulationSettings,
-    hardware_info: tuple[HardwareInfo, ...],
-    sensors: tuple[CameraSensor, ...],
-    timing: PhysicsTiming,
+    robots: Sequence[ManagedRobot], settings: SimulationSettings, timing: PhysicsTiming
 ) -> BuiltModel:
-    built = build_model(
-        parse_urdf(settings.robot_description),
-        hardware_info,
-        sensors,
-        settings.world,
-        BuildOptions(
-            step_s=timing.step_s,
-            base="free" if settings.base == "free" else "fixed",
-            spawn=settings.pose,
-            self_collide=settings.self_collide,
-            strict=settings.strict,
-            package_path=settings.package_path,
-            mesh_cache=cache_folder(),
-        ),
-        parse_gazebo_tags(settings.robot_description),
+    options = BuildOptions(
+        step_s=timing.step_s,
+        self_collide=settings.self_collide,
+        strict=settings.strict,
+        mesh_cache=cache_folder(),
     )
+    built = build_world([robot.in_world(options) for robot in robots], settings.world)
     built.report.log(logger)
     return built
 
 
 def _feeds(
-    sensors: tuple[CameraSensor, ...], settings: SimulationSettings, namespace: str
+    robots: Sequence[ManagedRobot], settings: SimulationSettings, namespace: str
 ) -> Iterator[CameraFeed | WindowFeed]:
     """Make what shows the simulation.
 
@@ -159,9 +133,10 @@ def _feeds(
     if not settings.headless:
         check_display()
         yield WindowFeed()
-    if sensors:
+    cameras = [camera for robot in robots for camera in robot.cameras]
+    if cameras:
         ros_arguments = ("-r", f"__ns:={namespace}")
-        yield CameraFeed(sensors, settings.render_backend, settings.seed, ros_arguments)
+        yield CameraFeed(cameras, settings.render_backend, settings.seed, ros_arguments)
 
 
 def _supervise(

@@ -42,7 +42,8 @@ class Node(ExecuteProcess):
         exec_name: what to call the process; default the node's name, else the executable's.
         parameters: parameter files and dicts; later ones win. A dict holds parameters of `name`,
             or of every node of the process without one; in a process with several nodes it may
-            have the form of a file, {node: {"ros__parameters": {...}}}.
+            have the form of a file, {node: {"ros__parameters": {...}}}, whose nodes are in the
+            namespace of this one unless they begin with a slash.
         remappings: pairs of a name and what it becomes.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
@@ -115,7 +116,7 @@ class Node(ExecuteProcess):
                 try:
                     texts = [
                         parameter_file_text(
-                            f"{namespace}/{node}" if node else "/**",
+                            _whole_name(namespace, node) if node else "/**",
                             evaluate_parameters(context, values),
                         )
                         for node, values in by_node.items()
@@ -135,6 +136,10 @@ class Node(ExecuteProcess):
                     + describe_known(name, known, f"{folder or 'it'} holds")
                 )
             yield path
+
+
+def _whole_name(namespace: str, node: str) -> str:
+    return node if node.startswith("/") else f"{namespace}/{node}"
 
 
 class PushRosNamespace(Action):

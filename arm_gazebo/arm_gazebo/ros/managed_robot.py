@@ -1,0 +1,115 @@
+"""One robot of the simulation: its hardware, and the controller manager that drives it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rclpy.executors import Executor
+
+from arm_control.control_loop import ControlLoop
+from arm_control.hardware_info import parse_hardware_info
+from arm_control.ros.configured_manager import bring_up, configured_manager
+from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.ros.controller_manager_server import ControllerManagerServer
+from arm_description.urdf import parse_urdf
+from arm_gazebo.build_options import BuildOptions
+from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.robot_part import RobotInWorld
+from arm_gazebo.ros.robot_settings import RobotSettings
+from arm_gazebo.simulated_hardware import SimulatedHardware
+from arm_gazebo.simulation import Simulation
+
+
+class ManagedRobot:
+    """Made in the order of its methods: node, model, hardware and manager, services.
+
+    Args:
+        settings: of the robot.
+        arguments: ROS arguments of the process.
+
+    Raises:
+        SettingsError, DescriptionError, ArmControlError: nothing says what is commanded, or not
+            in a way that makes sense.
+    """
+
+    def __init__(self, settings: RobotSettings, arguments: Sequence[str]) -> None:
+        self._settings = settings
+        self._server: ControllerManagerServer | None = None
+        self._hardware_info = parse_hardware_info(settings.robot_description)
+        if not self._hardware_info:
+            raise SettingsError(
+                "the robot description has no <ros2_control> block, so nothing says which joints "
+                "are commanded; add one with a <joint> and its interfaces for each"
+            )
+        self.cameras = tuple(
+            _in_namespace(camera, settings.namespace)
+            for camera in parse_cameras(settings.robot_description)
+        )
+        self.node = ControllerManagerNode(arguments, namespace=settings.namespace)
+
+    def in_world(self, options: BuildOptions) -> RobotInWorld:
+        """Return the robot as the model's builder takes it.
+
+        Args:
+            options: what the user chose for all robots.
+        """
+        settings = self._settings
+        return RobotInWorld(
+            parse_urdf(settings.robot_description),
+            self._hardware_info,
+            self.cameras,
+            replace(
+                options,
+                base="free" if settings.base == "free" else "fixed",
+                spawn=settings.pose,
+                package_path=settings.package_path,
+            ),
+            parse_gazebo_tags(settings.robot_description),
+        )
+
+    def drive(self, simulation: Simulation) -> None:
+        """Make hardware and manager, before the loop runs."""
+        self.hardware = [SimulatedHardware(simulation, info) for info in self._hardware_info]
+        description = self._settings.robot_description
+        self.manager = configured_manager(self.hardware, self.node.settings, description)
+        bring_up(self.manager, self.node.settings)
+
+    def serve(self, loop: ControlLoop, executor: Executor) -> None:
+        """Offer the manager's services, and start the controllers that are asked for."""
+        self._server = ControllerManagerServer(
+            self.node,
+            self.manager,
+            loop,
+            executor,
+            robot_description=self._settings.robot_description,
+        )
+        self._server.start_controllers(self._settings.spawn)
+
+    def shutdown(self) -> None:
+        """Serve no more; the loop still runs."""
+        if self._server is not None:
+            self._server.shutdown()
+
+    def destroy_nodes(self) -> None:
+        """Destroy every node of the robot; the loop has ended."""
+        if self._server is None:
+            self.node.destroy_node()
+        else:
+            self._server.destroy_nodes()
+
+
+def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
+    """Return a camera whose name and relative topics are told from those of other robots."""
+    if not namespace:
+        return camera
+
+    def below(topics: Sequence[str]) -> tuple[str, ...]:
+        return tuple(t if t.startswith("/") else f"{namespace}/{t}" for t in topics)
+
+    return replace(
+        camera,
+        name=f"{namespace}_{camera.name}",
+        image_topics=below(camera.image_topics),
+        info_topics=below(camera.info_topics),
+    )
