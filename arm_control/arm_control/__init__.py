@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from arm_control.lifecycle import LifecycleState, Transition
     from arm_control.pacer import Pacer, PacerStatistics
     from arm_control.parameters import parameter
+    from arm_control.system_interface import SystemInterface
 
 __all__ = [
     "ArmControlError",
@@ -50,6 +51,7 @@ __all__ = [
     "Strictness",
     "SwitchRequest",
     "SwitchResult",
+    "SystemInterface",
     "Transition",
     "parameter",
     "parse_hardware_info",
@@ -68,6 +70,7 @@ _HOMES = {
     "lifecycle": ("LifecycleState", "Transition"),
     "pacer": ("Pacer", "PacerStatistics"),
     "parameters": ("parameter",),
+    "system_interface": ("SystemInterface",),
 }
 _HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
 

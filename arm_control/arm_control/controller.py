@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from arm_control.errors import ControllerError
 from arm_control.interface_configuration import InterfaceConfiguration
 from arm_control.loaned_interfaces import LoanedInterfaces
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
@@ -72,6 +73,18 @@ class Controller(ABC, Generic[ParametersT]):
         self.logger = logging.getLogger(context.name)
         self.commands = _NOTHING
         self.states = _NOTHING
+        self._parameters: ParametersT | None = None
+
+    @property
+    def parameters(self) -> ParametersT:
+        """The parameters in force, as `on_configure` and `update_parameters` took them.
+
+        Raises:
+            ControllerError: the controller is not configured.
+        """
+        if self._parameters is None:
+            raise ControllerError(f"controller '{self.name}' is not configured")
+        return self._parameters
 
     @classmethod
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -101,16 +114,17 @@ class Controller(ABC, Generic[ParametersT]):
     def state_interface_configuration(self) -> InterfaceConfiguration:
         """Say which state interfaces to read; asked after `on_configure`."""
 
-    @abstractmethod
     def on_configure(self, parameters: ParametersT) -> None:
-        """Take the parameters."""
+        """Take the parameters: they are `self.parameters` from now on."""
+        self._parameters = parameters
 
     def update_parameters(self, parameters: ParametersT) -> None:
         """Take parameters that a client changed since `on_configure`, between two updates.
 
-        Read-only ones are as before. By default nothing changes before the next `on_configure`.
-        Raise `ControllerError` or `ParameterError` to refuse the change.
+        Read-only ones are as before. By default `self.parameters` are these from now on, and
+        nothing else changes. Raise `ControllerError` or `ParameterError` to refuse the change.
         """
+        self._parameters = parameters
 
     def on_activate(self) -> None:
         """Get ready for the first update; `commands` and `states` are loaned from now on."""
@@ -129,6 +143,7 @@ class Controller(ABC, Generic[ParametersT]):
 
     def on_cleanup(self) -> None:
         """Forget the parameters."""
+        self._parameters = None
 
     def on_shutdown(self) -> None:
         """Let go of everything; nothing is called afterwards."""

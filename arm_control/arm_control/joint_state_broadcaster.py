@@ -100,7 +100,7 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
         """Read joints x interfaces of the parameters, or everything where one is empty."""
-        joints, interfaces = self._parameters.joints, self._parameters.interfaces
+        joints, interfaces = self.parameters.joints, self.parameters.interfaces
         if not joints or not interfaces:
             return InterfaceConfiguration.all()
         return InterfaceConfiguration.individual(
@@ -136,9 +136,9 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
         self._plan = plan_joint_states(
             self.states.names,
             quantity_of=self._quantity_of,
-            ordered_joints=self._parameters.joints,
+            ordered_joints=self.parameters.joints,
             allowed_joints=self._allowed_joints(),
-            extra_joints=self._parameters.extra_joints,
+            extra_joints=self.parameters.extra_joints,
         )
         if self.sink is not None:
             self.sink.open(self._plan.layout)
@@ -156,7 +156,7 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
         self._plan = None
 
     def _allowed_joints(self) -> Collection[str] | None:
-        return self._movable_joints if self._parameters.use_urdf_to_filter else None
+        return self._movable_joints if self.parameters.use_urdf_to_filter else None
 
     def _read_movable_joints(self) -> frozenset[str] | None:
         if not self.context.robot_description:

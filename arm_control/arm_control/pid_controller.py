@@ -63,7 +63,7 @@ class PidController(ChainableController[PidControllerParameters]):
         self._parameters = PidControllerParameters()
         self._offered: deque[Array] = deque(maxlen=1)
         self._measured = np.empty((0, 0))
-        self._set_up(self._parameters)
+        self._set_up(self.parameters)
 
     @classmethod
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -101,30 +101,30 @@ class PidController(ChainableController[PidControllerParameters]):
 
     def update_parameters(self, parameters: PidControllerParameters) -> None:
         """Take changed gains; the integral stays."""
-        if parameters.enable_feedforward != self._parameters.enable_feedforward:
+        if parameters.enable_feedforward != self.parameters.enable_feedforward:
             self.is_feedforward_enabled = parameters.enable_feedforward
         self._take_gains(parameters)
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
         """Claim the command interface of each degree of freedom."""
-        interface = self._parameters.command_interface
+        interface = self.parameters.command_interface
         return InterfaceConfiguration.individual(
-            f"{dof}/{interface}" for dof in self._parameters.dof_names
+            f"{dof}/{interface}" for dof in self.parameters.dof_names
         )
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
         """Read what is controlled, unless the states come by topic."""
-        if self._parameters.use_external_measured_states:
+        if self.parameters.use_external_measured_states:
             return InterfaceConfiguration.none()
-        return InterfaceConfiguration.individual(self._parameters.state_names)
+        return InterfaceConfiguration.individual(self.parameters.state_names)
 
     def reference_names(self) -> tuple[str, ...]:
         """Export a reference for each state."""
-        return self._parameters.state_names
+        return self.parameters.state_names
 
     def exported_state_names(self) -> tuple[str, ...]:
         """Export each state as it was measured."""
-        return self._parameters.state_names
+        return self.parameters.state_names
 
     def offer(
         self, names: Sequence[str], values: Sequence[float], derivatives: Sequence[float] = ()
@@ -166,7 +166,7 @@ class PidController(ChainableController[PidControllerParameters]):
 
     def on_deactivate(self) -> None:
         """Command a standstill where a command means motion or force."""
-        if self._parameters.command_interface != "position":
+        if self.parameters.command_interface != "position":
             self.commands.write(0.0)
 
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
@@ -181,7 +181,7 @@ class PidController(ChainableController[PidControllerParameters]):
         """Command by the errors."""
         references = self.references.reshape(self._shape)
         measured = self._measured
-        if not self._parameters.use_external_measured_states:
+        if not self.parameters.use_external_measured_states:
             measured = self.states.read().reshape(self._shape)
         self.exported_states[:] = measured.ravel()
         error = references[0] - measured[0]
@@ -242,7 +242,7 @@ class PidController(ChainableController[PidControllerParameters]):
     ) -> tuple[Array, str]:
         """Return a message's numbers as rows of interfaces, and why they cannot be used."""
         rows = np.full(self._shape, np.nan)
-        own = self._parameters.state_dof_names
+        own = self.parameters.state_dof_names
         named = list(names) or list(own)
         if sorted(named) != sorted(own):
             return rows, f"it names {', '.join(named)}; the controller has {', '.join(own)}"

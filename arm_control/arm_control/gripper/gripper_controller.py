@@ -56,22 +56,10 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
             )
         self.sink: GripperSink | None = None
         self._requests: RequestQueue[GripperRequest | GoalCancel] = RequestQueue()
-        self._parameters: ParametersT | None = None
         self._joint = ""
         self._target = GripperTarget(0.0, 0.0, 0.0)
         self._goal_id: object = None
         self._watch = GoalWatch(0.0, 0.0, 0.0)
-
-    @property
-    def parameters(self) -> ParametersT:
-        """The parameters in force.
-
-        Raises:
-            ControllerError: the controller is not configured.
-        """
-        if self._parameters is None:
-            raise ControllerError(f"controller '{self.name}' is not configured")
-        return self._parameters
 
     # Requests: any thread, once configured
 
@@ -185,10 +173,6 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
                 self._end(PREEMPTED)
                 self._goal_id = request.id
         self._end(deactivated(state))
-
-    def on_cleanup(self) -> None:
-        """Forget the parameters."""
-        self._parameters = None
 
     def _start(self, request: GripperRequest) -> None:
         parameters = self.parameters

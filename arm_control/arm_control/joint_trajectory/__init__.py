@@ -26,6 +26,15 @@ For the ROS half, in the order of its work:
 * After `submit_goal` and `cancel_goal`, let the loop thread call `serve_requests`: then a goal is
   preempted or cancelled at once even while the simulation stands still.
 
+Where ros2_controllers leaves something open, or leaves a client in the dark:
+
+* A trajectory on the topic ends the goal under way (aborted, with a sentence of its own). Upstream
+  goes on and judges the goal by a trajectory that its client never sent.
+* A stamp in the past: points that were due by now are skipped, as upstream does; a trajectory that
+  is over altogether is refused. From the present state to the first point left there is a step,
+  unless `smooth_replacement_time` gives it time.
+* A stamp in the future: the motion to the first point begins at once and arrives in time.
+
 Times are those of `update(time_s, period_s)`. Nothing here knows the wall clock.
 """
 

@@ -1,0 +1,66 @@
+"""The fake servos, a controller manager that drives them, and its controllers."""
+
+from pathlib import Path
+
+from launch_py import (
+    DeclareLaunchArgument,
+    LaunchDescription,
+    LogLine,
+    Notified,
+    ProcessExited,
+    SetLaunchConfiguration,
+)
+from launch_py.ros import FindPackageShare, Node, ParameterValue
+from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
+
+
+def describe(model: str, device: str) -> str:
+    """Return the URDF with the servos' port in it."""
+    return Path(model).read_text().replace("/tmp/servo_arm", device)
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return everything, started when what it needs is ready."""
+    share = FindPackageShare("servo_arm")
+    device = LaunchConfiguration("device")
+    description = ParameterValue(LaunchConfiguration("robot_description"), value_type=str)
+    servos = Node(
+        package="servo_arm",
+        executable="fake_servo",
+        arguments=["--link", device],
+        respawn=True,
+        ready=LogLine("servos at"),
+    )
+    manager = Node(
+        package="arm_control",
+        executable="ros2_control_node",
+        parameters=[PathJoinSubstitution([share, "config", "controllers.yaml"])],
+        ready=Notified(),
+        depends_on=servos,
+    )
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                "device", default_value="/tmp/servo_arm", description="name of the servos' port"
+            ),
+            SetLaunchConfiguration(
+                "robot_description",
+                Call(describe, PathJoinSubstitution([share, "urdf", "servo_arm.urdf"]), device),
+            ),
+            servos,
+            Node(
+                package="arm_description",
+                executable="robot_state_publisher",
+                parameters=[{"robot_description": description}],
+                ready=Notified(),
+            ),
+            manager,
+            Node(
+                package="arm_control",
+                executable="spawner",
+                arguments=["joint_state_broadcaster", "pd_controller"],
+                ready=ProcessExited(),
+                depends_on=manager,
+            ),
+        ]
+    )

@@ -1,0 +1,1 @@
+"""A controller and a hardware component of your own, as an example."""

@@ -1,0 +1,49 @@
+"""The example package, from its sources."""
+
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(autouse=True)
+def _importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "servo_arm"))
+
+
+@pytest.fixture
+def servo_info() -> Callable[..., Any]:
+    """Make the hardware description of two servos on a port."""
+    from arm_control import parse_hardware_info
+
+    urdf = (ROOT / "servo_arm" / "urdf" / "servo_arm.urdf").read_text()
+
+    def make(port: Path, timeout_s: float = 5.0) -> Any:
+        text = urdf.replace("/tmp/servo_arm", str(port)).replace(">0.2<", f">{timeout_s}<")
+        (info,) = parse_hardware_info(text)
+        return info
+
+    return make
+
+
+@pytest.fixture
+def port(tmp_path: Path) -> Iterator[Path]:
+    """Return the port of two fake servos that answer until the test ends."""
+    from servo_arm.fake_servo import pseudo_terminal, serve
+
+    link = tmp_path / "port"
+    with pseudo_terminal(link) as near:
+        # It ends with the pseudo-terminal: reading from a closed one fails.
+        threading.Thread(target=serve_until_closed, args=(serve, near), daemon=True).start()
+        yield link
+
+
+def serve_until_closed(serve: Callable[[int, int], None], near: int) -> None:
+    try:
+        serve(near, 2)
+    except OSError:
+        return

@@ -1,0 +1,116 @@
+"""The example package, installed by pip, launched and driven over ROS."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+
+pytestmark = pytest.mark.ros
+
+SOURCES = Path(__file__).parents[4] / "examples" / "servo_arm"
+ACTIVE = 3
+INSTALL_TIMEOUT_S = 150.0
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Install the package into a folder of its own, which the module's processes look into."""
+    folder = tmp_path_factory.mktemp("installation")
+    sources, target = folder / "servo_arm", folder / "target"
+    shutil.copytree(SOURCES, sources)
+    command = [sys.executable, "-m", "pip", "install", "-q", "--no-deps"]
+    subprocess.run(
+        [*command, "--target", str(target), str(sources)], check=True, timeout=INSTALL_TIMEOUT_S
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(target), prepend=os.pathsep)
+        patch.setenv("AMENT_PREFIX_PATH", str(target), prepend=os.pathsep)
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def launched(installed: Path, run: Any) -> Any:
+    """Return the running launch of the package."""
+    program = run(
+        *("-m", "arm_cli", "launch", "servo_arm", "servo_arm.launch.py"),
+        f"device:={installed / 'port'}",
+    )
+    program.wait_for_line("[launch] stop: ")
+    return program
+
+
+@pytest.fixture
+def control(launched: Any, client: Any, control_of: Any) -> Any:
+    return control_of("")
+
+
+@pytest.fixture
+def joint_states(client: Any) -> Any:
+    from sensor_msgs.msg import JointState
+
+    return client.subscribe(JointState, "/joint_states")
+
+
+def servos(control: Any) -> Any:
+    (component,) = control.call("list_hardware_components").component
+    return component
+
+
+def wait_until_at(joint_states: Any, position: float) -> None:
+    joint_states.wait_until(
+        lambda messages: (
+            messages and list(messages[-1].position) == pytest.approx([position] * 2, abs=0.02)
+        ),
+        f"both joints at {position}",
+    )
+
+
+def test_its_types_are_found(control: Any) -> None:
+    assert "servo_arm/PdController" in control.call("list_controller_types").types
+    assert control.states() == {"joint_state_broadcaster": "active", "pd_controller": "active"}
+    component = servos(control)
+    assert component.plugin_name == "servo_arm/SerialServo"
+    assert component.state.label == "active"
+
+
+def test_its_parameters_take_effect_at_once(
+    control: Any, joint_states: Any, set_parameter: Any
+) -> None:
+    assert set_parameter("/pd_controller", "target", 0.5).successful
+    wait_until_at(joint_states, 0.5)
+
+
+def test_servos_that_were_unplugged_are_used_again(
+    control: Any, client: Any, launched: Any, joint_states: Any, set_parameter: Any
+) -> None:
+    from lifecycle_msgs.msg import State
+
+    fake = next(
+        process
+        for process in psutil.Process(launched.process.pid).children(recursive=True)
+        if "servo_arm.fake_servo" in " ".join(process.cmdline())
+    )
+    fake.kill()
+    client.wait_until(lambda: servos(control).state.label == "unconfigured", "the servos are gone")
+    assert set(control.states().values()) == {"inactive"}
+
+    # The launcher starts the fake anew: somebody has plugged the servos in.
+    client.wait_until(
+        lambda: (
+            control.call(
+                "set_hardware_component_state", name="Servos", target_state=State(id=ACTIVE)
+            ).ok
+        ),
+        "the servos are there again",
+    )
+    assert control.switch(["joint_state_broadcaster", "pd_controller"]).ok
+    assert set_parameter("/pd_controller", "target", -0.3).successful
+    joint_states.clear()
+    wait_until_at(joint_states, -0.3)
+    assert "Traceback" not in launched.output
