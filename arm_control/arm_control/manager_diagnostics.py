@@ -9,7 +9,8 @@ from arm_control.diagnostic_thresholds import (
     RunThresholds,
 )
 from arm_control.health_report import HealthReport, Level
-from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.lifecycle import LifecycleState
+from arm_control.manager_snapshot import ManagerSnapshot
 from arm_control.refusals import Refusals
 from arm_control.run_record import RunRecord, Spread
 from arm_control.status import ControllerStatus
@@ -28,33 +29,29 @@ MANAGER = "Controller Manager Activity"
 class ManagerDiagnostics:
     """Watches a manager from a thread of its own, whatever the control loop is doing.
 
-    It observes the manager (`ManagerObserver`, loop thread) for who is in which state, and reads
-    the records of their runs; `reports` may be called from any other thread, even while the loop
-    is stuck.
+    It only reads what any thread may read, so `reports` may be called even while the loop is
+    stuck.
     """
 
-    def __init__(self, manager: ControllerManager, loop: ControlLoop, refusals: Refusals) -> None:
-        """Take the first look; loop thread.
+    def __init__(
+        self,
+        manager: ControllerManager,
+        snapshot: ManagerSnapshot,
+        loop: ControlLoop,
+        refusals: Refusals,
+    ) -> None:
+        """Watch over a manager.
 
         Args:
-            manager: the core.
-            loop: runs it.
+            manager: the core; of it only the rates are read.
+            snapshot: who is in which state.
+            loop: runs the manager.
             refusals: of the requests that came to it.
         """
         self._manager = manager
+        self._snapshot = snapshot
         self._loop = loop
         self._refusals = refusals
-        self.activity_changed()
-
-    def controller_transitioned(
-        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
-    ) -> None:
-        """Do nothing: `activity_changed` follows."""
-
-    def activity_changed(self) -> None:
-        """Note who is in which state; loop thread."""
-        self._controllers = self._manager.controller_runs()
-        self._components = self._manager.component_runs()
 
     def reports(self, thresholds: DiagnosticThresholds) -> tuple[HealthReport, ...]:
         """Return how controllers, hardware components and the loop are."""
@@ -66,9 +63,9 @@ class ManagerDiagnostics:
 
     def _report_controllers(self, thresholds: RunThresholds) -> HealthReport:
         report = HealthReport(CONTROLLERS)
-        controllers = self._controllers
+        controllers, components = self._snapshot.controllers, self._snapshot.components
         active = [pair for pair in controllers if pair[0].state is LifecycleState.ACTIVE]
-        if not any(s.state is LifecycleState.ACTIVE for s, _, _ in self._components):
+        if not any(s.state is LifecycleState.ACTIVE for s, _, _ in components):
             report.merge(
                 Level.ERROR,
                 "No hardware components are currently active to activate controllers",
@@ -88,7 +85,7 @@ class ManagerDiagnostics:
 
     def _report_components(self, thresholds: RunThresholds) -> HealthReport:
         report = HealthReport(COMPONENTS)
-        components = self._components
+        components = self._snapshot.components
         active = sum(status.state is LifecycleState.ACTIVE for status, _, _ in components)
         if not components:
             report.merge(Level.ERROR, "No hardware components are loaded!")

@@ -19,6 +19,7 @@ from arm_control.diagnostic_thresholds import (
 )
 from arm_control.health_report import HealthReport, Level
 from arm_control.manager_diagnostics import ManagerDiagnostics, waiting_reports
+from arm_control.manager_snapshot import ManagerSnapshot
 from arm_control.refusals import CAPACITY, Refusals
 from arm_control.testing import ManualClock
 
@@ -44,8 +45,11 @@ class Ward:
 
     def watch(self) -> None:
         """Observe the manager that the bench has now."""
-        self._diagnostics = ManagerDiagnostics(self.bench.manager, self.loop, self.refusals)
-        self.bench.manager.add_observer(self._diagnostics)
+        snapshot = ManagerSnapshot(self.bench.manager)
+        self.bench.manager.add_observer(snapshot)
+        self._diagnostics = ManagerDiagnostics(
+            self.bench.manager, snapshot, self.loop, self.refusals
+        )
 
     def report(self, index: int) -> HealthReport:
         """Return one of the three reports."""

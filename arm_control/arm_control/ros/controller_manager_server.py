@@ -13,6 +13,7 @@ from arm_control.controller_manager import ControllerManager
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.manager_diagnostics import ManagerDiagnostics
+from arm_control.manager_snapshot import ManagerSnapshot
 from arm_control.refusals import Refusals
 from arm_control.ros.control_plane import ControlPlane
 from arm_control.ros.controller_manager_node import ControllerManagerNode
@@ -69,13 +70,11 @@ class ControllerManagerServer:
             for component in self._plane.on_loop(manager.list_hardware_components)
         ]
         self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED_QOS)
+        self._snapshot = self._plane.on_loop(lambda: ManagerSnapshot(manager))
+        self._plane.on_loop(self._observe)
         refusals = Refusals()
-        self._services = ManagerServices(node, self._plane, manager, refusals)
-        self._plane.on_loop(lambda: manager.add_observer(self))
-        self._plane.on_loop(self.activity_changed)
-        diagnostics = self._plane.on_loop(lambda: ManagerDiagnostics(manager, loop, refusals))
-        self._plane.on_loop(lambda: manager.add_observer(diagnostics))
-        node.health.watch(diagnostics)
+        self._services = ManagerServices(node, self._plane, manager, self._snapshot, refusals)
+        node.health.watch(ManagerDiagnostics(manager, self._snapshot, loop, refusals))
         self._thread = ExecutorThread("controller manager services")
         self._thread.start(node)
 
@@ -116,10 +115,18 @@ class ControllerManagerServer:
     def activity_changed(self) -> None:
         """Publish who is in which state; loop thread."""
         message = activity_message(
-            self._manager.list_controllers(), self._manager.list_hardware_components()
+            [status for status, _ in self._snapshot.controllers],
+            [status for status, _, _ in self._snapshot.components],
         )
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._activity.publish(message)
+
+    def _observe(self) -> None:
+        """Follow the manager's changes; loop thread."""
+        # In this order: what is published is read off the snapshot.
+        for observer in (self._snapshot, self):
+            self._manager.add_observer(observer)
+            observer.activity_changed()
 
     def _make_component_node(self, component: str) -> Node:
         node = Node(

@@ -23,6 +23,7 @@ from arm_control.controller_manager import ControllerManager
 from arm_control.controller_switch import Strictness, SwitchRequest
 from arm_control.errors import ArmControlError
 from arm_control.lifecycle import LifecycleState
+from arm_control.manager_snapshot import ManagerSnapshot
 from arm_control.refusals import Refusals
 from arm_control.registry import controller_types, is_chainable
 from arm_control.ros.control_plane import ControlPlane
@@ -53,11 +54,13 @@ class ManagerServices:
         node: ControllerManagerNode,
         plane: ControlPlane,
         manager: ControllerManager,
+        snapshot: ManagerSnapshot,
         refusals: Refusals,
     ) -> None:
         self._node = node
         self._plane = plane
         self._manager = manager
+        self._snapshot = snapshot
         self._refusals = refusals
         for type_, name, answer in (
             (ListControllers, "list_controllers", self._list_controllers),
@@ -101,8 +104,7 @@ class ManagerServices:
     def _list_controllers(
         self, _request: ListControllers.Request, response: ListControllers.Response
     ) -> ListControllers.Response:
-        statuses = self._plane.on_loop(self._manager.list_controllers)
-        response.controller = [controller_message(status) for status in statuses]
+        response.controller = [controller_message(s) for s, _ in self._snapshot.controllers]
         return response
 
     def _list_controller_types(
@@ -155,7 +157,7 @@ class ManagerServices:
     def _list_interfaces(
         self, _request: ListHardwareInterfaces.Request, response: ListHardwareInterfaces.Response
     ) -> ListHardwareInterfaces.Response:
-        commands, states = self._plane.on_loop(self._manager.list_hardware_interfaces)
+        commands, states = self._snapshot.interfaces
         response.command_interfaces = [interface_message(status) for status in commands]
         response.state_interfaces = [interface_message(status) for status in states]
         return response
@@ -163,8 +165,7 @@ class ManagerServices:
     def _list_components(
         self, _request: ListHardwareComponents.Request, response: ListHardwareComponents.Response
     ) -> ListHardwareComponents.Response:
-        statuses = self._plane.on_loop(self._manager.list_hardware_components)
-        response.component = [component_message(status) for status in statuses]
+        response.component = [component_message(s) for s, _, _ in self._snapshot.components]
         return response
 
     def _set_component_state(
@@ -181,7 +182,7 @@ class ManagerServices:
             )
 
         response.ok = self._worked("set_hardware_component_state", request.name, set_state)
-        for status in self._plane.on_loop(self._manager.list_hardware_components):
+        for status, _, _ in self._snapshot.components:
             if status.name == request.name:
                 response.state = state_message(status.state)
         return response

@@ -225,7 +225,9 @@ def test_it_all_works_while_time_stands_still(control: Any, manager: Any) -> Non
         manager.tell("resume")
 
 
-def test_a_loop_that_is_stuck_lets_a_switch_time_out(control: Any, manager: Any) -> None:
+def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
+    control: Any, manager: Any
+) -> None:
     from builtin_interfaces.msg import Duration
 
     control.load("position_controller")
@@ -238,12 +240,16 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out(control: Any, manager: Any)
             strictness=STRICT,
             timeout=Duration(nanosec=200_000_000),
         )
+        states = control.states()
+        (component,) = control.call("list_hardware_components").component
     finally:
         manager.tell("unblock")
     assert (answer.ok, answer.message) == (
         False,
         "Switch controller timed out after 0.200000 seconds!",
     )
+    assert states == {"position_controller": "inactive"}
+    assert component.state.label == "active"
     assert control.states() == {"position_controller": "inactive"}
 
 
