@@ -76,9 +76,15 @@ class Program:
     def tell(self, line: str) -> None:
         """Write a line to its standard input and wait until it has obeyed."""
         assert self.process.stdin is not None
+        done = f"{line} done"
+        with self._changed:
+            before = self.lines.count(done)
         self.process.stdin.write(f"{line}\n")
         self.process.stdin.flush()
-        self.wait_for_line(f"{line} done")
+        with self._changed:
+            # It may have been told so before.
+            obeyed = self._changed.wait_for(lambda: self.lines.count(done) > before, TIMEOUT_S)
+        assert obeyed, f"no {done!r} within {TIMEOUT_S} s:\n{self.output}"
 
     def wait(self) -> int:
         """Wait for its end; return the exit code."""
