@@ -11,6 +11,7 @@ from arm_control.errors import HardwareInfoError
 from arm_control.hardware import HardwareReturn
 from arm_control.hardware_info import HardwareInfo, JointInfo
 from arm_control.mock_motion import MOTIONS, MockMotion
+from arm_control.system_interface import SystemInterface
 
 STANDARD_INTERFACES = (*MOTIONS, "effort")
 """Joint interfaces that start at zero; any other is unknown until it gets a value."""
@@ -45,7 +46,7 @@ class MockSettings:
     custom_interface_with_following_offset: str = ""
 
 
-class GenericSystem:
+class GenericSystem(SystemInterface):
     """A system, actuator or sensor that does at once what it is told.
 
     What is commanded shows in the states of the same name at the next read; NaN commands nothing.
@@ -59,11 +60,9 @@ class GenericSystem:
             HardwareInfoError: a parameter makes no sense, or a mimic joint has no leader here or
                 is commanded itself.
         """
-        self.info = info
+        super().__init__(info)
         self._settings = _read_settings(info)
-        self.state_interfaces = info.state_interface_names
         self.command_interfaces = _command_names(info, self._settings)
-        self._states = self._commands = np.empty(0)
         self._mirror_from, self._mirror_to = self._pair(self._mirrored())
         self._offset_from, self._offset_to = self._pair(self._offset())
         self._motion = MockMotion(
@@ -74,35 +73,16 @@ class GenericSystem:
             integrates=self._settings.calculate_dynamics,
         )
 
-    def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
-        """Keep the views."""
-        self._states, self._commands = states, commands
-
     def on_configure(self) -> bool:
         """Put every state at its initial value."""
-        self._states[:] = _initial_values(self.info)
-        self._motion.start(self._states)
+        self.states[:] = _initial_values(self.info)
+        self._motion.start(self.states)
         return True
 
     def on_activate(self) -> bool:
         """Say so where commands will have no effect."""
         if self._settings.disable_commands:
-            logger.warning(
-                "hardware component '%s' has disable_commands: its states will not move",
-                self.info.name,
-            )
-        return True
-
-    def on_deactivate(self) -> bool:
-        """Nothing to power down."""
-        return True
-
-    def on_cleanup(self) -> bool:
-        """Nothing to close."""
-        return True
-
-    def on_shutdown(self) -> bool:
-        """Nothing to let go of."""
+            self.logger.warning("disable_commands is true: the states will not move")
         return True
 
     def prepare_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
@@ -123,7 +103,7 @@ class GenericSystem:
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Bring what was commanded to the states."""
         if not self._settings.disable_commands:
-            commands, states = self._commands, self._states
+            commands, states = self.commands, self.states
             _copy_given(commands[self._mirror_from], states, self._mirror_to)
             _copy_given(
                 commands[self._offset_from] + self._settings.position_state_following_offset,
