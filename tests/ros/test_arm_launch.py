@@ -107,7 +107,8 @@ def test_a_simulation_killed_with_its_cameras_leaves_no_shared_memory(launch, cl
     launched = launch()
     launched.wait_until_ready()
     client.subscribe(Image, "/videocamera").wait_for(1)
-    files = launched.shared_memory()
+    # Not the files of ports: this process, which still answers the dead, may make them anew.
+    files = {file for file in launched.shared_memory() if "_port" not in file.name}
     assert files
     programs = ("arm_gazebo.camera_node", "arm_gazebo_node")
     victims = [p for p in launched.descendants() if any(n in str(p.cmdline()) for n in programs)]
