@@ -6,8 +6,8 @@ content of a parameter file.
 
 import re
 from collections.abc import Mapping, Sequence
+from html import escape
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 from arm_description.robot import Robot
 
@@ -43,7 +43,7 @@ def with_hardware(urdf: str, robot: Robot) -> str:
     """
     commanded = set(commandable_joints(robot))
     joints = "".join(
-        f"<joint name={quoteattr(joint.name)}>"
+        f'<joint name="{escape(joint.name)}">'
         + "".join(f'<command_interface name="{i}"/>' for i in INTERFACES if joint.name in commanded)
         + "".join(f'<state_interface name="{i}"/>' for i in INTERFACES)
         + "</joint>"
