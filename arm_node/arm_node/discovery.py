@@ -18,8 +18,10 @@ def answers_held_back() -> Iterator[None]:
     Make the process's first node inside. Threads inherit the scheduling of the thread that makes
     them, so Fast DDS's receiving threads start on this thread's processor and cannot preempt it:
     they read what came in once this thread waits for something, and by then the participant
-    listens. SCHED_FIFO, where the process may, keeps other processes from coming between;
-    SCHED_BATCH needs no privilege. Afterwards all threads of the process run as before.
+    listens. SCHED_RR, where the process may, keeps other processes from coming between;
+    SCHED_BATCH needs no privilege. Not SCHED_FIFO: one of Fast DDS's threads may wait in a busy
+    loop for this one, and would never let go of the processor. Afterwards all threads of the
+    process run as before.
     """
     allowed = os.sched_getaffinity(0)
     if os.sched_getscheduler(0) != os.SCHED_OTHER or not _confine():
@@ -34,7 +36,7 @@ def answers_held_back() -> Iterator[None]:
 
 def _confine() -> bool:
     here = {_current_processor()}
-    return _schedule(0, os.SCHED_FIFO, 1, here) or _schedule(0, os.SCHED_BATCH, 0, here)
+    return _schedule(0, os.SCHED_RR, 1, here) or _schedule(0, os.SCHED_BATCH, 0, here)
 
 
 def _current_processor() -> int:
