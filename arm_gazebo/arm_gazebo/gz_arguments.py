@@ -9,7 +9,7 @@ RUN = "-r"
 SERVER_ONLY = "-s"
 VERBOSITY = "-v"
 LEVELS = ("fatal", "error", "warn", "info", "info")
-"""What Gazebo's -v 0 to -v 4 let through, in ROS's words; ROS's debug shows rcl's work, not ours."""
+"""What Gazebo's -v 0 to -v 4 let through, in ROS's words; its debug shows rcl's work, not ours."""
 LET_BE = ("--headless-rendering",)
 """Cameras need no display here anyway."""
 WORLD_SUFFIXES = (".sdf", ".world")
