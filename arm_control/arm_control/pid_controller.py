@@ -60,10 +60,9 @@ class PidController(ChainableController[PidControllerParameters]):
         super().__init__(context)
         self.sink: PidStateSink | None = None
         self.is_feedforward_enabled = False
-        self._parameters = PidControllerParameters()
         self._offered: deque[Array] = deque(maxlen=1)
         self._measured = np.empty((0, 0))
-        self._set_up(self.parameters)
+        self._set_up(PidControllerParameters())
 
     @classmethod
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -96,6 +95,7 @@ class PidController(ChainableController[PidControllerParameters]):
                 f"'dof_names' has {len(parameters.dof_names)} names, but "
                 f"'reference_and_state_dof_names' has {len(parameters.state_dof_names)}"
             )
+        super().on_configure(parameters)
         self.is_feedforward_enabled = parameters.enable_feedforward
         self._set_up(parameters)
 
@@ -103,6 +103,7 @@ class PidController(ChainableController[PidControllerParameters]):
         """Take changed gains; the integral stays."""
         if parameters.enable_feedforward != self.parameters.enable_feedforward:
             self.is_feedforward_enabled = parameters.enable_feedforward
+        super().update_parameters(parameters)
         self._take_gains(parameters)
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
@@ -227,11 +228,9 @@ class PidController(ChainableController[PidControllerParameters]):
         self._state = np.zeros((count, len(STATE_FIELDS)))
         self._last_error = np.full(count, np.nan)
         self._pid = Pid([])
-        self._parameters = parameters
         self._take_gains(parameters)
 
     def _take_gains(self, parameters: PidControllerParameters) -> None:
-        self._parameters = parameters
         self._gains = [parameters.gains_of(dof) for dof in parameters.dof_names]
         self._wraps = np.array([gains.angle_wraparound for gains in self._gains], dtype=np.bool_)
         self._feedforward = np.array([gains.feedforward_gain for gains in self._gains])
