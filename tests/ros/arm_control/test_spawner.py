@@ -164,7 +164,8 @@ def test_a_manager_that_does_not_answer_at_all_is_given_up(
         assert said in spawner.fail()
     finally:
         manager.tell("unblock")
-    assert control.states() == {}
+    # What it asked for last, the load, may have been done once the loop went on; no more than that.
+    assert control.states() in ({}, {"position_controller": "unconfigured"})
 
 
 # The end
