@@ -31,7 +31,7 @@ def main(argv: list[str] | None = None) -> int:
         for piece in part.pieces:
             path = write_mesh(piece, meshes)
             logger.info("%s: %.1f kB", path.name, path.stat().st_size / 1000)
-    write_macros(parts, urdf / "arm_parts.xacro")
+    write_macros(parts, urdf / "arm_parts.xacro", PACKAGE.name, "Every part has 0.1 kg")
     return 0
 
 

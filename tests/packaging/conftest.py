@@ -33,8 +33,19 @@ class Project:
 
     @property
     def packages(self) -> list[str]:
-        """The packages of the wheel."""
+        """The packages of the wheel that hold modules, each a folder of the root."""
         return self.table["tool"]["hatch"]["build"]["targets"]["wheel"]["dev-mode-dirs"]
+
+    @property
+    def data_packages(self) -> dict[str, Path]:
+        """The packages of the wheel that hold data only: name to folder."""
+        sources = (Path(source) for source in self.shared_data)
+        manifests = [source for source in sources if source.name == "package.xml"]
+        return {
+            manifest.parent.name: manifest.parent
+            for manifest in manifests
+            if manifest.parent.name not in self.packages
+        }
 
     @property
     def shared_data(self) -> dict[str, str]:
@@ -131,7 +142,8 @@ def environment_of(prefixes: str, **variables: str) -> dict[str, str]:
 def copy_sources(folder: Path) -> Project:
     """Copy what the root wheel is made of."""
     ignored = [line.rstrip("/") for line in (ROOT / ".gitignore").read_text().split()]
-    for package in Project(ROOT).packages:
+    project = Project(ROOT)
+    for package in (*project.packages, *project.data_packages.values()):
         shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns(*ignored))
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, folder / name)
@@ -194,7 +206,8 @@ def install_by_colcon(folder: Path, _wheel: Path) -> Installation:
     python = make_environment(folder / "venv")
     pip("install", "colcon-common-extensions", into=python, folder=folder)
     colcon = folder / "venv/bin/colcon"
-    run([colcon, "build", "--base-paths", *sources.packages], sources.root, bare())
+    folders = [*sources.packages, *sources.data_packages.values()]
+    run([colcon, "build", "--base-paths", *folders], sources.root, bare())
     install = sources.root / "install"
     sourced = run(["bash", "-c", f". {install}/local_setup.bash && env -0"], folder, bare())
     variables = dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)

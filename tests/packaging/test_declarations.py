@@ -9,7 +9,14 @@ import pytest
 from lxml import etree
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = sorted(path.parent.name for path in ROOT.glob("*/package.xml"))
+FOLDERS = {
+    path.parent.name: path.parent
+    for pattern in ("*/package.xml", "robots/*/package.xml")
+    for path in sorted(ROOT.glob(pattern))
+}
+PACKAGES = sorted(FOLDERS)
+MODULE_PACKAGES = [package for package in PACKAGES if (FOLDERS[package] / package).is_dir()]
+"""Those that hold more than data."""
 DATA_FOLDERS = ("config", "launch", "meshes", "urdf", "worlds")
 
 
@@ -41,17 +48,17 @@ class SetupFile(ast.NodeVisitor):
 
     def entry_points(self, group: str) -> dict[str, str]:
         """One group of entry points: name to `module:object`."""
-        groups = self.arguments["entry_points"]
+        groups = self.arguments.get("entry_points", {})
         assert isinstance(groups, dict)
         return dict(re.split(r"\s*=\s*", line) for line in groups.get(group, []))
 
 
 def setup_file(package: str) -> SetupFile:
-    return SetupFile(ROOT / package / "setup.py")
+    return SetupFile(FOLDERS[package] / "setup.py")
 
 
 def manifest(package: str) -> etree._Element:
-    return etree.parse(ROOT / package / "package.xml").getroot()
+    return etree.parse(FOLDERS[package] / "package.xml").getroot()
 
 
 def entry_points(table: dict) -> dict[str, dict[str, str]]:
@@ -69,8 +76,10 @@ def defined_names(module: str) -> set[str]:
 
 def test_every_package_is_in_the_wheel(project):
     wheel = project.table["tool"]["hatch"]["build"]["targets"]["wheel"]
-    assert sorted(wheel["packages"]) == [f"{package}/{package}" for package in PACKAGES]
-    assert sorted(wheel["dev-mode-dirs"]) == PACKAGES
+    assert sorted(wheel["packages"]) == [f"{package}/{package}" for package in MODULE_PACKAGES]
+    assert sorted(wheel["dev-mode-dirs"]) == MODULE_PACKAGES
+    indexed = {target for target in wheel["shared-data"].values() if "/ament_index/" in target}
+    assert {target.rpartition("/")[2] for target in indexed} == set(PACKAGES)
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -95,7 +104,7 @@ def test_the_descriptions_agree(package):
 @pytest.mark.parametrize("package", PACKAGES)
 def test_the_names_are_the_folders(package):
     config = configparser.ConfigParser()
-    config.read(ROOT / package / "setup.cfg")
+    config.read(FOLDERS[package] / "setup.cfg")
     assert manifest(package).findtext("name") == package
     assert setup_file(package).arguments["name"] == package
     # Where `ros2 run` looks for executables.
@@ -110,7 +119,9 @@ def test_colcon_builds_it_as_a_python_package(package):
 
 def test_no_setup_file_has_a_group_of_entry_points_that_the_root_lacks(project):
     groups = {
-        group for package in PACKAGES for group in setup_file(package).arguments["entry_points"]
+        group
+        for package in MODULE_PACKAGES
+        for group in setup_file(package).arguments["entry_points"]
     }
     assert groups <= set(entry_points(project.table))
 
@@ -136,25 +147,26 @@ def test_every_entry_point_leads_to_something(project):
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_the_data_folders_agree(project, package):
-    present = [name for name in DATA_FOLDERS if (ROOT / package / name).is_dir()]
+    folder = FOLDERS[package].relative_to(ROOT)
+    present = [name for name in DATA_FOLDERS if (ROOT / folder / name).is_dir()]
     assert sorted(setup_file(package).constants["DATA_FOLDERS"]) == present
     wanted = {
-        f"{package}/resource/{package}": f"share/ament_index/resource_index/packages/{package}",
-        f"{package}/package.xml": f"share/{package}/package.xml",
-        **{f"{package}/{name}": f"share/{package}/{name}" for name in present},
+        f"{folder}/resource/{package}": f"share/ament_index/resource_index/packages/{package}",
+        f"{folder}/package.xml": f"share/{package}/package.xml",
+        **{f"{folder}/{name}": f"share/{package}/{name}" for name in present},
     }
     declared = {
         source: target
         for source, target in project.shared_data.items()
-        if source.split("/")[0] == package
+        if Path(source).is_relative_to(folder)
     }
     assert declared == wanted
 
 
-@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("package", MODULE_PACKAGES)
 def test_the_other_packages_that_are_imported_are_declared(package):
     imported: set[str] = set()
-    for path in (ROOT / package / package).rglob("*.py"):
+    for path in (FOLDERS[package] / package).rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
                 imported.add(node.module.split(".")[0])

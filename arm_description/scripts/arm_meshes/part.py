@@ -1,4 +1,4 @@
-"""A part of the arm: what it looks like, what it weighs, and what others bump into."""
+"""A part of a robot: what it looks like, what it weighs, and what others bump into."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,9 @@ from manifold3d import Manifold
 
 from arm_meshes.solid import Vector
 
+ARM_PART_KG = 0.1
+"""Of every link of the arm that has a mass, as in the original."""
+
 
 @dataclass(frozen=True, slots=True)
 class Piece:
@@ -14,7 +17,7 @@ class Piece:
 
     Attributes:
         mesh: name of the file without its ending.
-        material: name of a material of arm_materials.xacro.
+        material: name of a material of the robot's *_materials.xacro.
         solid: the shape, in mm.
     """
 
@@ -40,17 +43,19 @@ class BoxCollision:
 
 @dataclass(frozen=True, slots=True)
 class CylinderCollision:
-    """An upright cylinder that stands for the part in contacts.
+    """A cylinder that stands for the part in contacts.
 
     Attributes:
         centre: position of the centre, in mm.
         radius: in mm.
-        length: along z, in mm.
+        length: along its own axis, in mm.
+        rpy: orientation in rad; upright without one.
     """
 
     centre: Vector
     radius: float
     length: float
+    rpy: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +67,14 @@ class Part:
         pieces: the visuals.
         collisions: the shapes that touch; none for a part that only looks.
         body: the shape that the mass is spread over, in mm; None for a part without mass.
+        mass_kg: of the body.
     """
 
     name: str
     pieces: tuple[Piece, ...]
     collisions: tuple[BoxCollision | CylinderCollision, ...] = ()
     body: Manifold | None = None
+    mass_kg: float = ARM_PART_KG
 
 
 def box_between(lower: Vector, upper: Vector) -> BoxCollision:

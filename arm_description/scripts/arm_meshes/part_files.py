@@ -11,9 +11,6 @@ from arm_meshes.part import BoxCollision, CylinderCollision, Part, Piece
 from arm_meshes.solid import Vector
 
 MM = 1e-3
-MASS_KG = 0.1
-"""Of every link that has a mass, as in the original."""
-
 SLIVER_MM = 1e-3
 """Triangles thinner than this go: in an STL's 32-bit numbers they would leave gaps."""
 
@@ -23,7 +20,7 @@ HEADER = """\
   What each part looks like, weighs and bumps into. Written by scripts/make_meshes.py from the same
   shapes as the meshes: change them there, not here.
 
-  Every part has 0.1 kg, spread evenly over its shape; so its centre of mass is the shape's, and not
+  {masses}, spread evenly over its shape; so its centre of mass is the shape's, and not
   the link's origin as in the original.
 -->
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -37,9 +34,18 @@ def write_mesh(piece: Piece, folder: Path) -> Path:
     return path
 
 
-def write_macros(parts: tuple[Part, ...], path: Path) -> None:
-    """Write one xacro macro for each part: the content of a link."""
-    path.write_text(HEADER + "\n".join(map(_macro, parts)) + "</robot>\n", encoding="utf-8")
+def write_macros(parts: tuple[Part, ...], path: Path, package: str, masses: str) -> None:
+    """Write one xacro macro for each part: the content of a link.
+
+    Args:
+        parts: what to write.
+        path: the xacro file.
+        package: the package whose meshes/ holds the parts' meshes.
+        masses: how the header's sentence on the masses begins.
+    """
+    header = HEADER.replace("{masses}", masses)
+    macros = "\n".join(_macro(part, package) for part in parts)
+    path.write_text(f"{header}{macros}</robot>\n", encoding="utf-8")
 
 
 def to_trimesh(solid: Manifold) -> trimesh.Trimesh:
@@ -49,16 +55,16 @@ def to_trimesh(solid: Manifold) -> trimesh.Trimesh:
     return trimesh.Trimesh(vertices, np.asarray(mesh.tri_verts), process=False)
 
 
-def _macro(part: Part) -> str:
-    blocks = [] if part.body is None else [_inertial(part.body)]
-    blocks += [_visual(piece) for piece in part.pieces]
+def _macro(part: Part, package: str) -> str:
+    blocks = [] if part.body is None else [_inertial(part.body, part.mass_kg)]
+    blocks += [_visual(piece, package) for piece in part.pieces]
     blocks += [_collision(collision) for collision in part.collisions]
     return f'  <xacro:macro name="part_{part.name}">\n{"".join(blocks)}  </xacro:macro>\n'
 
 
-def _inertial(body: Manifold) -> str:
+def _inertial(body: Manifold, mass_kg: float) -> str:
     mesh = to_trimesh(body)
-    mesh.density = MASS_KG / mesh.volume
+    mesh.density = mass_kg / mesh.volume
     tensor = mesh.moment_inertia
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     values = tensor[np.triu_indices(3)]
@@ -69,14 +75,14 @@ def _inertial(body: Manifold) -> str:
     return (
         "    <inertial>\n"
         f"      {_origin((centre[0], centre[1], centre[2]))}\n"
-        f'      <mass value="{MASS_KG:g}"/>\n'
+        f'      <mass value="{mass_kg:g}"/>\n'
         f"      <inertia {inertia}/>\n"
         "    </inertial>\n"
     )
 
 
-def _visual(piece: Piece) -> str:
-    uri = f"package://arm_description/meshes/{piece.mesh}.stl"
+def _visual(piece: Piece, package: str) -> str:
+    uri = f"package://{package}/meshes/{piece.mesh}.stl"
     return (
         "    <visual>\n"
         f'      <geometry><mesh filename="{uri}"/></geometry>\n'
@@ -87,13 +93,13 @@ def _visual(piece: Piece) -> str:
 
 def _collision(collision: BoxCollision | CylinderCollision) -> str:
     if isinstance(collision, BoxCollision):
-        rpy, shape = collision.rpy, f'<box size="{_metres(collision.size)}"/>'
+        shape = f'<box size="{_metres(collision.size)}"/>'
     else:
         length, radius = _metres((collision.length,)), _metres((collision.radius,))
-        rpy, shape = (0.0, 0.0, 0.0), f'<cylinder radius="{radius}" length="{length}"/>'
+        shape = f'<cylinder radius="{radius}" length="{length}"/>'
     return (
         "    <collision>\n"
-        f"      {_origin(collision.centre, rpy)}\n"
+        f"      {_origin(collision.centre, collision.rpy)}\n"
         f"      <geometry>{shape}</geometry>\n"
         "    </collision>\n"
     )

@@ -1,0 +1,105 @@
+"""The myCobot's meshes: like the original's in size, closed, small, and what the script makes."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from arm_description import Mesh, Robot, expand_xacro, parse_urdf, resolve_uri
+
+SCRIPT = Path(__file__).parents[2] / "robots/mycobot_description/scripts/make_meshes.py"
+MESHES = resolve_uri("package://mycobot_description/meshes")
+URDF = resolve_uri("package://mycobot_description/urdf")
+
+BOUNDS = {
+    "link2": ((-24.0, -36.58, -64.14), (24.0, 23.96, 22.92)),
+    "link3": ((-132.0, -24.0, 29.84), (24.0, 24.0, 85.28)),
+    "link4": ((-115.16, -21.6, -22.4), (21.64, 21.6, 35.4)),
+    "link5": ((-19.29, -36.64, -33.7), (19.29, 19.71, 19.08)),
+    "link6": ((-19.2, -21.6, -38.0), (19.2, 35.1, 19.12)),
+    "link6_flange": ((-19.2, -19.2, -12.0), (19.2, 19.2, 1.7)),
+    "gripper_base": ((-29.0, -32.32, -18.2), (29.0, 29.91, 37.7)),
+    "gripper_left1": ((-5.68, -4.98, -18.53), (19.5, 53.22, 2.13)),
+    "gripper_left2": ((-32.44, -4.67, -18.2), (3.48, 19.62, 1.8)),
+    "gripper_left3": ((-32.19, -14.23, -3.2), (12.84, 19.3, 1.8)),
+}
+"""Bounding boxes of the original's visuals in mm, in the link's frame.
+
+Here the axles of the gripper's base reach down through its levers, and the pads to where they
+touch.
+"""
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return parse_urdf(expand_xacro(URDF / "robots" / "mycobot_280.urdf.xacro"))
+
+
+def load(path: Path) -> trimesh.Trimesh:
+    mesh = trimesh.load(path, force="mesh")
+    assert isinstance(mesh, trimesh.Trimesh)
+    return mesh
+
+
+def mesh_files() -> list[Path]:
+    return sorted(MESHES.glob("*.stl"))
+
+
+def visuals(robot: Robot, link: str) -> list[Path]:
+    geometries = [visual.geometry for visual in robot.link(link).visuals]
+    return [resolve_uri(g.uri) for g in geometries if isinstance(g, Mesh)]
+
+
+@pytest.mark.parametrize(("link", "bounds"), BOUNDS.items())
+def test_a_link_is_as_large_as_the_original(robot, link, bounds):
+    meshes = [load(path) for path in visuals(robot, link)]
+
+    lower = np.min([mesh.bounds[0] for mesh in meshes], axis=0) * 1000
+    upper = np.max([mesh.bounds[1] for mesh in meshes], axis=0) * 1000
+    assert np.array([lower, upper]) == pytest.approx(np.array(bounds), abs=2.0)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_the_right_side_of_the_gripper_is_the_left_ones_mirror_image(robot, number):
+    left = [load(path) for path in visuals(robot, f"gripper_left{number}")]
+    right = [load(path) for path in visuals(robot, f"gripper_right{number}")]
+
+    for ours, theirs in zip(left, right, strict=True):
+        (x0, *low), (x1, *high) = ours.bounds
+        assert theirs.bounds == pytest.approx(np.array([[-x1, *low], [-x0, *high]]), abs=1e-6)
+
+
+@pytest.mark.parametrize("path", mesh_files(), ids=lambda path: path.stem)
+def test_a_mesh_is_closed_and_small(path):
+    mesh = load(path)
+
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    assert mesh.volume > 0
+    assert path.stat().st_size < 110_000
+
+
+def test_the_robot_uses_every_mesh_and_no_other(robot):
+    used = {path for link in robot.links for path in visuals(robot, link.name)}
+
+    assert used == set(mesh_files())
+
+
+def test_the_script_makes_the_same_files(tmp_path):
+    subprocess.run(
+        [sys.executable, str(SCRIPT), "--output", str(tmp_path)], check=True, timeout=120
+    )
+
+    made = sorted(path.name for path in (tmp_path / "meshes").iterdir())
+    assert made == [path.name for path in mesh_files()]
+    for path in mesh_files():
+        ours, anew = load(path), load(tmp_path / "meshes" / path.name)
+        # Another version of the libraries may cut the same surface into other triangles.
+        assert anew.bounds == pytest.approx(ours.bounds, abs=1e-6), path.name
+        assert anew.volume == pytest.approx(ours.volume, rel=1e-4), path.name
+    macros = Path("mech/mycobot_280_parts.xacro")
+    anew, ours = (tmp_path / "urdf" / macros).read_text(), (URDF / macros).read_text()
+    assert anew.count("<xacro:macro") == ours.count("<xacro:macro")
