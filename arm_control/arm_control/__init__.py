@@ -22,7 +22,9 @@ if TYPE_CHECKING:
         parse_hardware_info,
     )
     from arm_control.interface_configuration import InterfaceConfiguration
+    from arm_control.joint_limits import JointLimits, SoftLimits, read_joint_limits
     from arm_control.lifecycle import LifecycleState, Transition
+    from arm_control.manager_policy import ManagerPolicy
     from arm_control.pacer import Pacer, PacerStatistics
     from arm_control.parameters import parameter
     from arm_control.system_interface import SystemInterface
@@ -42,12 +44,15 @@ __all__ = [
     "InterfaceConfiguration",
     "InterfaceInfo",
     "JointInfo",
+    "JointLimits",
     "LifecycleState",
     "ManagerObserver",
+    "ManagerPolicy",
     "NoParameters",
     "Pacer",
     "PacerStatistics",
     "ReturnType",
+    "SoftLimits",
     "Strictness",
     "SwitchRequest",
     "SwitchResult",
@@ -55,6 +60,7 @@ __all__ = [
     "Transition",
     "parameter",
     "parse_hardware_info",
+    "read_joint_limits",
 ]
 
 _HOMES = {
@@ -67,7 +73,9 @@ _HOMES = {
     "hardware": ("Hardware", "HardwareReturn"),
     "hardware_info": ("HardwareInfo", "InterfaceInfo", "JointInfo", "parse_hardware_info"),
     "interface_configuration": ("InterfaceConfiguration",),
+    "joint_limits": ("JointLimits", "SoftLimits", "read_joint_limits"),
     "lifecycle": ("LifecycleState", "Transition"),
+    "manager_policy": ("ManagerPolicy",),
     "pacer": ("Pacer", "PacerStatistics"),
     "parameters": ("parameter",),
     "system_interface": ("SystemInterface",),

@@ -4,10 +4,15 @@ from typing import Any
 
 import pytest
 
-from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
+from arm_control import (
+    ControllerManager,
+    ControllerManagerError,
+    LifecycleState,
+    ManagerPolicy,
+    SwitchRequest,
+)
 from arm_control.errors import UnhandledFailureError
 from arm_control.hardware import HardwareReturn
-from arm_control.manager_policy import ManagerPolicy
 from arm_control.testing import fake_hardware
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
