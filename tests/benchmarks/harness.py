@@ -147,11 +147,11 @@ class Suite:
 
 
 @contextlib.contextmanager
-def suite(*arguments: str, rate_hz: int = 100) -> Iterator[Suite]:
+def suite(*arguments: str, rate_hz: int = 100, parameters: str = CONTROLLERS) -> Iterator[Suite]:
     """Run `arm launch` with this control rate, ready, in a domain of its own."""
     with fresh_domain(), tempfile.TemporaryDirectory() as folder:
         controllers = Path(folder) / "controllers.yaml"
-        controllers.write_text(CONTROLLERS.format(rate_hz=rate_hz))
+        controllers.write_text(parameters.format(rate_hz=rate_hz))
         running = Suite(f"controllers:={controllers}", *arguments)
         try:
             running.wait_until_ready()
@@ -161,11 +161,11 @@ def suite(*arguments: str, rate_hz: int = 100) -> Iterator[Suite]:
 
 
 class Client:
-    """`default_client.py` in a process of its own; answers are JSON lines."""
+    """`default_client.py`, or another script, in a process of its own; answers are JSON lines."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, script: Path = CLIENT) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, str(CLIENT), *arguments],
+            [sys.executable, str(script), *arguments],
             stdout=subprocess.PIPE,
             text=True,
             env=client_environment(),

@@ -17,6 +17,7 @@ FOLDER = Path(__file__).parent
 SCRIPTS = (
     "start_up.py",
     "control_loop.py",
+    "trajectory_control.py",
     "as_fast_as_possible.py",
     "camera_rate.py",
     "load_time.py",
