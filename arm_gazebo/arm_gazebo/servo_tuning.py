@@ -34,6 +34,8 @@ FULL_EFFORT_ERROR = 0.02
 """Error in rad or m at which a drive uses all of its effort, at the latest."""
 USUAL_EFFORT = 10.0
 """N m or N, taken for the size of a drive whose effort has no limit."""
+USUAL_ACCELERATION = 50.0
+"""rad/s2 or m/s2, at most, of a drive whose effort does not bound it: strong ones do no more."""
 POSES = 200
 POSE_SEED = 20240
 EFFORT_SHARE = 0.5
@@ -122,6 +124,7 @@ def tune(
     damping = 2.0 * armature / model.opt.timestep
     speeds = np.array([joint.velocity for joint in joints])
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
+    jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], USUAL_ACCELERATION)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
     worst = np.abs(inertias).max(axis=0) + np.diag(armature)
     return ServoTuning(

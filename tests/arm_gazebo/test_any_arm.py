@@ -105,6 +105,9 @@ ARMS = {
     "tiny, far too strong": Arm(SPHERICAL, **TINY, efforts=(56,) * 6, speeds=(2.8,) * 6),
     "tiny, no limits": Arm(SPHERICAL, **TINY, efforts=(0,) * 6, speeds=(0,) * 6),
     "seven joints, no limits": Arm(SEVEN, **LIGHT_SEVEN, efforts=(0,) * 7, speeds=(0,) * 7),
+    "heavy, fast, no efforts": Arm(
+        SPHERICAL, **HEAVY, efforts=(0,) * 6, speeds=(4.4, 4.4, 4.4, 5.6, 5.6, 7.3)
+    ),
     "heavy, no limits": Arm(PARALLEL, **HEAVY, efforts=(0,) * 6, speeds=(0,) * 6),
     "heavy, absurd limits": Arm(SPHERICAL, **HEAVY, efforts=(1e6,) * 6, speeds=(100,) * 6),
 }
