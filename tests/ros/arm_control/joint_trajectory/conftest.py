@@ -145,6 +145,7 @@ class Sender:
         self._client = client
         self._make_trajectory = make_trajectory
         self._type = FollowJointTrajectory
+        self._is_connected = False
         self._action = ActionClient(client.node, self._type, f"/{name}/follow_joint_trajectory")
 
     def __call__(
@@ -153,7 +154,7 @@ class Sender:
         joints: Sequence[str] = JOINTS,
         **fields: Any,
     ) -> Goal:
-        if not self._action.server_is_ready():
+        if not self._is_connected:
             self._connect()
         goal = self._type.Goal(trajectory=self._make_trajectory(*points, joints=joints))
         for name, value in fields.items():
@@ -161,10 +162,16 @@ class Sender:
         feedback = Feedback()
         return Goal(wait(self._action.send_goal_async(goal, feedback)), feedback)
 
+    def send_and_forget(self, *points: Point) -> None:
+        """Send a goal and wait for nothing; on the thread of the client's executor."""
+        goal = self._type.Goal(trajectory=self._make_trajectory(*points, joints=JOINTS))
+        self._action.send_goal_async(goal)
+
     def close(self) -> None:
         self._client.executor.create_task(self._action.destroy)
 
     def _connect(self) -> None:
+        self._is_connected = True
         self._client.wait_until(self._action.server_is_ready, "the action")
         # The server may not know of its client yet, and an answer would be lost.
         threading.Event().wait(0.2)

@@ -1,6 +1,7 @@
 """The action ~/follow_joint_trajectory, from a client's goal to its result."""
 
 import signal
+import threading
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
@@ -84,8 +85,14 @@ def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: A
             ("j0", "j1", "j2", "j3"),
             "The positions of joint j1 at point #0 are not finite: nan.",
         ),
+        (
+            [(1.0, (0.0, 0.0, 1e300, 0.0))],
+            ("j0", "j1", "j2", "j3"),
+            "The positions of joint j2 at point #0 are too large: 1e+300.",
+        ),
+        ([(1.0, HERE)], ("j0", "j1", "j0", "j3"), "Incoming joint j0 is named more than once."),
     ],
-    ids=["empty", "too few joints", "unknown joint", "time", "nan"],
+    ids=["empty", "too few joints", "unknown joint", "time", "nan", "too large", "twice"],
 )
 def test_a_goal_with_a_fault_is_rejected_and_the_log_says_why(
     active: Any, send: Any, manager: Any, points: Any, joints: Any, reason: str
@@ -153,6 +160,41 @@ def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
         (0.0, (9, 9, 9, 9)), (1.0, HERE), path_tolerance=[JointTolerance(name="j1", position=0.01)]
     )
     assert goal.result() == (ABORTED, -4, "Aborted due to path tolerance violation")
+
+
+def test_a_goal_without_any_way_to_go_is_reached_at_once(active: Any, send: Any) -> None:
+    assert send((0.0, THERE)).result() == REACHED
+
+
+def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:
+    longest_s = 2.0e9
+    goal = send((1.0, HERE), (longest_s, THERE))
+    goal.wait_until_running()
+    points = [(0.01 * (i + 1), THERE) for i in range(3000)]
+    assert send(*points).accepted
+    assert goal.result() == PREEMPTED
+    assert send((0.1, THERE)).result() == REACHED
+
+
+def test_a_flood_of_goals_leaves_the_last_one(
+    active: Any, client: Any, send: Any, manager: Any
+) -> None:
+    assert send((0.1, THERE)).result() == REACHED
+    sent = threading.Event()
+    left = iter(range(100))
+
+    def send_another() -> None:
+        if next(left, None) is None:
+            sent.set()
+        else:
+            send.send_and_forget((FOR_EVER_S, THERE))
+
+    timer = client.node.create_timer(0.01, send_another)
+    assert sent.wait(30.0)
+    client.node.destroy_timer(timer)
+    assert send((0.1, HERE)).result() == REACHED
+    assert "callback failed" not in manager.output
+    assert "Traceback" not in manager.output
 
 
 def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
