@@ -35,11 +35,14 @@ NOT_SET = 0
 _ARRAY_OFFSET = 5
 
 
-def read_value(value: Any) -> Any:
+def content_of(value: Any) -> Any:
     """Return what a rcl_interfaces/msg/ParameterValue holds, None where it holds nothing."""
-    if value.type == NOT_SET:
-        return None
-    content = getattr(value, _FIELDS[value.type])
+    return None if value.type == NOT_SET else getattr(value, _FIELDS[value.type])
+
+
+def read_value(value: Any) -> Any:
+    """Return what a ParameterValue holds as a plain value, arrays as lists."""
+    content = content_of(value)
     return list(content) if value.type >= _ARRAY_OFFSET else content
 
 

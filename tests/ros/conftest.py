@@ -128,10 +128,22 @@ class Launched:
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
     """Start `arm launch ARGUMENTS`; ended with the test at the latest."""
+    yield from _launcher(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def launch_for_file(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Callable[..., Launched]]:
+    """Start `arm launch ARGUMENTS`; ended with the last test of the file at the latest."""
+    yield from _launcher(tmp_path_factory.mktemp("launch"))
+
+
+def _launcher(folder: Path) -> Iterator[Callable[..., Launched]]:
     started: list[Launched] = []
 
     def start(*arguments: str, **environment: str) -> Launched:
-        launched = Launched(list(arguments), {"ROS_LOG_DIR": str(tmp_path / "log"), **environment})
+        launched = Launched(list(arguments), {"ROS_LOG_DIR": str(folder / "log"), **environment})
         started.append(launched)
         return launched
 

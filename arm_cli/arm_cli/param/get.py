@@ -4,7 +4,7 @@ import argparse
 
 from arm_cli.output import add_json_argument, print_json
 from arm_cli.param.target import add_node_argument, open_parameters
-from arm_cli.parameter_values import LABELS, read_value
+from arm_cli.parameter_values import LABELS, content_of, read_value
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,9 +24,9 @@ def run(options: argparse.Namespace) -> None:
     """
     with open_parameters(options.node_name) as parameters:
         value = parameters.value(options.parameter_name)
-    content = read_value(value)
+    content = content_of(value)
     if options.json:
-        print_json(content)
+        print_json(read_value(value))
     elif options.hide_type:
         print(content)
     else:

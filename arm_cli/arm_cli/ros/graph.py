@@ -3,7 +3,8 @@
 There is no daemon that knows the graph already: every command discovers it anew, in some tenths
 of a second. `settle` says when that is enough for a list: nothing new has come for a while, and
 every end point has been attributed to a node, which its process says by a message of its own. What
-is asked for by name is there as soon as it has been discovered; only what is missing waits.
+is asked for by name is there as soon as it has been discovered; only what is missing waits, and
+longer: a wrong "there is no such node" is worse than a late one.
 """
 
 import time
@@ -29,6 +30,8 @@ QUIET_S = 0.35
 """So long nothing new has come: more than the 0.25 s between announcements of launched nodes."""
 EMPTY_S = 1.0
 """Nobody else has been found for so long: there is nobody."""
+MISSING_S = 2.0
+"""What is asked for by name is not said to be missing before."""
 SETTLED_S = 3.0
 """A graph that never comes to rest is as good as it gets by now."""
 
@@ -182,7 +185,7 @@ class Graph:
 
     def find_publishers(self, topic: str) -> list[TopicEndpointInfo]:
         """Return a topic's publishers as soon as one is discovered; none where there is none."""
-        settling = _Settling(self, self._session.started_s)
+        settling = _Settling(self, self._session.started_s, MISSING_S)
         self._session.wait_until(lambda: bool(self.publishers(topic)) or settling.done())
         return self.publishers(topic)
 
@@ -217,7 +220,7 @@ class Graph:
 
     def _find(self, what: str, name: str, found: Callable[[], dict[str, Found]]) -> Found:
         name = absolute_name(name)
-        settling = _Settling(self, self._session.started_s)
+        settling = _Settling(self, self._session.started_s, MISSING_S)
         self._session.wait_until(lambda: name in found() or settling.done())
         there = found()
         if name in there:
@@ -246,8 +249,9 @@ class Graph:
 class _Settling:
     """Says when the graph has come to rest."""
 
-    def __init__(self, graph: Graph, started_s: float) -> None:
+    def __init__(self, graph: Graph, started_s: float, least_s: float = 0.0) -> None:
         self._graph = graph
+        self._least_s = least_s
         self._started_s = started_s
         self._seen: Survey | None = None
         self._changed_s = started_s
@@ -259,7 +263,8 @@ class _Settling:
             self._seen, self._changed_s = survey, now
         age_s = now - self._started_s
         quiet = survey.attributed and now - self._changed_s >= QUIET_S
-        return age_s >= SETTLED_S or (quiet and (survey.nodes > 0 or age_s >= EMPTY_S))
+        least_s = max(self._least_s, 0.0 if survey.nodes else EMPTY_S)
+        return age_s >= SETTLED_S or (quiet and age_s >= least_s)
 
 
 def _sorted(found: list[tuple[str, list[str]]], hidden: bool) -> Types:

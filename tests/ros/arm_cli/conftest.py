@@ -1,0 +1,141 @@
+"""One simulation for the tests of a file, and `arm` command lines, as a shell runs them."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+TIMEOUT_S = 60.0
+
+
+class CommandLine:
+    """A line in a shell, such as a tutorial prints, while it runs."""
+
+    def __init__(self, line: str, folder: Path) -> None:
+        search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+        self._changed = threading.Condition()
+        self._texts = {"out": "", "err": ""}
+        # `exec` makes the shell's process that of a single command, for signals.
+        single = not any(word in line for word in ("|", "&&", ";"))
+        self.process = subprocess.Popen(
+            ["/bin/bash", "-c", f"exec {line}" if single else line],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            env={**os.environ, "PATH": search},
+            cwd=folder,
+        )
+        self._readers = [
+            threading.Thread(target=self._read, args=(name, stream), daemon=True)
+            for name, stream in (("out", self.process.stdout), ("err", self.process.stderr))
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    @property
+    def out(self) -> str:
+        """What has come on stdout so far."""
+        return self._texts["out"]
+
+    @property
+    def err(self) -> str:
+        """What has come on stderr so far."""
+        return self._texts["err"]
+
+    def _read(self, name: str, stream) -> None:
+        for line in stream:
+            with self._changed:
+                self._texts[name] += line
+                self._changed.notify_all()
+
+    def wait_for(self, text: str) -> None:
+        """Block until a text has been printed."""
+        deadline = time.monotonic() + TIMEOUT_S
+        with self._changed:
+            while text not in self.out + self.err:
+                left = deadline - time.monotonic()
+                if left <= 0 or not any(reader.is_alive() for reader in self._readers):
+                    pytest.fail(f"{text!r} was not printed, but:\n{self.out}\n{self.err}")
+                self._changed.wait(min(left, 0.2))
+
+    def wait(self) -> int:
+        """Block until the end; return the exit code."""
+        code = self.process.wait(TIMEOUT_S)
+        for reader in self._readers:
+            reader.join(TIMEOUT_S)
+        return code
+
+    def interrupt(self) -> int:
+        """Press Ctrl-C; return the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.wait()
+
+    def close(self) -> None:
+        """End it, whatever the test did."""
+        if self.process.poll() is None:
+            self.process.kill()
+        self.wait()
+        for stream in (self.process.stdout, self.process.stderr):
+            if stream is not None:
+                stream.close()
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[[str], CommandLine]]:
+    """Start a command line; it is ended with the test at the latest."""
+    started: list[CommandLine] = []
+
+    def run(line: str) -> CommandLine:
+        started.append(CommandLine(line, tmp_path))
+        return started[-1]
+
+    yield run
+    for command in started:
+        command.close()
+
+
+@pytest.fixture
+def run(start: Callable[[str], CommandLine]) -> Callable[..., str]:
+    """Run a command line to its end, which must have the exit code; return what it printed."""
+
+    def finish(line: str, code: int = 0) -> str:
+        command = start(line)
+        ended = command.wait()
+        assert ended == code, f"{line}\n{command.out}\n{command.err}"
+        return command.out if code == 0 else command.out + command.err
+
+    return finish
+
+
+@pytest.fixture
+def run_until(start: Callable[[str], CommandLine]) -> Callable[..., str]:
+    """Run a command line again and again until it prints what it should; return that.
+
+    What starts up and what is discovered may come late on a busy machine.
+    """
+
+    def repeat(line: str, is_right: Callable[[str], object], code: int = 0) -> str:
+        deadline = time.monotonic() + TIMEOUT_S
+        while True:
+            command = start(line)
+            ended = command.wait()
+            text = command.out if code == 0 else command.out + command.err
+            if ended == code and is_right(text):
+                return text
+            if time.monotonic() > deadline:
+                pytest.fail(f"{line}: exit code {ended}\n{command.out}\n{command.err}")
+
+    return repeat
+
+
+@pytest.fixture(scope="module")
+def simulation(launch_for_file) -> None:
+    """The main job, ready."""
+    launch_for_file().wait_until_ready()

@@ -1,0 +1,143 @@
+"""Lines that move the arm, and lines that run until Ctrl-C."""
+
+import re
+import signal
+
+import pytest
+from sensor_msgs.msg import JointState
+
+pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+
+TRAJECTORY = (
+    "{trajectory: {joint_names: [j0, j1, j2, j3], points: [{positions: [%s], "
+    "time_from_start: {sec: %s}}]}}"
+)
+FOLLOW = (
+    "arm action send_goal /joint_trajectory_controller/follow_joint_trajectory "
+    "control_msgs/action/FollowJointTrajectory"
+)
+
+
+@pytest.fixture
+def arrives(client):
+    """Return a function that waits until the arm is at a pose."""
+    states = client.subscribe(JointState, "/joint_states")
+
+    def wait(*pose):
+        def there(messages):
+            return bool(messages) and list(messages[-1].position) == pytest.approx(pose, abs=0.02)
+
+        states.wait_until(there, f"the arm at {pose}")
+
+    return wait
+
+
+def test_a_message_published_once_moves_the_arm(run, arrives):
+    text = run(
+        "arm topic pub --once /position_controller/commands std_msgs/msg/Float64MultiArray "
+        '"data: [0.1, 0.2, 0, -0.1]"'
+    )
+    assert text.startswith(
+        "publisher: beginning loop\npublishing #1: std_msgs.msg.Float64MultiArray("
+    )
+    assert text.endswith("data=[0.1, 0.2, 0.0, -0.1])\n\n")
+    arrives(0.1, 0.2, 0.0, -0.1)
+
+
+def test_a_parameter_moves_the_arm(run, arrives):
+    line = 'arm param set /arm_controller_node desired_param "[0.2, 0.0, 0.1, 0.0]"'
+    assert run(line) == "Set parameter successful\n"
+    arrives(0.2, 0.0, 0.1, 0.0)
+    assert run("arm param get /arm_controller_node desired_param") == (
+        "Double values are: array('d', [0.2, 0.0, 0.1, 0.0])\n"
+    )
+    refused = run('arm param set /arm_controller_node desired_param "[0.2]"', code=1)
+    assert refused.startswith("Setting parameter failed: ")
+
+
+def test_parameters_go_to_a_file_and_back(run, start):
+    run("arm param dump /arm_controller_node > params.yaml")
+    text = start("cat params.yaml")
+    text.wait()
+    assert text.out.startswith("/arm_controller_node:\n  ros__parameters:\n")
+    loaded = run("arm param load /arm_controller_node params.yaml", code=1)
+    assert "Set parameter desired_param successful\n" in loaded
+    assert "Set parameter joints failed: " in loaded
+
+
+def test_the_course_project_s_executable_moves_the_arm(start, arrives):
+    node = start("arm run arm_control arm_controller")
+    arrives(1.0, 0.5, 0.1, 0.5)
+    assert node.interrupt() == 0
+
+
+def test_controllers_change_places_and_a_goal_is_followed(run, start, arrives):
+    state = "arm control set_controller_state joint_trajectory_controller"
+    load = "arm control load_controller --set-state inactive joint_trajectory_controller"
+    assert run(load).endswith("joint_trajectory_controller into state inactive\n")
+    assert "Error activating controller, check" in run(f"{state} active", code=1)
+    switch = (
+        "arm control switch_controllers --activate joint_trajectory_controller "
+        "--deactivate position_controller --strict"
+    )
+    assert run(switch) == "Successfully switched controllers!\n"
+    assert run("arm action list -t") == (
+        "/joint_trajectory_controller/follow_joint_trajectory "
+        "[control_msgs/action/FollowJointTrajectory]\n"
+    )
+    done = start(f'{FOLLOW} "{TRAJECTORY % ("0.3, 0.2, 0.1, 0.0", "1.5")}"')
+    assert done.wait() == 0
+    assert done.err == (
+        "arm action send_goal: trajectory.points[0].time_from_start.sec: 1.5 is truncated to 1 "
+        "(int32)\n"
+    )
+    assert re.search(
+        r"^Goal accepted with ID: [0-9a-f]{32}\n\nResult:\n    error_code: 0\n",
+        done.out,
+        re.MULTILINE,
+    )
+    assert done.out.endswith("Goal finished with status: SUCCEEDED\n")
+    arrives(0.3, 0.2, 0.1, 0.0)
+    _a_goal_is_cancelled_by_ctrl_c(start)
+    rejected = run(f'{FOLLOW} "{{trajectory: {{joint_names: [j9]}}}}"')
+    assert rejected.endswith("Goal was rejected.\n")
+    assert run(f"{state} inactive") == "Successfully deactivated joint_trajectory_controller\n"
+    unload = "arm control unload_controller joint_trajectory_controller"
+    assert run(unload) == "Successfully unloaded controller joint_trajectory_controller\n"
+    again = run("arm control switch_controllers --activate position_controller")
+    assert again.startswith("Successfully switched controllers!\n")
+
+
+def _a_goal_is_cancelled_by_ctrl_c(start):
+    goal = start(f'{FOLLOW} --feedback "{TRAJECTORY % ("0.0, 0.0, 0.0, 0.0", "60")}"')
+    goal.wait_for("Feedback:\n    header:")
+    assert goal.interrupt() == signal.SIGINT
+    assert goal.out.endswith("Canceling goal...\nGoal canceled.\n")
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("arm topic echo /clock", "---\n"),
+        ("arm topic hz /joint_states", "\tmin: 0."),
+        ("arm topic bw /joint_states", "B/s from "),
+        ("arm topic delay -s /joint_states", "average delay: "),
+        ("arm topic hz /nothing", "waiting for topic /nothing on ROS_DOMAIN_ID="),
+        ("arm topic pub /chatter std_msgs/msg/String 'data: hi' -r 50", "publishing #3: "),
+        (
+            "arm service call /nothing std_srvs/srv/Trigger",
+            "waiting for service to become available",
+        ),
+    ],
+)
+def test_ctrl_c_ends_a_line_that_runs_on(start, line, text):
+    command = start(line)
+    command.wait_for(text)
+    assert command.interrupt() == signal.SIGINT
+    assert "Traceback" not in command.err
+
+
+def test_a_reader_that_has_had_enough_ends_it_silently(start):
+    command = start("set -o pipefail; arm topic echo /clock | head -n 1")
+    assert command.wait() == 128 + signal.SIGPIPE
+    assert (command.out, command.err) == ("clock:\n", "")

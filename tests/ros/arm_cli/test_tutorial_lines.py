@@ -1,0 +1,134 @@
+"""The lines that the tutorials of the course project print, with `arm` for `ros2`."""
+
+import json
+import re
+
+import pytest
+
+pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+
+TOPICS = """\
+/camera_info /clock /dynamic_joint_states /joint_state_broadcaster/transition_event /joint_states
+/parameter_events /position_controller/commands /position_controller/transition_event
+/robot_description /rosout /tf /tf_static /videocamera"""
+
+LINES = {
+    "arm control list_controllers": [
+        r"^position_controller     position_controllers/JointGroupPositionController  active$",
+        r"^joint_state_broadcaster joint_state_broadcaster/JointStateBroadcaster      active$",
+    ],
+    "arm control list_controllers -v": [
+        r"^\tupdate_rate: 100 Hz$",
+        r"^\tclaimed interfaces:\n(\t\tj\d/position\n){4}\trequired command interfaces:$",
+        r"^\trequired state interfaces:\n\t\tj0/position$",
+    ],
+    "arm control list_hardware_interfaces": [
+        r"^command interfaces$",
+        r"^\tj0/position \[available\] \[claimed\]$",
+        r"^state interfaces\n\tj0/effort\n\tj0/position\n\tj0/velocity\n\tj1/effort$",
+    ],
+    "arm control list_hardware_components": [
+        r"^Hardware Component 1\n\tname: \w+\n\ttype: system\n\tplugin name: ",
+        r"^\tstate: id=3 label=active\n\tread/write rate: 100 Hz$",
+    ],
+    "arm control list_controller_types": [
+        r"^joint_state_broadcaster/JointStateBroadcaster +controller_interface::",
+    ],
+    "arm topic info /position_controller/commands": [
+        r"^Type: std_msgs/msg/Float64MultiArray\nPublisher count: 1\nSubscription count: 1$",
+    ],
+    "arm topic info -v /joint_states": [
+        r"^Publisher count: 1\n\nNode name: joint_state_broadcaster\nNode namespace: /$",
+        r"^  Durability: TRANSIENT_LOCAL$",
+        r"^Node name: robot_state_publisher$",
+    ],
+    "arm topic type /joint_states | arm interface show -": [r"^float64\[\] position$"],
+    "arm topic find sensor_msgs/msg/JointState": [r"^/joint_states$"],
+    "arm topic echo --once /joint_states": [
+        r"^header:\n  stamp:\n    sec: \d+\n    nanosec: \d+\n  frame_id: base_link$",
+        r"^name:\n- j0\n- j1\n- j2\n- j3\nposition:\n- ",
+        r"^---$",
+    ],
+    "arm topic echo /joint_states --field name --once": [r"^\['j0', 'j1', 'j2', 'j3'\]\n---$"],
+    "arm topic echo /joint_states --csv -n 2": [r"^\d+,\d+,base_link,j0,j1,j2,j3,.*\n\d+,\d+,base"],
+    "arm topic echo --once /robot_description -l 5": [r"^data: <\?xml\.\.\.$"],
+    "arm topic echo --once /videocamera --no-arr": [
+        r"^data: '<sequence type: uint8, length: 230400>'$"
+    ],
+    "arm node list": [
+        r"^/arm_controller_node$",
+        r"^/controller_manager$",
+        r"^/position_controller$",
+    ],
+    "arm node info /position_controller": [
+        r"^  Subscribers:\n    /position_controller/commands: std_msgs/msg/Float64MultiArray$",
+        r"^  Action Servers:\n\n  Action Clients:\n$",
+    ],
+    "arm param list /arm_controller_node": [r"^  desired_param$"],
+    "arm param describe /arm_controller_node print_period": [r"^  Type: double$"],
+    "arm service type /controller_manager/list_controllers": [
+        r"^controller_manager_msgs/srv/ListControllers$"
+    ],
+    "arm service call /controller_manager/list_controllers "
+    "controller_manager_msgs/srv/ListControllers": [
+        r"^requester: making request: controller_manager_msgs.srv.ListControllers_Request\(\)\n\n"
+        r"response:\ncontroller_manager_msgs.srv.ListControllers_Response\(controller=\[",
+        r"name='position_controller', state='active'",
+    ],
+    "arm tf echo --once base_link dyn4": [
+        r"^At time \d+\.\d{9}\n- Translation: \[-?\d+\.\d{3}, ",
+        r"^- Rotation: in Quaternion \(xyzw\) \[",
+    ],
+    "arm tf tree": [r"^world$", r"── base_turn_rot  \(\d+\.\d Hz\)$"],
+    "arm tf view_frames -t 1 -o drawn && cat drawn.gv": [r'^  "base_link" -> "base_turn" \[label='],
+    "arm graph": [r'^  v\d+\["/joint_states"\]$', r'^  v\d+\(\["/joint_state_broadcaster"\]\)$'],
+    "arm control view_controller_chains": [r"^Saved controller diagram to .*controller_diagram\."],
+}
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_a_line_prints_what_the_tutorial_shows(run_until, line):
+    run_until(line, lambda text: all(re.search(p, text, re.MULTILINE) for p in LINES[line]))
+
+
+def test_topic_list(run_until):
+    run_until("arm topic list", lambda text: set(TOPICS.split()) <= set(text.split()))
+
+
+def test_controllers_are_no_lifecycle_nodes(run):
+    assert run("arm lifecycle nodes") == ""
+
+
+def test_lists_as_json(run_until):
+    def has_tf(text):
+        topics = {entry["name"]: entry["types"] for entry in json.loads(text)}
+        return topics.get("/tf") == ["tf2_msgs/msg/TFMessage"]
+
+    run_until("arm topic list --json", has_tf)
+    state = json.loads(run_until("arm topic echo /joint_states --json --once", json.loads))
+    assert state["name"] == ["j0", "j1", "j2", "j3"]
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ("arm topic echo /joint_state", "no topic '/joint_state' on ROS_DOMAIN_ID="),
+        (
+            "arm topic echo /joint_states --field positon",
+            "no field 'positon' (fields: header, name",
+        ),
+        ("arm node info /controler_manager", "did you mean '/controller_manager'"),
+        ("arm param get /arm_controller_node desired", "did you mean 'desired_param'"),
+        ("arm service type /list_controllers", "'/controller_manager/list_controllers'"),
+        ("arm control set_controller_state nothere active", "does not seem to be loaded"),
+        ("arm control load_controller nothere", "Failed loading controller nothere check"),
+        ("arm tf echo base_link gripper --once", "no frame 'gripper'"),
+        (
+            "arm topic pub -1 /position_controller/commands std_msgs/msg/Float64 'data: 1.0'",
+            "carries std_msgs/msg/Float64MultiArray, not std_msgs/msg/Float64",
+        ),
+    ],
+)
+def test_what_is_not_there_is_one_sentence(run_until, line, sentence):
+    text = run_until(line, lambda text: sentence in text, code=2 if "topic pub" in line else 1)
+    assert text.count("\n") == 1
