@@ -7,7 +7,7 @@ and the two then do not know each other until the next periodic announcement, up
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -31,12 +31,20 @@ def answers_held_back() -> Iterator[None]:
         yield
     finally:
         for thread in _threads():
-            _schedule(thread, os.SCHED_OTHER, 0, allowed)
+            _release(thread, allowed)
 
 
 def _confine() -> bool:
     here = {_current_processor()}
     return _schedule(0, os.SCHED_RR, 1, here) or _schedule(0, os.SCHED_BATCH, 0, here)
+
+
+def _release(thread: int, processors: set[int]) -> None:
+    # Not the other way round: an ordinary thread, kept on a processor that another process holds
+    # with SCHED_RR, may not run for long.
+    with suppress(ProcessLookupError):
+        os.sched_setaffinity(thread, processors)
+        os.sched_setscheduler(thread, os.SCHED_OTHER, os.sched_param(0))
 
 
 def _current_processor() -> int:

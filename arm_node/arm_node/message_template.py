@@ -31,6 +31,7 @@ _FLOAT64 = re.compile(r"(?:sequence<double(?:, \d+)?>|double\[\d+\])")
 # Marks: tag << 32 | number, as float64 small ordinary numbers; tag << 20 | number, positive int32.
 _TAGS_64 = (0x3FA5A5A5, 0x40C3C3C3)
 _TAGS_32 = (0x5A5, 0x3C3)
+_SECONDS_END = 2**31
 
 
 class MessageLayoutError(Exception):
@@ -78,9 +79,11 @@ class MessageTemplate:
         self._payload[:] = np.frombuffer(self._serialized, dtype=np.uint8)
         self._float64 = self._storage[8:].view(np.float64)
         self._int32 = self._storage[8:].view(np.int32)
-        stamps = self._locate(_stamp_fields, np.dtype(np.uint32), _TAGS_32, 20)
-        self._seconds = (self._int32, stamps[0::2])
-        self._nanoseconds = (self._storage[8:].view(np.uint32), stamps[1::2])
+        stamps = self._locate(_stamp_fields, np.dtype(np.uint32), _TAGS_32, 20).tolist()
+        self._stamps = tuple(zip(stamps[0::2], stamps[1::2], strict=True))
+        # An item of a memoryview is set in a tenth of the time of an array's.
+        self._signed = memoryview(self._int32)
+        self._unsigned = memoryview(self._storage[8:].view(np.uint32))
 
     @property
     def int32(self) -> NDArray[np.int32]:
@@ -142,10 +145,11 @@ class MessageTemplate:
             OverflowError: a time that the message cannot hold, before 1901 or after 2038.
         """
         seconds, rest = divmod(nanoseconds, 1_000_000_000)
-        words, where = self._seconds
-        words[where] = seconds
-        words, where = self._nanoseconds
-        words[where] = rest
+        if not -_SECONDS_END <= seconds < _SECONDS_END:
+            raise OverflowError(f"{seconds} s do not fit into a stamp's 32 bits")
+        for second, nanosecond in self._stamps:
+            self._signed[second] = seconds
+            self._unsigned[nanosecond] = rest
 
     def to_bytes(self) -> bytes:
         """Return the message as it stands, serialised."""
