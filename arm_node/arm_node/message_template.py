@@ -82,8 +82,8 @@ class MessageTemplate:
         stamps = self._locate(_stamp_fields, np.dtype(np.uint32), _TAGS_32, 20).tolist()
         self._stamps = tuple(zip(stamps[0::2], stamps[1::2], strict=True))
         # An item of a memoryview is set in a tenth of the time of an array's.
-        self._signed = memoryview(self._int32)
-        self._unsigned = memoryview(self._storage[8:].view(np.uint32))
+        self._signed = self._int32.data
+        self._unsigned = self._storage[8:].view(np.uint32).data
 
     @property
     def int32(self) -> NDArray[np.int32]:
