@@ -119,3 +119,26 @@ def test_what_names_no_file_is_said(uri, message):
 def test_names_that_no_file_can_have_are_not_found(name):
     with pytest.raises(ResourceNotFoundError, match="no file for"):
         resolve_uri(f"package://robot/{name}")
+
+
+@pytest.mark.parametrize("uri", ["package://robot/../other/a.stl", "model://robot/x/../../a.stl"])
+def test_a_uri_may_not_lead_out_of_its_package(tmp_path, uri):
+    make(tmp_path / "share/other/a.stl")
+    make(tmp_path / "share/a.stl")
+    with pytest.raises(ResourceNotFoundError, match="leads out of the package 'robot'"):
+        resolve_uri(uri, [tmp_path / "share"], ament(tmp_path))
+
+
+@pytest.mark.parametrize("name", [".", ".."])
+def test_dots_are_no_package(tmp_path, name):
+    with pytest.raises(ResourceNotFoundError, match="names no package"):
+        resolve_uri(f"package://{name}/a.stl", [tmp_path], {})
+
+
+def test_a_relative_path_may_climb_within_the_given_folders_only(tmp_path):
+    expected = make(tmp_path / "robot/meshes/a.stl")
+    make(tmp_path / "a.stl")
+    folders = [tmp_path / "robot/urdf", tmp_path / "robot"]
+    assert resolve_uri("../meshes/a.stl", folders, {}) == expected
+    with pytest.raises(ResourceNotFoundError, match="leads out of"):
+        resolve_uri("../../a.stl", folders[:1], {})

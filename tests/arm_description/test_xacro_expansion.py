@@ -126,3 +126,35 @@ def test_neither_xacro_nor_ros_is_imported_with_the_package():
     code = "import sys, arm_description; print([m for m in ('xacro', 'rclpy') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_a_doctype_is_refused_but_not_one_in_a_comment(tmp_path):
+    file = tmp_path / "a.xacro"
+    file.write_text(f"<!DOCTYPE robot>{HEAD}<link name='a'/></robot>")
+    assert refusal(file) == f"{file} has a DOCTYPE, which is not accepted; remove it"
+    file.write_text(f"<!-- <!DOCTYPE robot> -->{HEAD}<link name='a'/></robot>")
+    assert parse_urdf(expand_xacro(file)).root == "a"
+
+
+def test_entities_of_an_included_file_neither_multiply_nor_read_files(tmp_path):
+    secret = tmp_path / "secret.txt"
+    secret.write_text("s3cret")
+    inside = "<xacro:include filename='b.xacro'/>"
+    outer = write(tmp_path / "a.xacro", inside)
+    levels = "".join(f"<!ENTITY e{n + 1} '{f'&e{n};' * 20}'>" for n in range(20))
+    (tmp_path / "b.xacro").write_text(
+        f"<!DOCTYPE r [<!ENTITY e0 'x'>{levels}]>{HEAD}<link name='b'>&e20;</link></robot>"
+    )
+    assert "b.xacro" in refusal(outer)
+    (tmp_path / "b.xacro").write_text(
+        f"<!DOCTYPE r [<!ENTITY e SYSTEM 'file://{secret}'>]>{HEAD}<link>&e;</link></robot>"
+    )
+    assert "s3cret" not in expand_xacro(outer)
+
+
+def test_files_that_include_each_other_for_ever_are_a_short_sentence(tmp_path):
+    file = write(tmp_path / "a.xacro", "<xacro:include filename='a.xacro'/>")
+    message = refusal(file)
+    assert "recursion" in message
+    assert message.endswith("...")
+    assert len(message) < 1500
