@@ -58,6 +58,7 @@ def test_any_graph_can_be_placed(pairs):
         steps = {level[b] - level[a] for a, b in pairwise(route)}
         assert steps <= {1} or steps <= {-1} or source == target
     ElementTree.fromstring(to_svg(graph))
+    ElementTree.fromstring(to_svg(graph, downward=True))
 
 
 def test_svg_shows_each_vertex_and_each_line_of_its_label():
@@ -67,6 +68,26 @@ def test_svg_shows_each_vertex_and_each_line_of_its_label():
     root = ElementTree.fromstring(to_svg(graph))
     assert [text.text for text in root.iter(f"{SVG}text")] == ["why", "one", "<two>", "/b"]
     assert len(list(root.iter(f"{SVG}path"))) == 2
+
+
+def places(graph, downward):
+    root = ElementTree.fromstring(to_svg(graph, downward))
+    return {t.text: (float(t.attrib["x"]), float(t.attrib["y"])) for t in root.iter(f"{SVG}text")}
+
+
+def test_arrows_go_to_the_right_or_down():
+    rightward = places(graph_of("ab"), downward=False)
+    assert rightward["/a"][0] < rightward["/b"][0]
+    assert rightward["/a"][1] == rightward["/b"][1]
+    downward = places(graph_of("ab"), downward=True)
+    assert downward["/a"][1] < downward["/b"][1]
+    assert downward["/a"][0] == downward["/b"][0]
+
+
+def test_siblings_leave_room_for_the_labels_of_their_arrows():
+    label = "x" * 50
+    tree = places(graph_of("ab", "ac", label=label), downward=True)
+    assert abs(tree["/b"][0] - tree["/c"][0]) > 50 * 7
 
 
 def test_mermaid():

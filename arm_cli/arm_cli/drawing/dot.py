@@ -7,14 +7,14 @@ from pathlib import Path
 from arm_cli.drawing.digraph import Digraph
 
 
-def to_dot(graph: Digraph, rank_direction: str = "LR") -> str:
+def to_dot(graph: Digraph, downward: bool = False) -> str:
     """Return the graph in DOT.
 
     Args:
         graph: to be written.
-        rank_direction: "LR" from left to right, "TB" from top to bottom.
+        downward: whether arrows go down instead of to the right.
     """
-    lines = ["digraph G {", f"  rankdir={rank_direction};"]
+    lines = ["digraph G {", f"  rankdir={'TB' if downward else 'LR'};"]
     for vertex in graph.vertices:
         attributes = f"label={_quoted(vertex.label)}, shape={vertex.shape.value}"
         lines.append(f"  {_quoted(vertex.key)} [{attributes}];")

@@ -8,19 +8,24 @@ from arm_cli.drawing.svg import to_svg
 from arm_cli.errors import UsageError
 
 
-def write_picture(graph: Digraph, stem: Path, rank_direction: str = "LR") -> Path:
+def write_picture(graph: Digraph, stem: Path, downward: bool = False) -> Path:
     """Write STEM.gv, and STEM.pdf or STEM.svg; return the picture's path.
+
+    Args:
+        graph: to be drawn.
+        stem: path without suffix.
+        downward: whether arrows go down instead of to the right.
 
     Raises:
         UsageError: the folder cannot be written to.
     """
     dot_file = stem.with_name(f"{stem.name}.gv")
-    write_text(dot_file, to_dot(graph, rank_direction))
+    write_text(dot_file, to_dot(graph, downward))
     pdf_file = stem.with_name(f"{stem.name}.pdf")
     if has_graphviz() and render_pdf(dot_file, pdf_file):
         return pdf_file
     svg_file = stem.with_name(f"{stem.name}.svg")
-    write_text(svg_file, to_svg(graph))
+    write_text(svg_file, to_svg(graph, downward))
     return svg_file
 
 

@@ -13,16 +13,19 @@ PADDING = 14.0
 ROW_GAP = 18.0
 LAYER_GAP = 60.0
 MARGIN = 20.0
-BEND_HEIGHT = 10.0
 
 HEAD = 8.0
+
+_BEND = (10.0, 10.0)
+_NOTHING = (0.0, 0.0)
 
 _FILLS = {
     Shape.ELLIPSE: 'fill="#dbeafe" stroke="#2563eb"',
     Shape.BOX: 'fill="#f1f5f9" stroke="#64748b"',
 }
-_TEXT = "#1f2933"
-_LABEL = "#475569"
+_LINE = "#475569"
+_TEXT = 'fill="#1f2933"'
+_LABEL = f'fill="{_LINE}" stroke="#ffffff" stroke-width="3" paint-order="stroke"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +38,15 @@ class _Spot:
     height: float
 
 
-def to_svg(graph: Digraph) -> str:
-    """Return a picture of the graph: ellipses in blue, boxes in grey."""
+def to_svg(graph: Digraph, downward: bool = False) -> str:
+    """Return a picture of the graph: ellipses in blue, boxes in grey.
+
+    Args:
+        graph: to be drawn.
+        downward: whether arrows go down instead of to the right.
+    """
     layout = place(graph)
-    vertices = {vertex.key: vertex for vertex in graph.vertices}
-    gap = LAYER_GAP + max((_text_size(edge.label)[0] for edge in graph.edges), default=0.0)
-    spots, width, height = _spots(layout, vertices, gap)
+    spots, width, height = _spots(graph, layout, downward)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
         f'viewBox="0 0 {width:.0f} {height:.0f}">',
@@ -48,33 +54,45 @@ def to_svg(graph: Digraph) -> str:
         '<g font-family="monospace" font-size="12" text-anchor="middle">',
     ]
     for edge, route in zip(graph.edges, layout.routes, strict=True):
-        parts += _arrow([spots[key] for key in route], edge.label)
+        parts += _arrow([spots[key] for key in route], edge.label, downward)
     parts += [_shape(vertex, spots[vertex.key]) for vertex in graph.vertices]
     return "\n".join([*parts, "</g>", "</svg>", ""])
 
 
-def _spots(
-    layout: Layout, vertices: dict[str, Vertex], gap: float
-) -> tuple[dict[str, _Spot], float, float]:
-    sizes = {key: _size(vertices.get(key)) for layer in layout.layers for key in layer}
-    heights = [sum(sizes[key][1] + ROW_GAP for key in layer) for layer in layout.layers]
-    total_height = max(heights, default=0.0)
+def _spots(graph: Digraph, layout: Layout, downward: bool) -> tuple[dict[str, _Spot], float, float]:
+    """Return the place of each vertex and bend, and the picture's width and height.
+
+    Layers follow each other along the arrows; across them each vertex gets the room that the
+    label of an arrow to it needs.
+    """
+    along, across = (1, 0) if downward else (0, 1)
+    sizes = {vertex.key: _size(vertex) for vertex in graph.vertices}
+    labels = {edge.target: _text_size(edge.label) for edge in graph.edges if edge.label}
+    gap = LAYER_GAP + max((label[along] for label in labels.values()), default=0.0)
+    rows = [
+        [
+            (key, size, max(size[across], labels.get(key, _NOTHING)[across]) + ROW_GAP)
+            for key in layer
+            for size in (sizes.get(key, _BEND),)
+        ]
+        for layer in layout.layers
+    ]
+    breadth = max((sum(room for _, _, room in row) for row in rows), default=0.0)
     spots: dict[str, _Spot] = {}
-    left = MARGIN
-    for layer, layer_height in zip(layout.layers, heights, strict=True):
-        layer_width = max((sizes[key][0] for key in layer), default=0.0)
-        top = MARGIN + (total_height - layer_height) / 2
-        for key in layer:
-            width, height = sizes[key]
-            spots[key] = _Spot(left + layer_width / 2, top + height / 2, width, height)
-            top += height + ROW_GAP
-        left += layer_width + gap
-    return spots, left - gap + MARGIN, total_height + 2 * MARGIN
+    start = MARGIN
+    for row in rows:
+        depth = max((size[along] for _, size, _ in row), default=0.0)
+        side = MARGIN + (breadth - sum(room for _, _, room in row)) / 2
+        for key, size, room in row:
+            centre = (start + depth / 2, side + room / 2)
+            spots[key] = _Spot(centre[along], centre[across], *size)
+            side += room
+        start += depth + gap
+    extent = (start - gap + MARGIN, breadth + 2 * MARGIN)
+    return spots, extent[along], extent[across]
 
 
-def _size(vertex: Vertex | None) -> tuple[float, float]:
-    if vertex is None:
-        return 0.0, BEND_HEIGHT
+def _size(vertex: Vertex) -> tuple[float, float]:
     width, height = _text_size(vertex.label)
     return width + 2 * PADDING, height + PADDING
 
@@ -94,35 +112,52 @@ def _shape(vertex: Vertex, spot: _Spot) -> str:
     return outline + _text(vertex.label, spot.x, spot.y, _TEXT)
 
 
-def _text(text: str, x: float, y: float, fill: str) -> str:
+def _text(text: str, x: float, y: float, style: str) -> str:
     lines = text.split("\n")
     top = y - (len(lines) - 1) * LINE_HEIGHT / 2
     return "".join(
-        f'<text x="{x:.1f}" y="{top + index * LINE_HEIGHT:.1f}" dy="4" fill="{fill}">'
+        f'<text x="{x:.1f}" y="{top + index * LINE_HEIGHT:.1f}" dy="4" {style}>'
         f"{escape(line)}</text>"
         for index, line in enumerate(lines)
     )
 
 
-def _arrow(spots: list[_Spot], label: str) -> list[str]:
-    sign = 1 if spots[-1].x >= spots[0].x else -1
+def _arrow(spots: list[_Spot], label: str, downward: bool) -> list[str]:
+    first, last = spots[0], spots[-1]
+    forward = last.y >= first.y if downward else last.x >= first.x
+    sign = 1 if forward else -1
     points = [
-        (spots[0].x + sign * spots[0].width / 2, spots[0].y),
+        _border(first, sign, downward),
         *((spot.x, spot.y) for spot in spots[1:-1]),
-        (spots[-1].x - sign * spots[-1].width / 2, spots[-1].y),
+        _border(last, -sign, downward),
     ]
     path = f"M{points[0][0]:.1f} {points[0][1]:.1f}"
     for (x0, y0), (x1, y1) in pairwise(points):
-        middle = (x0 + x1) / 2
-        path += f"C{middle:.1f} {y0:.1f} {middle:.1f} {y1:.1f} {x1:.1f} {y1:.1f}"
-    tip_x, tip_y = points[-1]
-    back = tip_x - sign * HEAD
-    head = f"M{tip_x:.1f} {tip_y:.1f}L{back:.1f} {tip_y - 4:.1f}V{tip_y + 4:.1f}z"
+        bends = (x0, (y0 + y1) / 2, x1, (y0 + y1) / 2)
+        if not downward:
+            bends = ((x0 + x1) / 2, y0, (x0 + x1) / 2, y1)
+        path += "C" + " ".join(f"{number:.1f}" for number in (*bends, x1, y1))
     parts = [
-        f'<path fill="none" stroke="{_LABEL}" d="{path}"/>',
-        f'<path fill="{_LABEL}" d="{head}"/>',
+        f'<path fill="none" stroke="{_LINE}" d="{path}"/>',
+        f'<path fill="{_LINE}" d="{_head(points[-1], sign, downward)}"/>',
     ]
     if label:
-        (x0, y0), (x1, y1) = points[0], points[1]
-        parts.append(_text(label, (x0 + x1) / 2, (y0 + y1) / 2, _LABEL))
+        (x0, y0), (x1, y1) = points[-2:]
+        middle = (x1, (y0 + y1) / 2) if downward else ((x0 + x1) / 2, y1)
+        parts.append(_text(label, *middle, _LABEL))
     return parts
+
+
+def _border(spot: _Spot, sign: int, downward: bool) -> tuple[float, float]:
+    if downward:
+        return spot.x, spot.y + sign * spot.height / 2
+    return spot.x + sign * spot.width / 2, spot.y
+
+
+def _head(tip: tuple[float, float], sign: int, downward: bool) -> str:
+    x, y = tip
+    if downward:
+        back = y - sign * HEAD
+        return f"M{x:.1f} {y:.1f}L{x - 4:.1f} {back:.1f}H{x + 4:.1f}z"
+    back = x - sign * HEAD
+    return f"M{x:.1f} {y:.1f}L{back:.1f} {y - 4:.1f}V{y + 4:.1f}z"

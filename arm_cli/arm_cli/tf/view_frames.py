@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> None:
     with connect() as session:
         log = listen(session, options.wait_time)
     print("Generating graph...")
-    print(f"Exported graph to {write_picture(frame_graph(log), Path(stem), 'TB')}")
+    print(f"Exported graph to {write_picture(frame_graph(log), Path(stem), downward=True)}")
 
 
 def frame_graph(log: FrameLog) -> Digraph:

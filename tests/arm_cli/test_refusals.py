@@ -1,0 +1,49 @@
+"""What is wrong with types and fields is said before ROS starts."""
+
+import subprocess
+import sys
+
+import pytest
+
+CODE = (
+    "import sys; from arm_cli.main import main; code = main(sys.argv[1:]); "
+    "print('rclpy' in sys.modules); sys.exit(code)"
+)
+ARRAY = "std_msgs/msg/Float64MultiArray"
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (
+            ["topic", "pub", "/x", "std_msgs/msg/Strng", "data: a"],
+            "did you mean 'std_msgs/msg/String'",
+        ),
+        (["topic", "pub", "/x", ARRAY, "dta: [1]"], "no field 'dta'; did you mean 'data'?"),
+        (["topic", "pub", "/x", ARRAY, "data: [1"], "the values are no YAML"),
+        (["topic", "echo", "/x", ARRAY, "--field", "dat"], "no field 'dat'"),
+        (["topic", "echo", "/x", "--once", "--times", "2"], "--once or --times, not both"),
+        (["topic", "echo", "/x", "--filter", "m >"], "is no Python expression"),
+        (["topic", "find", "sensor_msg/msg/Image"], "did you mean 'sensor_msgs'"),
+        (["service", "call", "/x", "std_srvs/srv/SetBol", "{}"], "'std_srvs/srv/SetBool'"),
+        (["service", "call", "/x", "std_srvs/srv/SetBool", "{dat: true}"], "no field 'dat'"),
+        (["action", "send_goal", "/x", "control_msgs/action/Gripper"], "no action type"),
+        (
+            ["action", "send_goal", "/x", "control_msgs/action/GripperCommand", "{position: 1}"],
+            "no field 'position' (fields: command)",
+        ),
+        (["param", "load", "/n", "/no/such.yaml"], "no parameter file /no/such.yaml"),
+    ],
+)
+def test_it_is_one_sentence_and_rclpy_is_not_even_imported(words, sentence):
+    done = subprocess.run(
+        [sys.executable, "-c", CODE, *words],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode in (1, 2)
+    assert sentence in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stdout == "False\n"
