@@ -41,5 +41,8 @@ setup(
             "unspawner = arm_control.unspawner_node:main",
             "hardware_spawner = arm_control.hardware_spawner_node:main",
         ],
+        "launch_py.packages": [
+            "controller_manager = arm_control",
+        ],
     },
 )

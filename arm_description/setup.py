@@ -40,5 +40,9 @@ setup(
             "robot_state_publisher = arm_description.robot_state_publisher_node:main",
             "joint_state_publisher = arm_description.joint_state_publisher_node:main",
         ],
+        "launch_py.packages": [
+            "robot_state_publisher = arm_description",
+            "joint_state_publisher = arm_description",
+        ],
     },
 )

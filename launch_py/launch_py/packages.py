@@ -16,6 +16,8 @@ from launch_py.errors import NotFoundError
 from launch_py.near_names import describe_known
 
 MARKERS = "share/ament_index/resource_index/packages"
+STAND_INS = "launch_py.packages"
+"""Group of entry points: the name of a ROS package, and the one that has its executables here."""
 
 
 def ament_prefixes(environ: Mapping[str, str]) -> list[str]:
@@ -103,7 +105,9 @@ class Packages:
     def executable(self, package: str, name: str) -> tuple[str, ...]:
         """Return the command line of a package's executable.
 
-        A script of a Python distribution comes first, then a file in <prefix>/lib/<package>.
+        A script of a Python distribution comes first, then a file in <prefix>/lib/<package>. Where
+        there is no such package, a distribution may have named one that stands for it, so that
+        `package="controller_manager"` of a ROS launch file works.
 
         Raises:
             NotFoundError: there is no such package or executable; the message names near ones.
@@ -123,6 +127,9 @@ class Packages:
                 files.update(f for f in os.listdir(folder) if os.access(f"{folder}/{f}", os.X_OK))
         indexed = self._indexed_packages()
         if not own and not files and package not in indexed:
+            for name_there, stand_in in self._entry_points(STAND_INS):
+                if name_there == package and stand_in != package:
+                    return self.executable(stand_in, name)
             homes = sorted({script.package for script in scripts if script.name == name})
             if homes:
                 raise NotFoundError(
@@ -166,6 +173,11 @@ class Packages:
         return NotFoundError(f"no package {package!r} in {searched}; {hint}")
 
     def _console_scripts(self) -> Iterator[ConsoleScript]:
+        for name, target in self._entry_points("console_scripts"):
+            module, _, function = target.partition("[")[0].strip().partition(":")
+            yield ConsoleScript(name, module.strip(), function.strip())
+
+    def _entry_points(self, group: str) -> Iterator[tuple[str, str]]:
         for folder in self._python_path:
             try:
                 names = os.listdir(folder or os.curdir)
@@ -173,10 +185,12 @@ class Packages:
                 continue
             for name in names:
                 if name.endswith((".dist-info", ".egg-info")):
-                    yield from _read_entry_points(os.path.join(folder, name, "entry_points.txt"))
+                    path = os.path.join(folder, name, "entry_points.txt")
+                    yield from _read_entry_points(path, group)
 
 
-def _read_entry_points(path: str) -> Iterator[ConsoleScript]:
+def _read_entry_points(path: str, group: str) -> Iterator[tuple[str, str]]:
+    """Yield names and targets of one group."""
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
@@ -187,7 +201,6 @@ def _read_entry_points(path: str) -> Iterator[ConsoleScript]:
         text = line.strip()
         if text.startswith("["):
             section = text
-        elif section == "[console_scripts]" and "=" in text and not text.startswith(("#", ";")):
+        elif section == f"[{group}]" and "=" in text and not text.startswith(("#", ";")):
             name, _, target = text.partition("=")
-            module, _, function = target.partition("[")[0].strip().partition(":")
-            yield ConsoleScript(name.strip(), module.strip(), function.strip())
+            yield name.strip(), target.strip()

@@ -17,6 +17,7 @@ def site(tmp_path):
     entry_points.write_text(
         "[console_scripts]\n# a comment\nspin = demo_nodes.spin:main\n"
         "stop = demo_nodes.stop:Application.run [extra]\n\n[other]\nspin = wrong:main\n"
+        "\n[launch_py.packages]\ndemo_nodes_cpp = demo_nodes\ndemo = demo_nodes\n"
     )
     return str(tmp_path / "site")
 
@@ -51,6 +52,19 @@ def test_an_unknown_package_names_the_near_one(packages):
 def test_an_unknown_package_of_a_known_executable_says_where_it_is(packages):
     with pytest.raises(NotFoundError, match="'spin' is in package 'demo_nodes'"):
         packages.executable("robot_stuff", "spin")
+
+
+def test_a_package_that_is_not_there_has_one_that_stands_for_it(packages):
+    assert packages.executable("demo_nodes_cpp", "spin") == packages.executable(
+        "demo_nodes", "spin"
+    )
+    with pytest.raises(NotFoundError, match="'demo_nodes' has no executable 'zzz'"):
+        packages.executable("demo_nodes_cpp", "zzz")
+
+
+def test_a_package_that_is_there_needs_none(packages):
+    with pytest.raises(NotFoundError, match="'demo' has no executable 'spin'"):
+        packages.executable("demo", "spin")
 
 
 def test_an_unknown_executable_lists_what_there_is(packages):
