@@ -65,13 +65,16 @@ def find_command(package: str, name: str) -> tuple[str, ...]:
         NotFoundError: there is no such package or executable.
     """
     installed = Packages(os.environ)
-    try:
-        return installed.executable(package, name)
-    except LaunchError as error:
-        if (package, name) in COURSE_EXECUTABLES:
-            home, here, arguments = COURSE_EXECUTABLES[package, name]
+    candidates: list[tuple[str, str, tuple[str, ...]]] = [(package, name, ())]
+    if (package, name) in COURSE_EXECUTABLES:
+        candidates.append(COURSE_EXECUTABLES[package, name])
+    errors: list[LaunchError] = []
+    for home, here, arguments in candidates:
+        try:
             return (*installed.executable(home, here), *arguments)
-        raise NotFoundError(str(error)) from error
+        except LaunchError as error:
+            errors.append(error)
+    raise NotFoundError(str(errors[0])) from errors[0]
 
 
 def packages(**_: object) -> list[str]:

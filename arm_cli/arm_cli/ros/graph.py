@@ -26,7 +26,7 @@ from arm_cli.names import absolute_name, is_hidden, this_domain
 from arm_cli.ros.session import Session
 from launch_py.near_names import describe_known
 
-QUIET_S = 0.35
+QUIET_S = 0.3
 """So long nothing new has come: more than the 0.25 s between announcements of launched nodes."""
 EMPTY_S = 1.0
 """Nobody else has been found for so long: there is nobody."""
