@@ -17,6 +17,14 @@ def test_every_advance_is_one_control_period(bench, parts, rate_hz):
     assert arm.simulation.time_s == pytest.approx(1.0, abs=1e-9)
 
 
+def test_the_time_is_a_number_of_periods_however_long_it_goes(bench, parts):
+    arm = bench(parts.pendulum(), 100)
+    arm.simulation.reset(time_s=1000.0)
+    for _ in range(1000):
+        arm.simulation.advance()
+    assert arm.simulation.time_s == 1010.0
+
+
 def test_model_of_another_step_is_refused(parts):
     built = parts.build(parts.pendulum(), step_s=0.001)
     with pytest.raises(TimingError, match=r"built with a physics step of 0\.001 s, .* 0\.002 s"):
