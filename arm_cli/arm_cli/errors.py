@@ -4,6 +4,7 @@ ArmCliError
 |-- UsageError          the words of the command make no sense
 |-- NotFoundError       no such topic, node, service, type, file, ...
 |-- MessageError        values do not fit a message's fields
+|-- BagError            a recording cannot be written or read
 `-- UnansweredError     somebody who should answer does not
 """
 
@@ -28,6 +29,10 @@ class NotFoundError(ArmCliError):
 
 class MessageError(ArmCliError):
     """Values do not fit the fields of a message."""
+
+
+class BagError(ArmCliError):
+    """A recording cannot be written or read."""
 
 
 class UnansweredError(ArmCliError):

@@ -151,6 +151,16 @@ TF = VerbFamily(
     ),
 )
 
+BAG = VerbFamily(
+    "bag",
+    "record and play topics",
+    (
+        Verb("record", "record topics to a bag", "arm_cli.bag.record"),
+        Verb("info", "show what is in a bag", "arm_cli.bag.info"),
+        Verb("play", "publish again what is in a bag", "arm_cli.bag.play"),
+    ),
+)
+
 PKG = VerbFamily(
     "pkg",
     "list packages and their executables",
@@ -173,6 +183,7 @@ VERBS = (
     CONTROL,
     LIFECYCLE,
     TF,
+    BAG,
     Verb("check", "tell what becomes of a URDF or xacro file", "arm_cli.check_verb"),
     Verb("graph", "draw the nodes and topics, as SVG or Mermaid", "arm_cli.graph_verb"),
     PKG,

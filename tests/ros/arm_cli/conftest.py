@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from launch_py.supervision.shared_memory import SharedMemoryLedger
+
 TIMEOUT_S = 60.0
 
 
@@ -65,6 +67,15 @@ class CommandLine:
                     pytest.fail(f"{text!r} was not printed, but:\n{self.out}\n{self.err}")
                 self._changed.wait(min(left, 0.2))
 
+    def wait_until(self, condition: Callable[[], bool], what: str) -> None:
+        """Block until a condition holds that the running command brings about."""
+        deadline = time.monotonic() + TIMEOUT_S
+        with self._changed:
+            while not condition():
+                if time.monotonic() > deadline or self.process.poll() is not None:
+                    pytest.fail(f"it did not come to this: {what}\n{self.out}\n{self.err}")
+                self._changed.wait(0.1)
+
     def wait(self) -> int:
         """Block until the end; return the exit code."""
         code = self.process.wait(TIMEOUT_S)
@@ -76,6 +87,14 @@ class CommandLine:
         """Press Ctrl-C; return the exit code."""
         self.process.send_signal(signal.SIGINT)
         return self.wait()
+
+    def kill(self) -> None:
+        """Kill it, so that it cannot tidy up; the middleware's files are removed for it."""
+        ledger = SharedMemoryLedger(lambda pid: pid == self.process.pid)
+        ledger.observe()
+        self.process.kill()
+        self.wait()
+        ledger.sweep()
 
     def close(self) -> None:
         """End it, whatever the test did."""
@@ -90,10 +109,22 @@ class CommandLine:
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[[str], CommandLine]]:
     """Start a command line; it is ended with the test at the latest."""
+    yield from _starter(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def start_for_file(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Callable[[str], CommandLine]]:
+    """Start a command line; it is ended with the last test of the file at the latest."""
+    yield from _starter(tmp_path_factory.mktemp("commands"))
+
+
+def _starter(folder: Path) -> Iterator[Callable[[str], CommandLine]]:
     started: list[CommandLine] = []
 
     def run(line: str) -> CommandLine:
-        started.append(CommandLine(line, tmp_path))
+        started.append(CommandLine(line, folder))
         return started[-1]
 
     yield run

@@ -1,0 +1,143 @@
+"""A bag that is there: a folder with MCAP files, or one such file alone."""
+
+from collections.abc import Collection, Iterator
+from contextlib import ExitStack, closing
+from dataclasses import replace
+from pathlib import Path
+
+from arm_cli.bag.bag_metadata import FILE_NAME, STORAGE, BagMetadata, read_metadata
+from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.mcap_file_reader import McapFileReader
+from arm_cli.errors import BagError
+
+
+class BagReader:
+    """Reads a bag; a context manager that closes it.
+
+    The files themselves say what is in them: metadata.yaml of a recorder that was killed is older
+    than its last messages.
+
+    Attributes:
+        path: of the folder or file.
+        metadata: everything about it but its messages.
+        unfinished: names of the files whose writer did not come to the end.
+        size_bytes: of all files.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open all files.
+
+        Raises:
+            BagError: there is no bag, or it cannot be read; the message says why.
+        """
+        self.path = path
+        paths, ros_distro = _parts(path)
+        with ExitStack() as opening:
+            files = [opening.enter_context(closing(McapFileReader(part))) for part in paths]
+            self._open_files = opening.pop_all()
+        files.sort(key=lambda file: file.info.span.start_ns or 0)
+        self._files = files
+        self.unfinished = [file.info.name for file in files if not file.is_finished]
+        self.size_bytes = sum(file.path.stat().st_size for file in files)
+        self.metadata = BagMetadata(
+            files=tuple(file.info for file in files),
+            topics=_joined(files),
+            ros_distro=ros_distro or files[0].ros_distro(),
+        )
+
+    @property
+    def topics(self) -> list[BagTopic]:
+        """All topics."""
+        return [topic for topic, _ in self.metadata.topics]
+
+    def messages(self, topics: Collection[str], start_ns: int = 0) -> Iterator[BagMessage]:
+        """Yield the messages of some topics in the order of their time.
+
+        Args:
+            topics: names.
+            start_ns: nothing from before it.
+
+        Raises:
+            BagError: the bag is damaged.
+        """
+        for file in self._files:
+            end_ns = file.info.span.end_ns
+            if end_ns is not None and end_ns >= start_ns:
+                yield from file.messages(topics, start_ns)
+
+    def close(self) -> None:
+        """Close all files."""
+        self._open_files.close()
+
+    def __enter__(self) -> "BagReader":
+        """Return it."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close all files."""
+        self.close()
+
+
+def describe_unfinished(reader: BagReader) -> str | None:
+    """Return a sentence about files whose writer did not come to the end, None without such."""
+    if not reader.unfinished:
+        return None
+    names = ", ".join(reader.unfinished)
+    return (
+        f"{names} was not finished: it is being recorded, or its recorder was killed. "
+        "Everything up to its last whole chunk is there."
+    )
+
+
+def _parts(path: Path) -> tuple[list[Path], str]:
+    """Return the files of a bag, and the ROS that its metadata name."""
+    if path.is_file():
+        return [_checked(path)], ""
+    if not path.is_dir():
+        raise BagError(f"Bag path '{path}' does not exist!")
+    metadata_file = path / FILE_NAME
+    if metadata_file.is_file():
+        try:
+            text = metadata_file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise BagError(f"cannot read {metadata_file}: {error}") from error
+        metadata = read_metadata(text, str(metadata_file))
+        if metadata.storage != STORAGE:
+            raise BagError(_other_storage(path, metadata.storage))
+        files = [_checked(path / Path(file.name).name) for file in metadata.files]
+        if files:
+            return files, metadata.ros_distro
+    found = sorted(path.glob("*.mcap"))
+    if found:
+        return found, ""
+    if any(path.glob("*.db3")):
+        raise BagError(_other_storage(path, "sqlite3"))
+    raise BagError(f"no bag in {path}: neither {FILE_NAME} nor an .mcap file")
+
+
+def _checked(path: Path) -> Path:
+    if path.suffix == ".db3":
+        raise BagError(_other_storage(path, "sqlite3"))
+    if path.suffix == ".zstd":
+        raise BagError(f"{path} is compressed as a whole; decompress it first: unzstd {path}")
+    return path
+
+
+def _other_storage(path: Path, storage: str) -> str:
+    return (
+        f"{path} is stored as {storage}, only {STORAGE} can be read; "
+        "convert it with `ros2 bag convert` or `rosbags-convert`"
+    )
+
+
+def _joined(files: list[McapFileReader]) -> tuple[tuple[BagTopic, int], ...]:
+    """Return the topics of all files, each once, with all their messages."""
+    topics: dict[str, BagTopic] = {}
+    counts: dict[str, int] = {}
+    for file in files:
+        for topic, count in file.topics:
+            known = topics.setdefault(topic.name, topic)
+            if not known.offers and topic.offers:
+                topics[topic.name] = replace(known, offers=topic.offers)
+            counts[topic.name] = counts.get(topic.name, 0) + count
+    return tuple((topic, counts[name]) for name, topic in topics.items())

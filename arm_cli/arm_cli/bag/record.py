@@ -1,0 +1,209 @@
+"""`arm bag record`: record topics to a bag."""
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arm_cli.command_parser import (
+    positive_number,
+    positive_whole_number,
+    whole_number,
+)
+from arm_cli.errors import BagError, StoppedError
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.word_completion import complete_with
+
+if TYPE_CHECKING:
+    from collections import Counter
+
+    from arm_cli.bag.bag_metadata import BagMetadata
+    from arm_cli.bag.bag_writer import BagSettings
+    from arm_cli.bag.topic_selection import TopicSelection
+
+CACHE_BYTES = 100 * 1024 * 1024
+POLL_MS = 100
+NODE_NAME = "rosbag2_recorder"
+
+_PRESETS = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_small": "zstd"}
+"""rosbag2's presets for MCAP, by the compression that they mean."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    _add_selection(parser)
+    _add_output(parser)
+    parser.add_argument(
+        "--no-discovery", action="store_true", help="record only topics that are there at the start"
+    )
+    parser.add_argument(
+        "-p",
+        "--polling-interval",
+        type=positive_whole_number,
+        default=POLL_MS,
+        metavar="MS",
+        help=f"how often to look for new topics (default {POLL_MS} ms)",
+    )
+    parser.add_argument(
+        "--max-cache-size",
+        type=whole_number,
+        default=CACHE_BYTES,
+        metavar="BYTES",
+        help="messages that wait for the disk; when there are more, messages are dropped and "
+        f"counted (default {CACHE_BYTES})",
+    )
+    parser.add_argument(
+        "--use-sim-time", action="store_true", help="take the messages' times from /clock"
+    )
+    parser.add_argument(
+        "--node-name", default=NODE_NAME, metavar="NAME", help=f"default {NODE_NAME}"
+    )
+
+
+def _add_selection(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("topics")
+    complete_with(
+        group.add_argument("names", nargs="*", metavar="TOPIC", help="topics to record"),
+        completers.topics,
+    )
+    group.add_argument("--topics", nargs="+", metavar="TOPIC", help="the same")
+    group.add_argument(
+        "-a",
+        "--all",
+        "--all-topics",
+        action="store_true",
+        help="record all topics, new ones included, but no hidden ones",
+    )
+    group.add_argument("-e", "--regex", metavar="REGEX", help="record topics in which it is found")
+    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="but not these")
+    group.add_argument("--exclude-regex", metavar="REGEX", help="but none in which it is found")
+    group.add_argument(
+        "--include-hidden-topics",
+        action="store_true",
+        help="--all and --regex mean hidden ones",
+    )
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("bag")
+    group.add_argument(
+        "-o", "--output", metavar="DIR", help="folder to make (default rosbag2_<date>-<time>)"
+    )
+    group.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
+    group.add_argument(
+        "-b",
+        "--max-bag-size",
+        "--max-size",
+        type=whole_number,
+        default=0,
+        metavar="BYTES",
+        help="begin a new file when one has reached this size (default 0: never)",
+    )
+    group.add_argument(
+        "-d",
+        "--max-bag-duration",
+        "--max-duration",
+        type=positive_number,
+        metavar="SECONDS",
+        help="begin a new file when one spans this time",
+    )
+    group.add_argument(
+        "--compression",
+        "--compression-format",
+        choices=("none", "lz4", "zstd"),
+        help="of the files' chunks (default none); every MCAP reader understands it",
+    )
+    group.add_argument(
+        "--storage-preset-profile",
+        choices=tuple(_PRESETS),
+        default="none",
+        help="the same in rosbag2's words",
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Record until a signal comes.
+
+    Raises:
+        BagError: nothing is selected, or the bag cannot be written.
+    """
+    selection = _selection(options)
+    folder = Path(options.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    from arm_cli.bag.bag_writer import BagWriter
+    from arm_cli.bag.recording import Recording
+
+    writer = BagWriter(folder, _settings(options))
+    with connect(options.node_name, options.use_sim_time) as session:
+        from arm_cli.ros.bag_recorder import BagRecorder
+
+        recording = Recording(writer, options.max_cache_size)
+        recorder = BagRecorder(
+            session,
+            recording,
+            selection,
+            options.polling_interval * 1e-3,
+            options.use_sim_time,
+        )
+        try:
+            if options.use_sim_time:
+                session.wait_until(lambda: session.clock_ns() > 0, lambda: "waiting for /clock")
+            recorder.run(not options.no_discovery)
+        except StoppedError:
+            print("Recording stopped", file=sys.stderr)
+        metadata = recording.finish()
+    _report(metadata, folder, writer.size_bytes, recording.dropped, recorder.lost)
+
+
+def _selection(options: argparse.Namespace) -> "TopicSelection":
+    from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
+
+    names = absolute_names([*options.names, *(options.topics or ())])
+    selection = TopicSelection(
+        every=options.all,
+        names=names,
+        pattern=compile_pattern(options.regex, "--regex"),
+        excluded_names=absolute_names(options.exclude_topics),
+        excluded_pattern=compile_pattern(options.exclude_regex, "--exclude-regex"),
+        hidden=options.include_hidden_topics,
+    )
+    if selection.is_closed and not names:
+        raise BagError(
+            "Need to specify at least one option out of --all, --topics or --regex, or topics"
+        )
+    return selection
+
+
+def _settings(options: argparse.Namespace) -> "BagSettings":
+    from arm_cli.bag.bag_writer import BagSettings
+
+    duration_s = options.max_bag_duration
+    return BagSettings(
+        compression=options.compression or _PRESETS[options.storage_preset_profile],
+        max_size_bytes=options.max_bag_size or None,
+        max_duration_ns=None if duration_s is None else round(duration_s * 1e9),
+        ros_distro=os.environ.get("ROS_DISTRO", "jazzy"),
+    )
+
+
+def _report(
+    metadata: "BagMetadata",
+    folder: Path,
+    size_bytes: int,
+    dropped: "Counter[str]",
+    lost: "Counter[str]",
+) -> None:
+    from arm_cli.bag.info_text import describe_size
+
+    print(
+        f"{metadata.message_count} messages of {len(metadata.topics)} topics in "
+        f"{metadata.span.duration_ns * 1e-9:.1f} s, {describe_size(size_bytes)}, in {folder}",
+        file=sys.stderr,
+    )
+    if not dropped and not lost:
+        print("No message was dropped", file=sys.stderr)
+    for counts, reason in ((dropped, "the disk was too slow"), (lost, "lost on the way here")):
+        for topic, count in sorted(counts.items()):
+            print(f"{count} messages of {topic} were dropped: {reason}", file=sys.stderr)

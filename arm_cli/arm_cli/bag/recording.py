@@ -1,0 +1,111 @@
+"""A recording under way: messages come in on one thread and are written on another.
+
+The writing thread looks every 50 ms what has come, so that taking a message in costs an append and
+wakes nobody. When the disk is slower than the messages for so long that the cache is full, messages
+are dropped and counted.
+"""
+
+import threading
+import time
+from collections import Counter
+from dataclasses import dataclass
+
+from arm_cli.bag.bag_metadata import BagMetadata
+from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_writer import BagWriter
+from arm_cli.bag.type_definition import TypeDefinition
+from arm_cli.errors import BagError
+
+LOOK_PERIOD_S = 0.05
+FLUSH_PERIOD_S = 1.0
+"""A recorder that is killed loses no more than this."""
+
+
+@dataclass(frozen=True, slots=True)
+class _NewTopic:
+    topic: BagTopic
+    definition: TypeDefinition
+
+
+class Recording:
+    """Records into a bag. Its methods are for one thread, which is not the writing one."""
+
+    def __init__(self, writer: BagWriter, max_cache_bytes: int) -> None:
+        """Start the writing thread.
+
+        Args:
+            writer: belongs to the writing thread from now on.
+            max_cache_bytes: of messages that wait to be written.
+        """
+        self.dropped: Counter[str] = Counter()
+        """Messages for which there was no room in the cache, by topic."""
+        self._writer = writer
+        self._max_cache_bytes = max_cache_bytes
+        self._lock = threading.Lock()
+        self._waiting: list[BagMessage | _NewTopic] = []
+        self._waiting_bytes = 0
+        self._failure: BagError | None = None
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="bag_writer", daemon=True)
+        self._thread.start()
+
+    @property
+    def failure(self) -> BagError | None:
+        """What ended the writing before its time."""
+        return self._failure
+
+    def add_topic(self, topic: BagTopic, definition: TypeDefinition) -> None:
+        """Announce a topic; before its first message, and only once."""
+        with self._lock:
+            self._waiting.append(_NewTopic(topic, definition))
+
+    def put(self, message: BagMessage) -> None:
+        """Take a message in, or drop and count it."""
+        size = len(message.data)
+        with self._lock:
+            # A message that is larger than the whole cache has it to itself.
+            if self._waiting_bytes and self._waiting_bytes + size > self._max_cache_bytes:
+                self.dropped[message.topic] += 1
+                return
+            self._waiting.append(message)
+            self._waiting_bytes += size
+
+    def finish(self) -> BagMetadata:
+        """Write what waits, finish the bag, and return what it holds.
+
+        Raises:
+            BagError: it could not be written.
+        """
+        self._ending.set()
+        self._thread.join()
+        if self._failure is not None:
+            raise self._failure
+        return self._writer.metadata
+
+    def _run(self) -> None:
+        flushed_s = time.monotonic()
+        try:
+            while not self._ending.wait(LOOK_PERIOD_S):
+                self._write(self._take())
+                if time.monotonic() - flushed_s >= FLUSH_PERIOD_S:
+                    self._writer.flush()
+                    flushed_s = time.monotonic()
+            self._write(self._take())
+            self._writer.close()
+        except BagError as error:
+            self._writer.abandon()
+            self._failure = error
+
+    def _take(self) -> list[BagMessage | _NewTopic]:
+        with self._lock:
+            taken, self._waiting = self._waiting, []
+            return taken
+
+    def _write(self, items: list[BagMessage | _NewTopic]) -> None:
+        for item in items:
+            if isinstance(item, _NewTopic):
+                self._writer.add_topic(item.topic, item.definition)
+                continue
+            self._writer.write(item)
+            with self._lock:
+                self._waiting_bytes -= len(item.data)

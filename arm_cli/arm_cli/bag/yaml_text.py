@@ -1,0 +1,22 @@
+"""YAML by libyaml where PyYAML has it: metadata are written again and again while recording."""
+
+from typing import Any
+
+import yaml
+
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+def load_yaml(text: str) -> Any:
+    """Return the value of a YAML text.
+
+    Raises:
+        yaml.YAMLError: it is none.
+    """
+    return yaml.load(text, Loader=_LOADER)
+
+
+def dump_yaml(value: Any) -> str:
+    """Return plain values as YAML, keys in their order."""
+    return yaml.dump(value, Dumper=_DUMPER, sort_keys=False)

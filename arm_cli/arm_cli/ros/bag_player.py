@@ -1,0 +1,167 @@
+"""Publishes the messages of a bag as bytes, when they are due."""
+
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.publisher import Publisher
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock
+
+from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.play_schedule import PlaySchedule
+from arm_cli.errors import NotFoundError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.ros.bag_qos import playing_profile
+from arm_cli.ros.graph import Graph
+from arm_cli.ros.session import Session
+
+SIGNAL_PERIOD_S = 0.05
+"""A signal is seen after this time at the latest."""
+MATCHED_WITHIN_S = 1.0
+AFTER_MATCH_S = 0.2
+"""What is sent at the very moment of the match may be lost."""
+ACKNOWLEDGED_WITHIN_S = 1.0
+KEEP_ALIVE_S = 0.2
+"""What a reader has not taken when its publisher ends is gone, acknowledged or not."""
+CLOCK_TOPIC = "/clock"
+COMMON_TOPICS = frozenset(("/rosout", "/parameter_events"))
+"""That every node publishes."""
+
+
+class ClockTicker:
+    """Publishes the bag's time on /clock.
+
+    Attributes:
+        next_s: when the next tick is due, by `time.monotonic`.
+    """
+
+    def __init__(self, session: Session, rate_hz: float) -> None:
+        """Make the publisher."""
+        self.next_s = 0.0
+        self._period_s = 1.0 / rate_hz
+        self._publisher = session.node.create_publisher(Clock, CLOCK_TOPIC, 10)
+
+    def tick(self, now_s: float, bag_time_ns: int) -> None:
+        """Publish a time of the bag."""
+        self._publisher.publish(Clock(clock=Time(nanoseconds=bag_time_ns).to_msg()))
+        self.next_s = max(self.next_s + self._period_s, now_s)
+
+
+class BagPlayer:
+    """Plays messages of a bag's topics."""
+
+    def __init__(self, session: Session, clock_rate_hz: float | None) -> None:
+        """Prepare.
+
+        Args:
+            session: whose node publishes.
+            clock_rate_hz: rate of /clock; None publishes none.
+        """
+        self._session = session
+        self._publishers: dict[str, Publisher] = {}
+        self._ticker = None if clock_rate_hz is None else ClockTicker(session, clock_rate_hz)
+        self._signals_seen_s = 0.0
+
+    def advertise(self, topics: Sequence[BagTopic], names: Mapping[str, str]) -> list[str]:
+        """Make the publishers, and wait until those who listen already have found them.
+
+        What cannot be played is said and left out.
+
+        Args:
+            topics: to be played.
+            names: under which some of them are published, by the names in the bag.
+
+        Returns:
+            The names of the topics that can be played.
+        """
+        index, node = InterfaceIndex(), self._session.node
+        for topic in topics:
+            name = names.get(topic.name, topic.name)
+            if self._ticker is not None and name == CLOCK_TOPIC:
+                _say(f"{name} of the bag is not played: --clock publishes it")
+                continue
+            try:
+                message_class: Any = load_class(index.find(topic.type, ("msg",)))
+            except NotFoundError as error:
+                _say(f"{topic.name} is not played: {error}")
+                continue
+            publisher = node.create_publisher(message_class, name, playing_profile(topic.offers))
+            if self._has_other_definition(topic, name):
+                _say(f"{topic.name} is not played: its {topic.type} had other fields than now")
+                node.destroy_publisher(publisher)
+                continue
+            self._publishers[topic.name] = publisher
+        self._meet_others()
+        return list(self._publishers)
+
+    def _meet_others(self) -> None:
+        graph = Graph(self._session)
+        graph.settle()
+        publishers = self._publishers.values()
+        listeners = {p: len(graph.subscriptions(p.topic_name)) for p in publishers}
+        self._session.wait_until(
+            lambda: all(p.get_subscription_count() >= count for p, count in listeners.items()),
+            timeout_s=MATCHED_WITHIN_S,
+        )
+        if any(listeners.values()):
+            self._session.spin_for(AFTER_MATCH_S)
+        names = {publisher.topic_name for publisher in self._publishers.values()} - COMMON_TOPICS
+        shared = sorted(name for name in names if graph.publishers(name))
+        if shared:
+            _say(f"published by others, too: {', '.join(shared)}")
+
+    def play(self, messages: Iterable[BagMessage], schedule: PlaySchedule, end_ns: int) -> None:
+        """Publish messages at their times, up to a time of the bag.
+
+        Raises:
+            StoppedError: a signal ends it.
+        """
+        for message in messages:
+            if message.log_time_ns > end_ns:
+                break
+            self._wait(schedule, message.log_time_ns)
+            self._publishers[message.topic].publish(message.data)
+        self._wait(schedule, end_ns)
+
+    def finish(self) -> None:
+        """Let the last messages arrive."""
+        deadline_s = time.monotonic() + ACKNOWLEDGED_WITHIN_S
+        for publisher in self._publishers.values():
+            left_s = deadline_s - time.monotonic()
+            if left_s > 0 and publisher.get_subscription_count():
+                publisher.wait_for_all_acked(Duration(seconds=left_s))
+        self._session.spin_for(KEEP_ALIVE_S)
+
+    def _wait(self, schedule: PlaySchedule, bag_time_ns: int) -> None:
+        """Spin until a time of the bag has come, and tick meanwhile."""
+        due_s = schedule.due_s(bag_time_ns)
+        while True:
+            now_s = time.monotonic()
+            if self._ticker is not None and now_s >= self._ticker.next_s:
+                self._ticker.tick(now_s, schedule.bag_time_ns(now_s))
+            if now_s >= due_s:
+                break
+            next_s = due_s if self._ticker is None else min(due_s, self._ticker.next_s)
+            self._spin(min(max(next_s - now_s, 0.0), SIGNAL_PERIOD_S))
+        if time.monotonic() - self._signals_seen_s >= SIGNAL_PERIOD_S:
+            self._spin(0.0)
+
+    def _spin(self, timeout_s: float) -> None:
+        self._session.spin_once(timeout_s)
+        self._signals_seen_s = time.monotonic()
+
+    def _has_other_definition(self, topic: BagTopic, name: str) -> bool:
+        node = self._session.node
+        own = [
+            str(info.topic_type_hash)
+            for info in node.get_publishers_info_by_topic(name)
+            if info.node_name == node.get_name() and info.topic_type_hash.version > 0
+        ]
+        return bool(topic.type_hash and own and topic.type_hash not in own)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

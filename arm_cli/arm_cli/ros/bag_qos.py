@@ -1,0 +1,73 @@
+"""Quality of service between rclpy and a bag."""
+
+from collections.abc import Iterable, Sequence
+
+from rclpy.duration import Duration
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from arm_cli.bag.offered_qos import INFINITE_NS, OfferedQos
+from arm_cli.ros.qos import matching_profile
+
+RECORDING_DEPTH = 500
+"""A second of a fast topic."""
+PLAYING_DEPTH = 10
+"""As rosbag2's, where the recorded offer does not name more."""
+
+
+def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
+    """Return what a publisher offers."""
+    profile = publisher.qos_profile
+    return OfferedQos(
+        history=profile.history.short_key,
+        depth=profile.depth,
+        reliability=profile.reliability.short_key,
+        durability=profile.durability.short_key,
+        deadline_ns=profile.deadline.nanoseconds,
+        lifespan_ns=profile.lifespan.nanoseconds,
+        liveliness=profile.liveliness.short_key,
+        lease_ns=profile.liveliness_lease_duration.nanoseconds,
+        avoid_ros_namespace_conventions=profile.avoid_ros_namespace_conventions,
+    )
+
+
+def recording_profile(publishers: Sequence[TopicEndpointInfo]) -> QoSProfile:
+    """Return a subscription's profile that gets all that every one of the publishers offers."""
+    profile = matching_profile(publishers)
+    profile.depth = RECORDING_DEPTH
+    return profile
+
+
+def playing_profile(offers: Sequence[OfferedQos]) -> QoSProfile:
+    """Return a publisher's profile that reaches whoever any of the recorded publishers reached.
+
+    With one offer, or several alike, it is that offer. Of different ones it is the stronger policy
+    each, since that suits every subscription which the weaker one suits.
+    """
+    depth = max([PLAYING_DEPTH, *(offer.depth for offer in offers)])
+    profile = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth)
+    if not offers:
+        return profile
+    reliable = any(offer.reliability != "best_effort" for offer in offers)
+    latched = any(offer.durability == "transient_local" for offer in offers)
+    profile.reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+    profile.durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+    if any(offer.liveliness == "manual_by_topic" for offer in offers):
+        profile.liveliness = LivelinessPolicy.MANUAL_BY_TOPIC
+    profile.deadline = _shortest(offer.deadline_ns for offer in offers)
+    profile.liveliness_lease_duration = _shortest(offer.lease_ns for offer in offers)
+    longest_ns = max(offer.lifespan_ns for offer in offers)
+    profile.lifespan = _shortest([longest_ns])
+    return profile
+
+
+def _shortest(durations_ns: Iterable[int]) -> Duration:
+    shortest_ns = min(durations_ns)
+    # rclpy's word for "not limited" is zero.
+    return Duration(nanoseconds=0 if shortest_ns >= INFINITE_NS else shortest_ns)

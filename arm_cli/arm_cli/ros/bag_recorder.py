@@ -1,0 +1,204 @@
+"""Subscribes to what is to be recorded, as it appears, and hands the messages on as bytes."""
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.subscription import Subscription
+
+from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.recording import Recording
+from arm_cli.bag.topic_selection import TopicSelection
+from arm_cli.bag.type_definition import find_definition
+from arm_cli.errors import NotFoundError
+from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.names import this_domain
+from arm_cli.ros.bag_qos import offered_qos, recording_profile
+from arm_cli.ros.graph import Graph
+from arm_cli.ros.session import PATIENCE_S, Session
+from launch_py.near_names import describe_known
+
+ADAPT_PERIOD_S = 1.0
+"""So often it is looked whether new publishers want another subscription."""
+DROPS_SAID_PERIOD_S = 5.0
+MATCHING_S = 1.0
+"""So long a new subscription and its publishers may take to find each other."""
+
+
+class BagRecorder:
+    """Records the selected topics until a signal comes; see `run`.
+
+    Attributes:
+        lost: messages that the middleware lost on the way, by topic.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        recording: Recording,
+        selection: TopicSelection,
+        poll_period_s: float,
+        use_sim_time: bool,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            session: whose node subscribes.
+            recording: where the messages go.
+            selection: what is recorded.
+            poll_period_s: of looking for new topics.
+            use_sim_time: whether messages get the time of the session's clock.
+        """
+        self.lost: Counter[str] = Counter()
+        self._session = session
+        self._graph = Graph(session)
+        self._recording = recording
+        self._selection = selection
+        self._poll_period_s = poll_period_s
+        self._use_sim_time = use_sim_time
+        self._index = InterfaceIndex()
+        self._subscriptions: dict[str, tuple[Subscription, QoSProfile, type]] = {}
+        self._skipped: set[str] = set()
+        self._missing_said = False
+        self._dropped_said = 0
+
+    def run(self, discover: bool = True) -> None:
+        """Record until the recording fails.
+
+        Args:
+            discover: whether topics are recorded that appear after the graph has come to rest.
+
+        Raises:
+            StoppedError: a signal ends it.
+        """
+        started_s = time.monotonic()
+        adapt_s = drops_s = started_s
+        next_poll_s = 0.0
+        _say("Listening for topics...")
+        if not discover:
+            self._graph.settle()
+            self._subscribe_new()
+        while self._recording.failure is None:
+            now_s = time.monotonic()
+            if now_s >= next_poll_s:
+                next_poll_s = now_s + self._poll_period_s
+                if discover and not self._is_complete():
+                    self._subscribe_new()
+                if now_s - started_s >= PATIENCE_S:
+                    self._say_missing()
+                if now_s - adapt_s >= ADAPT_PERIOD_S:
+                    adapt_s = now_s
+                    self._adapt()
+                if now_s - drops_s >= DROPS_SAID_PERIOD_S:
+                    drops_s = now_s
+                    self._say_drops()
+            self._session.spin_once()
+
+    def _is_complete(self) -> bool:
+        return self._selection.is_closed and self._selection.names <= self._subscriptions.keys()
+
+    def _subscribe_new(self) -> None:
+        before = len(self._subscriptions)
+        for name, types in self._session.node.get_topic_names_and_types():
+            known = name in self._subscriptions or name in self._skipped
+            if not known and self._selection.wants(name) and self._graph.publishers(name):
+                self._subscribe(name, types)
+        if len(self._subscriptions) > before and self._is_complete():
+            _say("All requested topics are subscribed. Stopping discovery...")
+
+    def _subscribe(self, name: str, types: list[str]) -> None:
+        if len(types) > 1:
+            self._skip(name, f"it has several types: {', '.join(types)}")
+            return
+        try:
+            message_class = load_class(self._index.find(types[0], ("msg",)))
+        except NotFoundError as error:
+            self._skip(name, str(error))
+            return
+        publishers = self._graph.publishers(name)
+        hashes = [str(p.topic_type_hash) for p in publishers if p.topic_type_hash.version > 0]
+        topic = BagTopic(
+            name=name,
+            type=types[0],
+            type_hash=hashes[0] if hashes else "",
+            offers=tuple(offered_qos(publisher) for publisher in publishers),
+        )
+        self._recording.add_topic(topic, find_definition(self._index, topic.type))
+        self._open(name, message_class, recording_profile(publishers))
+        _say(f"Subscribed to topic '{name}'")
+
+    def _open(self, name: str, message_class: type, profile: QoSProfile) -> None:
+        opened_s = time.monotonic()
+        latched = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+
+        def count_lost(event: Any) -> None:
+            # To a latched topic's new subscription Fast DDS reports what was published before it.
+            if not latched or time.monotonic() - opened_s > MATCHING_S:
+                self.lost[name] += event.total_count_change
+
+        subscription = self._session.node.create_subscription(
+            message_class,
+            name,
+            self._stamping(name),
+            profile,
+            raw=True,
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=count_lost, use_default_callbacks=False
+            ),
+        )
+        self._subscriptions[name] = (subscription, profile, message_class)
+
+    def _stamping(self, name: str) -> Callable[..., None]:
+        put, wall_ns = self._recording.put, time.time_ns
+
+        def take(data: bytes, info: dict[str, Any]) -> None:
+            now_ns = wall_ns()
+            put(BagMessage(name, now_ns, info["source_timestamp"] or now_ns, data))
+
+        def take_by_clock(data: bytes) -> None:
+            now_ns = self._session.clock_ns()
+            put(BagMessage(name, now_ns, now_ns, data))
+
+        return take_by_clock if self._use_sim_time else take
+
+    def _skip(self, name: str, reason: str) -> None:
+        self._skipped.add(name)
+        _say(f"{name} is not recorded: {reason}")
+
+    def _adapt(self) -> None:
+        """Subscribe anew where publishers have come that the old subscription does not suit."""
+        for name, (subscription, profile, message_class) in list(self._subscriptions.items()):
+            publishers = self._graph.publishers(name)
+            if not publishers:
+                continue
+            wanted = recording_profile(publishers)
+            if (wanted.reliability, wanted.durability) != (profile.reliability, profile.durability):
+                self._session.node.destroy_subscription(subscription)
+                self._open(name, message_class, wanted)
+                _say(f"Subscribed anew to topic '{name}', whose publishers offer another QoS")
+
+    def _say_missing(self) -> None:
+        missing = sorted(self._selection.names - self._subscriptions.keys() - self._skipped)
+        if self._missing_said or not (missing or not self._subscriptions):
+            return
+        self._missing_said = True
+        if not missing:
+            _say(f"waiting for topics, {this_domain()}")
+        for name in missing:
+            near = describe_known(name, self._graph.topics())
+            hint = f"; {near}" if near.startswith("did") else ""
+            _say(f"waiting for a publisher of {name} on {this_domain()}{hint}")
+
+    def _say_drops(self) -> None:
+        dropped = self._recording.dropped.total() + self.lost.total()
+        if dropped > self._dropped_said:
+            _say(f"{dropped - self._dropped_said} messages were dropped ({dropped} in all)")
+            self._dropped_said = dropped
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
