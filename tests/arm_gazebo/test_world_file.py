@@ -28,7 +28,7 @@ def test_own_world_is_found_by_its_path(tmp_path):
 
 
 def test_missing_world_is_named_with_those_that_exist(tmp_path):
-    with pytest.raises(WorldError, match=r"no world 'moon': .*/moon\).* empty, objects"):
+    with pytest.raises(WorldError, match=r"no world 'moon': .*/moon\).* empty, house, objects"):
         find_world("moon")
 
 
