@@ -1,5 +1,6 @@
 """Bags are written so that other people's readers read them, and are readable when torn."""
 
+import random
 import shutil
 from collections import Counter
 from pathlib import Path
@@ -170,6 +171,11 @@ def test_a_bag_that_nobody_finished_is_readable_up_to_the_last_flush(tmp_path):
     assert dict(reader.metadata.topics) == {POINTS: 5, LATCHED: 0}
     assert "bag_0.mcap was not finished" in str(describe_unfinished(reader))
     reader.close()
+    # The same to readers that know nothing of recorders that were killed.
+    with AnyReader([tmp_path / "bag"]) as other:
+        assert len(list(other.messages())) == 5
+    with (tmp_path / "bag" / "bag_0.mcap").open("rb") as stream:
+        assert len(list(make_reader(stream, validate_crcs=True).iter_messages())) == 5
     bag.close()
 
 
@@ -253,6 +259,26 @@ def test_damage_in_a_finished_file_is_a_sentence(tmp_path):
     with pytest.raises(BagError, match=r"bag_0\.mcap is damaged: crc validation failed"):
         list(reader.messages(["/points"]))
     reader.close()
+
+
+@pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
+def test_any_damage_is_a_sentence_or_goes_unseen(tmp_path, compression):
+    whole = (write(tmp_path / "bag", compression=compression) / "bag_0.mcap").read_bytes()
+    chance = random.Random(1)
+    damaged = tmp_path / "damaged.mcap"
+    refusals = []
+    for _ in range(150):
+        content = bytearray(whole)
+        content[chance.randrange(8, len(content))] = chance.randrange(256)
+        damaged.write_bytes(content)
+        try:
+            with BagReader(damaged) as reader:
+                assert len(list(reader.messages([topic.name for topic in reader.topics]))) <= 11
+        except BagError as error:
+            refusals.append(str(error))
+    assert len(refusals) > 10
+    assert all("damaged.mcap is damaged: " in refusal for refusal in refusals)
+    assert not any("\n" in refusal for refusal in refusals)
 
 
 @pytest.mark.parametrize(

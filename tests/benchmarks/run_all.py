@@ -21,6 +21,7 @@ SCRIPTS = (
     "as_fast_as_possible.py",
     "camera_rate.py",
     "load_time.py",
+    "bag_recording.py",
 )
 
 

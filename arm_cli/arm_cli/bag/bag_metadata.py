@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import Any
 
-import yaml
-
 from arm_cli.bag.bag_topic import BagTopic
 from arm_cli.bag.offered_qos import read_offers
 from arm_cli.bag.yaml_text import dump_yaml, load_yaml
@@ -142,7 +140,7 @@ def read_metadata(text: str, where: str) -> BagMetadata:
             storage=str(plain["storage_identifier"]),
             compression_mode=str(plain.get("compression_mode") or "").lower(),
         )
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{type(error).__name__}: {error}".splitlines()[0]
         raise BagError(f"{where} is no metadata of a bag ({reason})") from error
 

@@ -36,7 +36,7 @@ class McapFileReader:
 
     Attributes:
         path: of the file.
-        is_finished: whether its writer came to the end.
+        is_finished: whether its writer came to the end and wrote the index.
         info: name, time and number of its messages.
         topics: its topics and how many messages each has.
     """
@@ -56,9 +56,8 @@ class McapFileReader:
             opening.callback(self._stream.close)
             if self._stream.read(MAGIC_SIZE) != MCAP0_MAGIC:
                 raise BagError(f"{path} is no MCAP file")
-            self.is_finished = _ends_well(self._stream)
             try:
-                self._reader, self._summary = self._open_reader()
+                self._reader, self._summary, self.is_finished = _open_reader(self._stream)
                 self.topics = _topics(self._summary)
             except damage_errors() as error:
                 raise self._damaged(error) from error
@@ -106,20 +105,23 @@ class McapFileReader:
                 raise self._damaged(error) from error
             # The torn record at the end of a file that nobody finished.
 
-    def _open_reader(self) -> tuple[SeekingReader, Summary]:
-        self._stream.seek(0)
-        if self.is_finished:
-            reader = SeekingReader(self._stream, validate_crcs=True)
-            summary = reader.get_summary()
-            if summary is not None and summary.statistics is not None:
-                return reader, summary
-            self._stream.seek(0)
-        recovering = _RecoveringReader(self._stream)
-        return recovering, recovering.get_summary()
-
     def _damaged(self, error: Exception) -> BagError:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         return BagError(f"{self.path} is damaged: {reason}")
+
+
+def _open_reader(stream: BinaryIO) -> tuple[SeekingReader, Summary, bool]:
+    """Return a reader, the file's summary or one made up, and whether it is the file's."""
+    ends = _ends_well(stream)
+    stream.seek(0)
+    if ends:
+        reader = SeekingReader(stream, validate_crcs=True)
+        summary = reader.get_summary()
+        if summary is not None and summary.statistics is not None:
+            return reader, summary, True
+        stream.seek(0)
+    recovering = _RecoveringReader(stream)
+    return recovering, recovering.get_summary(), False
 
 
 def _ends_well(stream: BinaryIO) -> bool:

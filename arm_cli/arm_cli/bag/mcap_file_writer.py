@@ -1,12 +1,15 @@
 """One MCAP file while it is being written.
 
-What has been flushed is whole chunks, so a file whose writer was killed can be read up to there.
+After every flush the file is a whole one: behind its last chunk stands the end of a file without an
+index, which the next chunk overwrites. So any reader can read a file whose writer was killed.
 """
 
 import contextlib
 from pathlib import Path
 
-from mcap.writer import CompressionType, Writer
+from mcap.data_stream import RecordBuilder
+from mcap.records import DataEnd, Footer
+from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from arm_cli.bag.bag_metadata import BagFileInfo, TimeSpan
 from arm_cli.bag.bag_topic import BagMessage, BagTopic
@@ -24,6 +27,13 @@ COMPRESSIONS = {
     "lz4": CompressionType.LZ4,
     "zstd": CompressionType.ZSTD,
 }
+
+
+def _end_without_index() -> bytes:
+    builder = RecordBuilder()
+    DataEnd(data_section_crc=0).write(builder)
+    Footer(summary_start=0, summary_offset_start=0, summary_crc=0).write(builder)
+    return builder.end() + MCAP0_MAGIC
 
 
 class McapFileWriter:
@@ -46,8 +56,9 @@ class McapFileWriter:
         self._span = TimeSpan()
         self._count = 0
         self._pending_bytes = 0
+        self._end = _end_without_index()
         self._writer.start(PROFILE, LIBRARY)
-        self._stream.flush()
+        self.flush()
 
     @property
     def info(self) -> BagFileInfo:
@@ -95,6 +106,11 @@ class McapFileWriter:
         """Hand everything to the operating system: from now on a kill cannot take it away."""
         self._writer.flush()
         self._pending_bytes = 0
+        following = self._stream.tell()
+        self._stream.write(self._end)
+        self._stream.flush()
+        # What follows is longer than the end, a chunk or the index: nothing of it stays behind.
+        self._stream.seek(following)
 
     def close(self, metadata: str) -> None:
         """Finish the file with its index, and the bag's metadata inside."""

@@ -1,6 +1,7 @@
 """The summary of an MCAP file that has none: made up from what can be read of it.
 
-A recorder that was killed leaves whole chunks, perhaps a torn one at the end, and no index.
+A recorder that was killed leaves whole chunks and no index; a machine that lost its power, perhaps
+a torn chunk at the end.
 """
 
 import io
@@ -23,12 +24,15 @@ _HEADER = struct.Struct("<BQ")
 _DAMAGE: tuple[type[Exception], ...] = (
     McapError,
     ValueError,
+    LookupError,
+    MemoryError,
+    OSError,
     struct.error,
     RuntimeError,
     EOFError,
     zlib.error,
 )
-"""What reading a damaged record raises, the decompressors' errors among them."""
+"""What reading damaged records raises, or a disk that cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)

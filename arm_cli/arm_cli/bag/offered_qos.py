@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import yaml
-
 from arm_cli.bag.yaml_text import dump_yaml, load_yaml
 
 INFINITE_NS = 2**63 - 1
@@ -78,7 +76,7 @@ def read_offers(value: Any) -> tuple[OfferedQos, ...]:
     if isinstance(value, str):
         try:
             value = load_yaml(value)
-        except yaml.YAMLError:
+        except ValueError:
             return ()
     if not isinstance(value, list):
         return ()
