@@ -83,7 +83,7 @@ def test_an_unknown_joint_in_the_controllers_file_is_named(launch, tmp_path):
         (["physics_step:=0.003"], ["0.003", "0.01"]),
         (["controllers:=/no/such.yaml"], ["/no/such.yaml"]),
         (["headless:=false"], ["DISPLAY is not set", "headless:=false"]),
-        (["gz_args:=-r -v 1 house.sdf"], ["'house'", "empty", "objects"]),
+        (["gz_args:=-r -v 1 kitchen.sdf"], ["'kitchen'", "empty", "objects"]),
         (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], ["/no/such/lab.xml"]),
         (["gz_args:=objects.sdf"], ["lacks -r"]),
     ],

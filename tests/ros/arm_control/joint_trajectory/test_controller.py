@@ -133,8 +133,9 @@ def test_the_state_has_what_is_wanted_measured_and_commanded(
 
 
 def test_a_late_subscriber_gets_the_last_state_of_an_inactive_one(
-    active: Any, client: Any, request: pytest.FixtureRequest
+    active: Any, send: Any, request: pytest.FixtureRequest
 ) -> None:
+    send((0.1, THERE)).result()  # stopped sooner, it might never have been updated
     assert active.switch([], [NAME]).ok
     assert request.getfixturevalue("states").wait_for(1)
 
