@@ -1,0 +1,140 @@
+"""Looks at a running simulation for a second, for the doctor."""
+
+from rclpy.qos import QoSCompatibility, qos_check_compatible
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from arm_cli.doctor.observation import (
+    ClockReading,
+    ControlState,
+    HardwareComponent,
+    LoadedController,
+    Mismatch,
+    Observation,
+)
+from arm_cli.errors import UnansweredError
+from arm_cli.ros.command_listener import CommandListener, command_controllers
+from arm_cli.ros.controller_manager import ControllerManagerClient
+from arm_cli.ros.graph import Graph, NodeName
+from arm_cli.ros.parameters import NodeParameters
+from arm_cli.ros.session import Session
+from arm_cli.ros.simulation_listener import ClockListener, DescriptionListener
+
+WINDOW_S = 1.0
+"""How long the clock is watched, and commands are waited for."""
+FIRST_MESSAGE_S = 3.0
+LIST_CONTROLLERS = "/list_controllers"
+LIST_TYPE = "controller_manager_msgs/srv/ListControllers"
+CLOCK = "/clock"
+DESCRIPTION, DESCRIPTION_TYPE = "robot_description", "std_msgs/msg/String"
+FACTOR = "real_time_factor"
+
+
+def observe(session: Session) -> Observation:
+    """Discover the graph, ask the managers, and listen to the topics."""
+    graph = Graph(session)
+    graph.settle()
+    managers = tuple(_ask(session, name) for name in _manager_names(graph))
+    topics = graph.topics()
+    described = [
+        name
+        for name, types in topics.items()
+        if name.rpartition("/")[2] == DESCRIPTION
+        and types == [DESCRIPTION_TYPE]
+        and graph.publishers(name)
+    ]
+    clock = ClockListener(session)
+    descriptions = [DescriptionListener(session, name) for name in described]
+    commands = [
+        CommandListener(session, name, topics[name][0], controller, clock)
+        for name, controller in command_controllers(topics, managers).items()
+    ]
+    if CLOCK in topics and graph.publishers(CLOCK):
+        session.wait_until(lambda: clock.has_begun, timeout_s=FIRST_MESSAGE_S)
+    session.spin_for(WINDOW_S)
+    session.wait_until(lambda: all(d.text for d in descriptions), timeout_s=FIRST_MESSAGE_S)
+    return Observation(
+        managers=managers,
+        publishers={name: _names(graph.publishers(name)) for name in topics},
+        descriptions={d.topic: d.text for d in descriptions},
+        clock=_reading(session, graph, clock),
+        mismatches=tuple(m for name in topics for m in _mismatches(graph, name)),
+        commands=tuple(
+            c.report(_names(graph.publishers(c.topic)), _names(graph.subscriptions(c.topic)))
+            for c in commands
+        ),
+    )
+
+
+def _manager_names(graph: Graph) -> list[str]:
+    return [
+        name.removesuffix(LIST_CONTROLLERS)
+        for name, types in graph.services().items()
+        if name.endswith(LIST_CONTROLLERS) and LIST_TYPE in types and graph.server_count(name)
+    ]
+
+
+def _ask(session: Session, name: str) -> ControlState:
+    client = ControllerManagerClient(session, name)
+    try:
+        controllers, components = client.controllers(), client.hardware_components()
+    except UnansweredError:
+        return ControlState(name, answered=False)
+    return ControlState(
+        name,
+        controllers=tuple(
+            LoadedController(c.name, c.state, tuple(c.claimed_interfaces)) for c in controllers
+        ),
+        hardware=tuple(
+            HardwareComponent(
+                c.name, c.state.label, {i.name: i.is_claimed for i in c.command_interfaces}
+            )
+            for c in components
+        ),
+    )
+
+
+def _reading(session: Session, graph: Graph, clock: ClockListener) -> ClockReading | None:
+    if not clock.has_begun:
+        return None
+    return ClockReading(clock.simulated_s, clock.wall_s, _wanted_factor(session, graph))
+
+
+def _wanted_factor(session: Session, graph: Graph) -> float | None:
+    """Return the parameter of who alone publishes the clock, None where it has none."""
+    sources = graph.publishers(CLOCK)
+    if len(sources) != 1:
+        return None
+    node = NodeName(sources[0].node_namespace, sources[0].node_name)
+    if not graph.server_count(f"{node.full_name}/get_parameters"):
+        return None
+    try:
+        values = NodeParameters(session, node).values([FACTOR])
+    except UnansweredError:
+        return None
+    return values[0].double_value if values and values[0].type else None
+
+
+def _mismatches(graph: Graph, topic: str) -> list[Mismatch]:
+    return [
+        Mismatch(topic, _name(publisher), _name(subscription), reason)
+        for publisher in graph.publishers(topic)
+        for subscription in graph.subscriptions(topic)
+        if (reason := _reason(publisher, subscription))
+    ]
+
+
+def _reason(publisher: TopicEndpointInfo, subscription: TopicEndpointInfo) -> str:
+    if publisher.topic_type != subscription.topic_type:
+        return f"{publisher.topic_type} is sent, {subscription.topic_type} is expected"
+    verdict, reason = qos_check_compatible(publisher.qos_profile, subscription.qos_profile)
+    if verdict != QoSCompatibility.ERROR:
+        return ""
+    return reason.removeprefix("ERROR: ").strip().rstrip(";")
+
+
+def _names(infos: list[TopicEndpointInfo]) -> tuple[str, ...]:
+    return tuple(map(_name, infos))
+
+
+def _name(info: TopicEndpointInfo) -> str:
+    return NodeName(info.node_namespace, info.node_name).full_name

@@ -1,0 +1,86 @@
+"""`arm doctor` beside a running simulation, which is then broken in every way that is cheap."""
+
+import json
+
+import pytest
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from trajectory_msgs.msg import JointTrajectory
+
+pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+
+BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+@pytest.fixture
+def doctor(run_until):
+    """Return a function that asks the doctor until a finding is as it should be."""
+
+    def ask(is_right, code: int) -> dict[str, dict]:
+        def fits(text: str) -> bool:
+            return is_right(_by_check(text))
+
+        # What is printed besides, on stderr, is not JSON.
+        line = "arm doctor --json 2>/dev/null"
+        return _by_check(run_until(line, fits, code))
+
+    return ask
+
+
+def _by_check(text: str) -> dict[str, dict]:
+    report = json.loads(text)
+    assert report["healthy"] is all(f["severity"] != "error" for f in report["findings"])
+    return {finding["check"]: finding for finding in report["findings"]}
+
+
+def test_a_healthy_simulation(doctor):
+    checks = ("description", "hardware", "controllers", "claims", "clock", "QoS", "commands")
+    found = doctor(lambda f: all(f[name]["severity"] == "ok" for name in checks), code=0)
+    assert found["claims"]["sentence"] == "4 joints are commanded by active controllers"
+    assert found["duplicate publishers"]["severity"] == "ok"
+    assert found["hardware"]["sentence"].endswith(" active")
+    assert float(found["real-time factor"]["sentence"].split()[0].rstrip(",")) > 0.0
+
+
+def test_strangers_who_are_in_the_way(doctor, client):
+    client.node.create_publisher(JointState, "/joint_states", 10)
+    client.node.create_publisher(String, "/whisper", BEST_EFFORT)
+    client.node.create_subscription(String, "/whisper", lambda _: None, 10)
+    found = doctor(lambda f: f["QoS"]["severity"] == "warning", code=1)
+    assert "/whisper from /test_client to /test_client: " in found["QoS"]["sentence"]
+    assert "est effort publisher" in found["QoS"]["sentence"]
+    duplicate = found["duplicate publishers"]
+    assert duplicate["severity"] == "error"
+    assert duplicate["sentence"].startswith("/joint_states is published by ")
+    assert "/test_client" in duplicate["sentence"]
+
+
+def test_a_controller_at_rest_and_a_command_that_goes_nowhere(doctor, run, client):
+    run("arm control set_controller_state position_controller inactive")
+    commands = client.publisher(Float64MultiArray, "/position_controller/commands")
+    client.node.create_timer(0.05, lambda: commands.publish(Float64MultiArray(data=[0.0] * 4)))
+    found = doctor(lambda f: f["commands"]["severity"] == "error", code=1)
+    assert found["controllers"]["sentence"].startswith("position_controller is inactive")
+    assert found["claims"]["severity"] == "error"
+    assert "position_controller is inactive" in found["commands"]["sentence"]
+    # The fix beside it mends it.
+    run(found["claims"]["fix"])
+    mended = doctor(lambda f: f["commands"]["severity"] == "ok", code=0)
+    assert mended["claims"]["severity"] == "ok"
+    assert mended["commands"]["sentence"] == "commands come on /position_controller/commands"
+
+
+def test_a_command_by_the_wall_clock(doctor, client):
+    trajectories = client.node.create_publisher(JointTrajectory, "/late/joint_trajectory", 10)
+    client.node.create_subscription(JointTrajectory, "/late/joint_trajectory", lambda _: None, 10)
+
+    def send() -> None:
+        message = JointTrajectory()
+        message.header.stamp = client.node.get_clock().now().to_msg()
+        trajectories.publish(message)
+
+    client.node.create_timer(0.05, send)
+    found = doctor(lambda f: f["commands"]["severity"] == "error", code=1)
+    assert "ahead of the simulation's time" in found["commands"]["sentence"]
+    assert "use_sim_time" in found["commands"]["fix"]
