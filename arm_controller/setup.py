@@ -31,7 +31,8 @@ setup(
     install_requires=["setuptools"],
     zip_safe=True,
     description=(
-        "Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined."
+        "Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined, "
+        "arm_gripper_loop_controller."
     ),
     license="Apache-2.0",
     entry_points={
@@ -39,6 +40,7 @@ setup(
             "arm_controller_node = arm_controller.arm_controller_node:main",
             "publisher_terminal = arm_controller.publisher_terminal_node:main",
             "publisher_defined = arm_controller.publisher_defined_node:main",
+            "arm_gripper_loop_controller = arm_controller.arm_gripper_loop_controller_node:main",
         ],
     },
 )

@@ -5,13 +5,16 @@ from collections.abc import Sequence
 from launch_py import LaunchError
 from launch_py.command_line import run as run_launch
 
-DEFAULT_FILE = ("arm_gazebo", "arm_gazebo.launch.py")
+SHORT_NAMES = {
+    "": ("arm_gazebo", "arm_gazebo.launch.py"),
+    "mycobot": ("mycobot_gazebo", "mycobot.gazebo.launch.py"),
+}
 
 
 def run(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
     return run_launch(
-        argv, program="arm launch", default_file=DEFAULT_FILE, before_start=_check_interfaces
+        argv, program="arm launch", short_names=SHORT_NAMES, before_start=_check_interfaces
     )
 
 

@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,28 @@ _DOCTYPE = "<!DOCTYPE"
 _XACRO_NAMESPACE = "ros.org/wiki/xacro"
 
 
+@dataclass(frozen=True, slots=True)
+class XacroExpansion:
+    """What a xacro file came to.
+
+    Attributes:
+        text: the URDF.
+        arguments: the values of all arguments of the file, those by default too.
+    """
+
+    text: str
+    arguments: Mapping[str, str]
+
+
 def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -> str:
-    """Return the URDF text of a xacro file; a plain .urdf passes through as it is.
+    """Return the URDF text of a xacro file; as `expand_xacro_file`, without the arguments."""
+    return expand_xacro_file(path, arguments).text
+
+
+def expand_xacro_file(
+    path: Path | str, arguments: Mapping[str, str] | None = None
+) -> XacroExpansion:
+    """Expand a xacro file; a plain .urdf passes through as it is.
 
     Not for several threads at a time: xacro keeps its state in its module.
 
@@ -33,6 +54,7 @@ def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -
             where xacro knows it, the included file and the line.
     """
     file = Path(path)
+    values = {name: str(value) for name, value in (arguments or {}).items()}
     try:
         text = file.read_text(encoding="utf-8")
     except OSError as error:
@@ -40,10 +62,11 @@ def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -
     except ValueError as error:
         raise XacroError(f"cannot read {file}: {_first_line(error)}") from error
     if file.suffix == ".urdf" and _XACRO_NAMESPACE not in text:
-        return text
+        return XacroExpansion(text, values)
     if _DOCTYPE in _COMMENT.sub("", text):
         raise XacroError(f"{file} has a DOCTYPE, which is not accepted; remove it")
-    return _process(file, {name: str(value) for name, value in (arguments or {}).items()})
+    # xacro adds the defaults of the file's arguments to the dict that it is given.
+    return XacroExpansion(_process(file, values), values)
 
 
 def _process(file: Path, arguments: dict[str, str]) -> str:

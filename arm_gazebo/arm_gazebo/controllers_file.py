@@ -1,14 +1,24 @@
-"""Which controllers of a parameter file can run side by side from the start."""
+"""Files of controllers: what they say, and which controllers can run side by side from the start.
 
+`${name}` in a file stands for the argument of that name of the robot's xacro, so one file serves a
+robot under every prefix.
+"""
+
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arm_description.names import listing
 from arm_gazebo.errors import SettingsError
 
 MANAGER = "controller_manager"
 PARAMETERS = "ros__parameters"
+Controllers = Path | Mapping[Any, Any]
+"""A file of controllers, or the content of one."""
+
+_ARGUMENT = re.compile(r"\$\{\s*(\w+)\s*\}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,17 +34,39 @@ class Startable:
     remarks: tuple[str, ...]
 
 
-def startable_controllers(path: Path | str, known_types: frozenset[str]) -> Startable:
-    """Return the controllers of a file that can be active together.
+def fill_in(path: Path, arguments: Mapping[str, str]) -> Controllers:
+    """Return a file as it is, or its content with the robot's arguments in their places.
 
     Args:
         path: a parameter file in ros2_control's form.
+        arguments: values by name.
+
+    Raises:
+        SettingsError: the file cannot be read, or has a place for an argument that is not there.
+    """
+    text = _text(path)
+    if not _ARGUMENT.search(text):
+        return path
+    unknown = [name for name in _ARGUMENT.findall(text) if name not in arguments]
+    if unknown:
+        raise SettingsError(
+            f"the controllers' file {path} has ${{{unknown[0]}}}, which is no argument of the "
+            f"robot; it has {listing(sorted(arguments))}"
+        )
+    return _content(_ARGUMENT.sub(lambda place: arguments[place[1]], text), path)
+
+
+def startable_controllers(controllers: Controllers, known_types: frozenset[str]) -> Startable:
+    """Return the controllers of a file that can be active together.
+
+    Args:
+        controllers: a parameter file in ros2_control's form, or the content of one.
         known_types: types that can be loaded.
 
     Raises:
         SettingsError: the file cannot be read, or names no controllers.
     """
-    content = _read(path)
+    content = _read(controllers)
     names: list[str] = []
     remarks: list[str] = []
     holders: dict[str, str] = {}
@@ -51,7 +83,7 @@ def startable_controllers(path: Path | str, known_types: frozenset[str]) -> Star
     return Startable(tuple(names), tuple(remarks))
 
 
-def controllers_below(namespace: str, controllers: Path | Mapping[Any, Any]) -> Mapping[str, Any]:
+def controllers_below(namespace: str, controllers: Controllers) -> Mapping[str, Any]:
     """Return the content of a controllers' file with its nodes in a namespace.
 
     Nodes that the file puts somewhere itself, by a slash in front, stay there.
@@ -63,20 +95,31 @@ def controllers_below(namespace: str, controllers: Path | Mapping[Any, Any]) -> 
     Raises:
         SettingsError: the file cannot be read, or names no controllers.
     """
-    content = _read(controllers) if isinstance(controllers, Path) else controllers
+    content = _read(controllers)
     return {
         str(node) if str(node).startswith("/") else f"/{namespace}/{node}": entry
         for node, entry in content.items()
     }
 
 
-def _read(path: Path | str) -> Mapping[Any, Any]:
+def _read(controllers: Controllers) -> Mapping[Any, Any]:
+    if isinstance(controllers, Path):
+        return _content(_text(controllers), controllers)
+    return controllers
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise SettingsError(f"cannot read the controllers' file {path}: {error}") from error
+
+
+def _content(text: str, path: Path) -> Mapping[Any, Any]:
     import yaml  # Only here: most launches name their controllers.
 
     try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SettingsError(f"cannot read the controllers' file {path}: {error}") from error
+        content = yaml.safe_load(text)
     except yaml.YAMLError as error:
         reason = " ".join(str(error).split())
         raise SettingsError(f"the controllers' file {path} is not YAML: {reason}") from error
@@ -106,6 +149,8 @@ def _joints(content: Mapping[Any, Any], controller: str) -> list[str]:
     for key, entry in content.items():
         if str(key).rpartition("/")[2] == controller and isinstance(entry, Mapping):
             parameters = entry.get(PARAMETERS)
-            joints = parameters.get("joints") if isinstance(parameters, Mapping) else None
+            parameters = parameters if isinstance(parameters, Mapping) else {}
+            single = [parameters["joint"]] if "joint" in parameters else []
+            joints = parameters.get("joints", single)
             return [str(joint) for joint in joints] if isinstance(joints, list) else []
     return []

@@ -2,14 +2,13 @@
 
 import os
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from arm_description.resources import resolve_uri
-from arm_description.xacro_expansion import expand_xacro
-from arm_gazebo.controllers_file import startable_controllers
+from arm_description.xacro_expansion import expand_xacro_file
+from arm_gazebo.controllers_file import Controllers, fill_in, startable_controllers
 from arm_gazebo.default_control import (
     COMMANDER,
     DEFAULT_CONTROLLERS,
@@ -40,7 +39,7 @@ class RobotSetup:
     """
 
     description: str
-    controllers: Path | Mapping[str, Any]
+    controllers: Controllers
     spawn: tuple[str, ...]
     package_path: tuple[Path, ...]
     remarks: tuple[str, ...]
@@ -66,7 +65,8 @@ def set_up_robot(
     Args:
         model: URDF or xacro file, also as a package:// URI.
         model_args: xacro arguments, "a:=1 b:=2".
-        controllers: parameter file; "" makes one up.
+        controllers: parameter file, in which ${name} stands for an argument of the model; ""
+            makes one up.
         spawn: names with commas; "auto" for every controller whose joints are free.
         package_path: folders with colons.
 
@@ -75,20 +75,22 @@ def set_up_robot(
             robot.
     """
     file = model_file(model)
-    description = expand_xacro(file, model_arguments(_words(model_args)))
+    expansion = expand_xacro_file(file, model_arguments(_words(model_args)))
+    description = expansion.text
     remarks: list[str] = []
     commanded: tuple[str, ...] | None = None
     if not has_hardware(description) or not controllers:
         # Only here: a robot that comes with everything starts without being parsed twice.
         description, commanded = _completed(description, file, remarks)
-    content: Path | Mapping[str, Any] = Path(controllers)
-    if not controllers:
+    if controllers:
+        content = fill_in(Path(controllers), expansion.arguments)
+    else:
         content = default_parameters(commanded or ())
         remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
     return RobotSetup(
         description,
         content,
-        _spawned(spawn, content, commanded or (), remarks),
+        _spawned(spawn, content if controllers else None, commanded or (), remarks),
         (*folders(package_path), *folders_of(file)),
         tuple(remarks),
     )
@@ -161,13 +163,13 @@ def _made_up(joints: tuple[str, ...]) -> str:
 
 def _spawned(
     spawn: str,
-    controllers: Path | Mapping[str, Any],
+    controllers: Controllers | None,
     commanded: tuple[str, ...],
     remarks: list[str],
 ) -> tuple[str, ...]:
     if spawn.strip() != SPAWN_AUTO:
         return tuple(name for name in spawn.replace(",", " ").split())
-    if not isinstance(controllers, Path):
+    if controllers is None:
         return tuple(name for name in DEFAULT_CONTROLLERS if commanded or name != COMMANDER)
     from arm_control.registry import controller_types
 

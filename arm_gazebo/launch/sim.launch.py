@@ -19,8 +19,8 @@ ROBOT_ARGUMENTS = {
     "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
     "controllers": (
         "",
-        "parameter file of the controller manager and its controllers; without one a position "
-        "controller is made up",
+        "parameter file of the controller manager and its controllers, where ${name} is an "
+        "argument of the model; without one a position controller is made up",
     ),
     "spawn": (
         "auto",
@@ -56,6 +56,7 @@ NODE_ARGUMENTS = {
         ["info", "warn", "error", "fatal"],
     ),
     "use_sim_time": ("true", "the state publisher's clock is the simulation's", ["true", "false"]),
+    "use_robot_state_pub": ("true", "publish where the links are", ["true", "false"]),
     "use_rviz": ("false", "start RViz; it comes with a ROS 2 installation", ["true", "false"]),
 }
 
@@ -154,6 +155,7 @@ def state_publisher(description: str, namespace: str) -> Node:
         exec_name=f"{namespace}_state_publisher" if namespace else None,
         parameters=[{"robot_description": description, "use_sim_time": use_sim_time}],
         ready=Notified(),
+        condition=IfCondition(LaunchConfiguration("use_robot_state_pub")),
     )
 
 

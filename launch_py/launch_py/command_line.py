@@ -7,9 +7,10 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from launch_py.errors import LaunchError, UsageError
 from launch_py.expansion import expand_description, survey_description
@@ -19,6 +20,9 @@ from launch_py.packages import Packages, ament_prefixes
 
 EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130
+
+PackagedFile = tuple[str, str]
+"""A package, and the name of one of its launch files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +39,7 @@ class LaunchRequest:
 def run(
     argv: Sequence[str],
     program: str,
-    default_file: tuple[str, str] | None = None,
+    short_names: Mapping[str, PackagedFile] = MappingProxyType({}),
     before_start: Callable[[], None] = lambda: None,
 ) -> int:
     """Carry out the command line; return the exit code.
@@ -43,18 +47,18 @@ def run(
     Args:
         argv: the words after the program's name.
         program: what to call it in its help.
-        default_file: package and launch file to take where none is given.
+        short_names: launch files by a word that stands for each; "" for where none is given.
         before_start: called when everything is checked and nothing is started yet; whatever
             speaks against starting it raises as a LaunchError.
 
     What is wrong with the words or the launch file is one sentence on stderr and exit code 2.
     """
     started_s = time.monotonic()
-    parser = _parser(program, default_file)
+    parser = _parser(program, short_names)
     options, unknown = parser.parse_known_intermixed_args(argv)
     try:
         _refuse_unknown_options(unknown, parser)
-        request = parse_request(options, default_file)
+        request = parse_request(options, short_names)
         return _carry_out(request, started_s, before_start)
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
@@ -66,7 +70,7 @@ def run(
 
 
 def parse_request(
-    options: argparse.Namespace, default_file: tuple[str, str] | None
+    options: argparse.Namespace, short_names: Mapping[str, PackagedFile]
 ) -> LaunchRequest:
     """Return what the parsed words ask for.
 
@@ -85,7 +89,7 @@ def parse_request(
         else:
             arguments[name] = value
     return LaunchRequest(
-        launch_file=find_launch_file(words, default_file),
+        launch_file=find_launch_file(words, short_names),
         arguments=arguments,
         show_args=options.show_args,
         print_plan=options.print_plan,
@@ -93,8 +97,8 @@ def parse_request(
     )
 
 
-def find_launch_file(words: Sequence[str], default_file: tuple[str, str] | None) -> Path:
-    """Return the launch file that one path, or a package and a file name, stand for.
+def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFile]) -> Path:
+    """Return the launch file that a short name, a path, or a package and a file name stand for.
 
     Raises:
         UsageError: the words are neither.
@@ -106,11 +110,13 @@ def find_launch_file(words: Sequence[str], default_file: tuple[str, str] | None)
             raise UsageError(f"{word!r}: launch arguments are written name:=value")
     match words:
         case []:
-            if default_file is None:
+            if "" not in short_names:
                 raise UsageError("which launch file? Give PACKAGE FILE, or the path of a file")
-            return packages.launch_file(*default_file)
+            return packages.launch_file(*short_names[""])
         case [word] if os.path.isfile(word):
             return Path(word)
+        case [word] if word in short_names:
+            return packages.launch_file(*short_names[word])
         case [word] if word.endswith(".py") or os.sep in word:
             path = Path(word)
             names = [p.name for p in path.parent.glob("*.py")]
@@ -161,14 +167,15 @@ def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[
     return run_plan(plan, environ, options)
 
 
-def _parser(program: str, default_file: tuple[str, str] | None) -> argparse.ArgumentParser:
-    epilog = None
-    if default_file is not None:
-        epilog = f"Without PACKAGE and FILE: {' '.join(default_file)}."
+def _parser(program: str, short_names: Mapping[str, PackagedFile]) -> argparse.ArgumentParser:
+    meanings = [
+        f"{word or 'Without PACKAGE and FILE'}: {package} {name}."
+        for word, (package, name) in short_names.items()
+    ]
     parser = argparse.ArgumentParser(
         prog=program,
         description="Start the processes of a launch file and supervise them.",
-        epilog=epilog,
+        epilog=" ".join(meanings) or None,
         allow_abbrev=False,
     )
     parser.add_argument(

@@ -38,9 +38,15 @@ def test_without_words_it_takes_the_main_job(monkeypatch):
 
     monkeypatch.setattr(launch_verb, "run_launch", run)
     assert main(["launch", "world:=objects"]) == 0
-    assert taken["default_file"] == ("arm_gazebo", "arm_gazebo.launch.py")
+    assert taken["short_names"][""] == ("arm_gazebo", "arm_gazebo.launch.py")
     assert taken["argv"] == ["world:=objects"]
     assert taken["program"] == "arm launch"
+
+
+def test_every_short_name_leads_to_a_launch_file(capsys):
+    for word in launch_verb.SHORT_NAMES:
+        assert main(["launch", *word.split(), "--show-args"]) == 0
+        assert capsys.readouterr().out.startswith("Arguments of ")
 
 
 def test_without_the_interfaces_it_says_the_fix_and_starts_nothing(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_gazebo.controllers_file import startable_controllers
+from arm_gazebo.controllers_file import fill_in, startable_controllers
 from arm_gazebo.errors import SettingsError
 
 TYPES = frozenset({"a/Broadcaster", "a/Position", "a/Trajectory"})
@@ -17,7 +17,7 @@ controller_manager:
     force: {type: b/Unheard}
 arm: {ros__parameters: {joints: [j0, j1]}}
 position: {ros__parameters: {joints: [j1]}}
-hand: {ros__parameters: {joints: [finger]}}
+hand: {ros__parameters: {joint: finger}}
 """
 
 
@@ -63,3 +63,30 @@ def test_a_file_without_controllers_is_refused(file, content, reason):
 def test_a_missing_file_is_named(file):
     with pytest.raises(SettingsError, match=r"cannot read .*controllers\.yaml"):
         startable_controllers(file, TYPES)
+
+
+def test_a_single_joint_is_held_too(file):
+    file.write_text(CONTENT + "force: {ros__parameters: {joint: finger}}\n")
+    types = TYPES | {"b/Unheard"}
+    assert startable_controllers(file, types).remarks[-1] == (
+        "force does not start: hand holds 'finger'"
+    )
+
+
+def test_arguments_of_the_robot_take_their_places(file):
+    file.write_text(CONTENT.replace("[j0, j1]", "['${prefix}j0', '${ prefix }${tool}']"))
+    content = fill_in(file, {"prefix": "left_", "tool": "gun", "other": ""})
+    assert not isinstance(content, type(file))
+    assert content["arm"] == {"ros__parameters": {"joints": ["left_j0", "left_gun"]}}
+    assert startable_controllers(content, TYPES).names == ("states", "arm", "position", "hand")
+
+
+def test_a_file_without_places_stays_a_file(file):
+    file.write_text(CONTENT)
+    assert fill_in(file, {"prefix": "left_"}) == file
+
+
+def test_a_place_for_no_argument_is_refused_with_those_that_are(file):
+    file.write_text(CONTENT.replace("j0", "${side}j0"))
+    with pytest.raises(SettingsError, match=r"\$\{side\}, which is no argument .*; it has base, p"):
+        fill_in(file, {"p": "", "base": "fixed"})

@@ -69,6 +69,26 @@ def test_given_controllers_stand(bare, tmp_path):
     assert setup.spawn == ("states",)
 
 
+def test_places_in_the_controllers_are_filled_with_the_models_arguments(tmp_path, parts):
+    text = parts.robot(parts.link("$(arg side)base")).replace(
+        ">",
+        ' xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="side" default="left_"/>',
+        1,
+    )
+    (tmp_path / "arm.urdf.xacro").write_text(text)
+    file = tmp_path / "controllers.yaml"
+    file.write_text(
+        "controller_manager: {ros__parameters: {"
+        "${side}states: {type: joint_state_broadcaster/JointStateBroadcaster}}}"
+    )
+
+    def spawned(model_args: str) -> tuple[str, ...]:
+        return set_up_robot(str(tmp_path / "arm.urdf.xacro"), model_args, str(file)).spawn
+
+    assert spawned("") == ("left_states",)
+    assert spawned("side:=right_") == ("right_states",)
+
+
 def test_spawn_names_controllers(bare):
     assert set_up_robot(str(bare), spawn="a, b c").spawn == ("a", "b", "c")
     assert set_up_robot(str(bare), spawn="").spawn == ()

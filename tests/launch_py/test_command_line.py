@@ -22,8 +22,8 @@ actions = [
 def refused(capsys):
     """Run a command line that must be refused; return the sentence."""
 
-    def run(*argv, default_file=None):
-        assert command_line.run(argv, "prog", default_file) == 2
+    def run(*argv):
+        assert command_line.run(argv, "prog") == 2
         captured = capsys.readouterr()
         assert captured.out == ""
         assert "Traceback" not in captured.err
@@ -91,10 +91,18 @@ def test_too_many_words(refused, demo):
     assert "too many words" in refused("demo", "demo.launch.py", "x", "y")
 
 
-def test_the_default_file_may_be_followed_by_arguments(demo, capsys):
-    argv = ["world:=objects", "model:=x", "--print"]
-    assert command_line.run(argv, "prog", ("demo", "demo.launch.py")) == 0
+@pytest.mark.parametrize("word", ["", "short"])
+def test_a_short_name_may_be_followed_by_arguments(demo, capsys, word):
+    argv = [*word.split(), "world:=objects", "model:=x", "--print"]
+    assert command_line.run(argv, "prog", {word: ("demo", "demo.launch.py")}) == 0
     assert "sim\n" in capsys.readouterr().out
+
+
+def test_the_help_says_what_short_names_mean(capsys):
+    with pytest.raises(SystemExit):
+        command_line.run(["--help"], "prog", {"": ("a", "a.launch.py"), "b": ("c", "d.launch.py")})
+    text = " ".join(capsys.readouterr().out.split())
+    assert "Without PACKAGE and FILE: a a.launch.py. b: c d.launch.py." in text
 
 
 def test_what_speaks_against_a_start_is_refused(refused, demo):
@@ -102,7 +110,7 @@ def test_what_speaks_against_a_start_is_refused(refused, demo):
         raise LaunchError("not today")
 
     def run(*argv):
-        return command_line.run(argv, "prog", None, refuse)
+        return command_line.run(argv, "prog", {}, refuse)
 
     assert run(str(demo), "model:=x", "--print") == 0
     assert run(str(demo), "model:=x") == 2

@@ -1,0 +1,135 @@
+"""The myCobot 280 in the simulation, with its controllers and its state publisher."""
+
+import shutil
+
+from launch_py import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    LaunchDescription,
+    ReadyPanel,
+    SetLaunchConfiguration,
+)
+from launch_py.actions import OpaqueFunction
+from launch_py.conditions import IfCondition
+from launch_py.errors import UsageError
+from launch_py.launch_context import LaunchContext
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
+from launch_py.ros import FindPackageShare, Node
+from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
+
+SLIDERS = "joint_state_publisher_gui"
+SWITCH = ["true", "false"]
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+XACRO_ARGUMENTS = ("prefix", "use_gripper", "use_gazebo")
+ARM_CONTROLLERS = "joint_state_broadcaster,arm_controller"
+GRIPPER_CONTROLLER = "gripper_action_controller"
+
+ARGUMENTS = {
+    "robot_name": ("mycobot_280", "which robot of mycobot_description", None),
+    "prefix": ("", "put before the name of every link and joint", None),
+    "use_gripper": ("true", "with the gripper", SWITCH),
+    "load_controllers": ("true", "start the controllers with the simulation", SWITCH),
+    "use_robot_state_pub": ("true", "publish where the links are", SWITCH),
+    "jsp_gui": ("false", "sliders, where no controllers publish joint states", SWITCH),
+    "use_gazebo": ("true", "the simulation is the robot's hardware", SWITCH),
+    "use_sim_time": ("true", "the nodes' clock is the simulation's", SWITCH),
+    "world_file": ("empty", "a shipped world (empty, objects), or a MuJoCo XML file", None),
+    "x": ("0.0", "where base_link is in the world, in m", None),
+    "y": ("0.0", "likewise", None),
+    "z": ("0.025", "likewise; the underside of the base is 0.025 m lower", None),
+    "roll": ("0.0", "how base_link is turned, in rad", None),
+    "pitch": ("0.0", "likewise", None),
+    "yaw": ("0.0", "likewise", None),
+}
+
+
+def choose_controllers(context: LaunchContext) -> list:
+    """Return the setting of which controllers start; sliders and a broadcaster exclude each other.
+
+    Raises:
+        UsageError: both would publish the joint states.
+    """
+    words = context.launch_configurations
+    loaded = words["load_controllers"] == "true"
+    if loaded and words["jsp_gui"] == "true":
+        raise UsageError(
+            "jsp_gui:=true publishes /joint_states, and so does joint_state_broadcaster: "
+            "give load_controllers:=false with it"
+        )
+    if not loaded:
+        return [SetLaunchConfiguration("controllers_to_start", "")]
+    gripper = f",{GRIPPER_CONTROLLER}" if words["use_gripper"] == "true" else ""
+    return [SetLaunchConfiguration("controllers_to_start", f"{ARM_CONTROLLERS}{gripper}")]
+
+
+def simulation() -> IncludeLaunchDescription:
+    """Return the simulation of any robot, told about this one."""
+    robot = LaunchConfiguration("robot_name")
+    model_args = [part for name in XACRO_ARGUMENTS for part in argument(name)]
+    places = [part for name in POSE for part in (LaunchConfiguration(name), ", ")][:-1]
+    launch_file = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "sim.launch.py"])
+    return IncludeLaunchDescription(
+        PythonLaunchDescriptionSource(launch_file),
+        launch_arguments={
+            "model": PathJoinSubstitution(
+                [FindPackageShare("mycobot_description"), "urdf/robots", [robot, ".urdf.xacro"]]
+            ),
+            "model_args": model_args,
+            "controllers": PathJoinSubstitution(
+                [
+                    *(FindPackageShare("mycobot_moveit_config"), "config", robot),
+                    "ros2_controllers_template.yaml",
+                ]
+            ),
+            "spawn": LaunchConfiguration("controllers_to_start"),
+            "gz_args": ["-r -v 4 '", LaunchConfiguration("world_file"), "'"],
+            "pose": ["[", *places, "]"],
+        },
+    )
+
+
+def argument(name: str) -> list:
+    """Return a word for xacro that passes on one of this file's arguments."""
+    return [f"'{name}:=", LaunchConfiguration(name), "' "]
+
+
+def panel() -> ReadyPanel:
+    """Return what the user is told."""
+    return ReadyPanel(
+        title="The myCobot is up",
+        topics=[
+            (
+                "/arm_controller/follow_joint_trajectory",
+                "control_msgs/action/FollowJointTrajectory",
+            ),
+            ("/arm_controller/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
+            ("/gripper_action_controller/gripper_cmd", "control_msgs/action/GripperCommand"),
+            ("/joint_states", "sensor_msgs/msg/JointState"),
+        ],
+        commands=[("to and fro", "arm_gripper_loop_controller")],
+        condition=IfCondition(LaunchConfiguration("load_controllers")),
+    )
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the simulation of the myCobot, and sliders where they are wanted."""
+    rviz = "true" if shutil.which("rviz2") else "false"
+    table = {
+        **ARGUMENTS,
+        "use_rviz": (rviz, "start RViz; it comes with a ROS 2 installation", SWITCH),
+    }
+    sliders = Node(
+        package=SLIDERS, executable=SLIDERS, condition=IfCondition(LaunchConfiguration("jsp_gui"))
+    )
+    return LaunchDescription(
+        [
+            *(
+                DeclareLaunchArgument(name, default_value=value, description=text, choices=choices)
+                for name, (value, text, choices) in table.items()
+            ),
+            OpaqueFunction(function=choose_controllers),
+            simulation(),
+            sliders,
+            panel(),
+        ]
+    )

@@ -1,0 +1,70 @@
+"""The loop of arm and gripper: its order, and that it tells results, not hopes."""
+
+import asyncio
+import logging
+
+import pytest
+
+from arm_controller.arm_gripper_loop import CLOSED, HOME, OPEN, TARGET, ArmGripperLoop
+
+
+class FakeRobot:
+    """Notes what it is told; movements to the places in `blocked` fail."""
+
+    def __init__(self, *blocked: object) -> None:
+        self.did: list[object] = []
+        self._blocked = blocked
+
+    async def connect(self) -> None:
+        self.did.append("connect")
+
+    async def move_arm(self, positions: tuple[float, ...]) -> str | None:
+        return self._move(positions)
+
+    async def move_gripper(self, position: float) -> str | None:
+        return self._move(position)
+
+    async def pause(self, seconds: float) -> None:
+        self.did.append("pause")
+
+    def _move(self, to: object) -> str | None:
+        self.did.append(to)
+        return "a wall is there" if to in self._blocked else None
+
+
+@pytest.fixture
+def told(caplog):
+    """Go round once; return the records of what was logged."""
+
+    def run(robot: FakeRobot) -> list[tuple[str, str]]:
+        with caplog.at_level(logging.INFO):
+            asyncio.run(ArmGripperLoop(robot).run_once())
+        return [(record.levelname, record.getMessage()) for record in caplog.records]
+
+    return run
+
+
+def test_a_round_is_target_close_home_open_with_pauses(told):
+    robot = FakeRobot()
+    said = told(robot)
+    assert robot.did == [
+        *("connect", TARGET, "pause", CLOSED),
+        *(HOME, "pause", OPEN, "pause"),
+    ]
+    assert said == [
+        ("INFO", "Moving to target position"),
+        ("INFO", "Reached target position - Pausing"),
+        ("INFO", "Closing gripper"),
+        ("INFO", "Moving to home position"),
+        ("INFO", "Reached home position - Pausing"),
+        ("INFO", "Opening gripper"),
+    ]
+
+
+def test_a_place_that_was_not_reached_is_said_and_the_round_goes_on(told):
+    robot = FakeRobot(TARGET, CLOSED)
+    said = told(robot)
+    assert ("ERROR", "Target position not reached: a wall is there") in said
+    assert ("WARNING", "Closing gripper: a wall is there") in said
+    assert not any("Reached target" in text for _, text in said)
+    assert ("INFO", "Reached home position - Pausing") in said

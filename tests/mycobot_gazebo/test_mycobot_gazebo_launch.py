@@ -1,0 +1,75 @@
+"""mycobot.gazebo.launch.py: what its arguments come to, without starting anything."""
+
+import os
+from typing import Any
+
+import pytest
+import yaml
+
+from launch_py.errors import UsageError
+from launch_py.expansion import expand_description
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.packages import Packages
+from launch_py.plan import GeneratedFile, Plan, ProcessStep
+
+
+def plan(**arguments: str) -> Plan:
+    file = Packages(os.environ).launch_file("mycobot_gazebo", "mycobot.gazebo.launch.py")
+    return expand_description(read_launch_file(file), arguments, dict(os.environ), file)
+
+
+def processes(**arguments: str) -> dict[str, ProcessStep]:
+    steps = [step for step in plan(**arguments).steps if isinstance(step, ProcessStep)]
+    return {step.name: step for step in steps}
+
+
+def parameters(**arguments: str) -> dict[str, Any]:
+    """Return the parameters that the simulation's process gets, by node."""
+    files = [
+        yaml.safe_load(word.text)
+        for word in processes(**arguments)["arm_gazebo_node"].command
+        if isinstance(word, GeneratedFile)
+    ]
+    return {node: entry["ros__parameters"] for file in files for node, entry in file.items()}
+
+
+def test_names_of_joints_are_the_robots():
+    nodes = parameters(prefix="left_")
+
+    assert nodes["/gripper_action_controller"]["joint"] == "left_gripper_controller"
+    joints = nodes["/arm_controller"]["joints"]
+    assert joints[0] == "left_link1_to_link2"
+    assert joints[-1] == "left_link6_to_link6_flange"
+    assert all(f'name="{joint}"' in nodes["/arm_gazebo"]["robot_description"] for joint in joints)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "spawned"),
+    [
+        ({}, "joint_state_broadcaster,arm_controller,gripper_action_controller"),
+        ({"use_gripper": "false"}, "joint_state_broadcaster,arm_controller"),
+        ({"load_controllers": "false"}, ""),
+    ],
+)
+def test_the_controllers_that_start(arguments, spawned):
+    assert parameters(**arguments)["/arm_gazebo"]["spawn"] == spawned
+
+
+def test_the_base_stands_on_the_floor_unless_a_place_is_given():
+    assert parameters()["/arm_gazebo"]["pose"] == [0.0, 0.0, 0.025, 0.0, 0.0, 0.0]
+    placed = parameters(x="0.1", z="0.05", yaw="1.5")["/arm_gazebo"]["pose"]
+    assert placed == [0.1, 0.0, 0.05, 0.0, 0.0, 1.5]
+
+
+def test_the_state_publisher_can_be_left_out():
+    assert set(processes()) == {"arm_gazebo_node", "robot_state_publisher"}
+    assert set(processes(use_robot_state_pub="false")) == {"arm_gazebo_node"}
+
+
+def test_worlds_may_be_named_as_gazebos_files_are():
+    assert parameters(world_file="objects.world")["/arm_gazebo"]["world"] == "objects"
+
+
+def test_sliders_beside_a_broadcaster_are_refused_with_the_way_out():
+    with pytest.raises(UsageError, match="give load_controllers:=false with it"):
+        plan(jsp_gui="true")

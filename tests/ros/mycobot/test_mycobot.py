@@ -1,0 +1,166 @@
+"""The myCobot in the simulation, as a stranger's program uses it: topics, actions, launch files."""
+
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+ARM_JOINTS = (
+    "link1_to_link2",
+    "link2_to_link3",
+    "link3_to_link4",
+    "link4_to_link5",
+    "link5_to_link6",
+    "link6_to_link6_flange",
+)
+TARGET = (1.345, -1.23, 0.264, -0.296, 0.389, -1.5)
+HOME = (0.0,) * 6
+FOLLOWERS = {
+    "gripper_base_to_gripper_left2": 1.0,
+    "gripper_left3_to_gripper_left1": -1.0,
+    "gripper_base_to_gripper_right3": -1.0,
+    "gripper_base_to_gripper_right2": -1.0,
+    "gripper_right3_to_gripper_right1": 1.0,
+}
+TIMEOUT_S = 30.0
+
+
+def waited(future: Any) -> Any:
+    """Return a future's result; the client's executor runs in a thread of its own."""
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    assert done.wait(TIMEOUT_S), "no answer"
+    return future.result()
+
+
+@pytest.fixture
+def result_of(client: Any) -> Iterator[Callable[..., Any]]:
+    """Send a goal to an action; return the result's envelope, with `status` and `result`."""
+    from rclpy.action import ActionClient
+
+    actions: list[ActionClient] = []
+
+    def carry_out(action_type: Any, name: str, goal: Any) -> Any:
+        action = ActionClient(client.node, action_type, name)
+        actions.append(action)
+        client.wait_until(action.server_is_ready, f"the action {name}")
+
+        async def send() -> Any:
+            handle = await action.send_goal_async(goal)
+            assert handle.accepted
+            return await handle.get_result_async()
+
+        # In the executor's thread: an answer must not come before its request is noted.
+        return waited(client.executor.create_task(send))
+
+    yield carry_out
+    for action in actions:
+        waited(client.executor.create_task(action.destroy))
+
+
+def trajectory(positions: tuple[float, ...], seconds: int, prefix: str) -> Any:
+    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+    point = JointTrajectoryPoint(positions=positions)
+    point.time_from_start.sec = seconds
+    return JointTrajectory(joint_names=[prefix + name for name in ARM_JOINTS], points=[point])
+
+
+def positions_of(message: Any) -> dict[str, float]:
+    return dict(zip(message.name, message.position, strict=True))
+
+
+def wait_for_pose(states: Any, pose: dict[str, float], within_rad: float = 0.005) -> None:
+    def there(messages: list) -> bool:
+        at = positions_of(messages[-1]) if messages else {}
+        return bool(at) and all(abs(at[name] - q) < within_rad for name, q in pose.items())
+
+    states.wait_until(there, f"the joints are at {pose}")
+
+
+def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of):
+    from action_msgs.msg import GoalStatus
+    from control_msgs.action import FollowJointTrajectory, GripperCommand
+    from sensor_msgs.msg import JointState
+    from trajectory_msgs.msg import JointTrajectory
+
+    launch("mycobot", "prefix:=left_").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+    publisher = client.publisher(JointTrajectory, "/arm_controller/joint_trajectory")
+
+    publisher.publish(trajectory(TARGET, 1, "left_"))
+    wait_for_pose(states, {f"left_{n}": q for n, q in zip(ARM_JOINTS, TARGET, strict=True)})
+
+    follow = "/arm_controller/follow_joint_trajectory"
+    goal = FollowJointTrajectory.Goal(trajectory=trajectory(HOME, 1, "left_"))
+    followed = result_of(FollowJointTrajectory, follow, goal)
+    assert followed.status == GoalStatus.STATUS_SUCCEEDED
+    assert followed.result.error_code == FollowJointTrajectory.Result.SUCCESSFUL
+    wait_for_pose(states, {f"left_{name}": 0.0 for name in ARM_JOINTS})
+
+    close = GripperCommand.Goal()
+    close.command.position, close.command.max_effort = -0.7, 5.0
+    gripped = result_of(GripperCommand, "/gripper_action_controller/gripper_cmd", close)
+    assert gripped.status == GoalStatus.STATUS_SUCCEEDED
+    assert gripped.result.reached_goal
+    assert gripped.result.position == pytest.approx(-0.7, abs=0.011)
+    wait_for_pose(states, {f"left_{name}": -0.7 * k for name, k in FOLLOWERS.items()})
+
+
+def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
+    from sensor_msgs.msg import JointState
+    from tf2_msgs.msg import TFMessage
+
+    launch(
+        "mycobot_description",
+        "robot_state_publisher.launch.py",
+        *("use_gripper:=false", "prefix:=left_", "jsp_gui:=false", "use_rviz:=false"),
+    ).wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states").wait_for(1)
+    frames = client.subscribe(TFMessage, "/tf").wait_for(1)
+
+    joints = {f"left_{name}" for name in ARM_JOINTS}
+    assert set(states[0].name) == joints
+    children = {transform.child_frame_id for transform in frames[0].transforms}
+    assert children == {*(f"left_link{n}" for n in range(2, 7)), "left_link6_flange"}
+
+
+LOOP = """
+from launch_py import LaunchDescription
+from launch_py.ros import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(
+        package="arm_controller",
+        executable="arm_gripper_loop_controller",
+        parameters=[{"trajectory_time": 0.5}],
+    )])
+"""
+
+
+def test_the_loop_tells_what_was_reached_and_stops_what_is_under_way(launch, client, tmp_path):
+    from sensor_msgs.msg import JointState
+
+    file = tmp_path / "loop.launch.py"
+    file.write_text(LOOP)
+    loop = launch(str(file))
+    loop.wait_for_line("Waiting for action servers...")
+    simulation = launch("mycobot")
+    simulation.wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+
+    loop.wait_for_line("Action servers connected!")
+    loop.wait_for_line("Reached target position - Pausing")
+    wait_for_pose(states, dict(zip(ARM_JOINTS, TARGET, strict=True)), within_rad=0.05)
+    loop.wait_for_line("Closing gripper")
+    wait_for_pose(states, {"gripper_controller": -0.7}, within_rad=0.02)
+    loop.wait_for_line("Reached home position - Pausing")
+    loop.wait_for_line("Opening gripper")
+    wait_for_pose(states, {"gripper_controller": 0.0}, within_rad=0.02)
+    assert loop.stop() == 0
+    assert "Shutting down arm gripper controller..." in loop.output
+    assert "Traceback" not in loop.output
