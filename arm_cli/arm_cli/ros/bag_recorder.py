@@ -3,7 +3,6 @@
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
 from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -17,11 +16,15 @@ from arm_cli.bag.type_definition import find_definition
 from arm_cli.errors import NotFoundError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.names import this_domain
-from arm_cli.ros.bag_qos import offered_qos, recording_profile
+from arm_cli.ros.bag_qos import RECORDING_DEPTH, offered_qos, recording_profile
 from arm_cli.ros.graph import Graph
+from arm_cli.ros.polled_subscriptions import PolledSubscriptions
 from arm_cli.ros.session import PATIENCE_S, Session
 from launch_py.near_names import describe_known
 
+TAKE_PERIOD_S = 0.01
+SPIN_PERIOD_S = 0.1
+"""So often signals and losses are looked for."""
 ADAPT_PERIOD_S = 1.0
 """So often it is looked whether new publishers want another subscription."""
 DROPS_SAID_PERIOD_S = 5.0
@@ -60,6 +63,7 @@ class BagRecorder:
         self._selection = selection
         self._poll_period_s = poll_period_s
         self._use_sim_time = use_sim_time
+        self._polled = PolledSubscriptions(session.node)
         self._index = InterfaceIndex()
         self._subscriptions: dict[str, tuple[Subscription, QoSProfile, type]] = {}
         self._skipped: set[str] = set()
@@ -77,7 +81,7 @@ class BagRecorder:
         """
         started_s = time.monotonic()
         adapt_s = drops_s = started_s
-        next_poll_s = 0.0
+        next_poll_s = next_spin_s = 0.0
         _say("Listening for topics...")
         if not discover:
             self._graph.settle()
@@ -96,7 +100,11 @@ class BagRecorder:
                 if now_s - drops_s >= DROPS_SAID_PERIOD_S:
                     drops_s = now_s
                     self._say_drops()
-            self._session.spin_once()
+            time.sleep(TAKE_PERIOD_S)
+            if self._use_sim_time or now_s >= next_spin_s:
+                next_spin_s = now_s + SPIN_PERIOD_S
+                self._session.spin_once(0.0)
+            self._take_all()
 
     def _is_complete(self) -> bool:
         return self._selection.is_closed and self._selection.names <= self._subscriptions.keys()
@@ -140,30 +148,26 @@ class BagRecorder:
             if not latched or time.monotonic() - opened_s > MATCHING_S:
                 self.lost[name] += event.total_count_change
 
-        subscription = self._session.node.create_subscription(
+        subscription = self._polled.subscribe(
             message_class,
             name,
-            self._stamping(name),
             profile,
-            raw=True,
             event_callbacks=SubscriptionEventCallbacks(
                 message_lost=count_lost, use_default_callbacks=False
             ),
         )
         self._subscriptions[name] = (subscription, profile, message_class)
 
-    def _stamping(self, name: str) -> Callable[..., None]:
-        put, wall_ns = self._recording.put, time.time_ns
-
-        def take(data: bytes, info: dict[str, Any]) -> None:
-            now_ns = wall_ns()
-            put(BagMessage(name, now_ns, info["source_timestamp"] or now_ns, data))
-
-        def take_by_clock(data: bytes) -> None:
-            now_ns = self._session.clock_ns()
-            put(BagMessage(name, now_ns, now_ns, data))
-
-        return take_by_clock if self._use_sim_time else take
+    def _take_all(self) -> None:
+        put = self._recording.put
+        for name, (subscription, _, _) in self._subscriptions.items():
+            for data, info in self._polled.take(subscription, RECORDING_DEPTH):
+                if self._use_sim_time:
+                    received_ns = published_ns = self._session.clock_ns()
+                else:
+                    received_ns = info["received_timestamp"] or time.time_ns()
+                    published_ns = info["source_timestamp"] or received_ns
+                put(BagMessage(name, received_ns, published_ns, data))
 
     def _skip(self, name: str, reason: str) -> None:
         self._skipped.add(name)
