@@ -5,7 +5,7 @@ GazeboError
 │   └── BackendError  an OpenGL library that starts but does not draw
 ├── OrphanError     the simulation ended before its child process was there
 ├── WindowError     a window cannot be opened where the simulation runs
-├── WorldError      a world file that is missing or is no MJCF
+├── WorldError      a world file that is missing, or neither MJCF nor SDF
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
 ├── TimingError     a control rate or a physics step that cannot be

@@ -40,7 +40,7 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
     Args:
         entries: the robots, at least one; names of links and joints are unique among them all,
             and their options have the same physics step.
-        world: name of a shipped world or path of a MuJoCo XML file.
+        world: name of a shipped world or path of a MuJoCo XML or SDF file.
 
     Raises:
         WorldError: the world is missing or unusable.
@@ -49,7 +49,7 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
     if len(entries) > MOST_LAYERS:
         raise ModelError(f"{len(entries)} robots are too many for one world: at most {MOST_LAYERS}")
     report = BuildReport()
-    spec = load_world(world)
+    spec = load_world(world, report)
     parts = []
     for index, entry in enumerate(entries):
         report.add(*entry.tags.findings)

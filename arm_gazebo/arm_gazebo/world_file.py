@@ -1,4 +1,4 @@
-"""World files: MuJoCo XML by path, or one of the shipped worlds by name."""
+"""World files: MuJoCo XML or SDF by path, or one of the shipped worlds by name."""
 
 from pathlib import Path
 
@@ -6,8 +6,11 @@ import mujoco
 
 from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
+from arm_gazebo.sdf_world import read_sdf_world
 
+SDF_SUFFIXES = (".sdf", ".world")
 SHIPPED_WORLDS_URI = "package://arm_gazebo/worlds"
 
 
@@ -38,13 +41,20 @@ def find_world(world: str | Path) -> Path:
     )
 
 
-def load_world(world: str | Path) -> mujoco.MjSpec:
+def load_world(world: str | Path, report: BuildReport | None = None) -> mujoco.MjSpec:
     """Return the specification of a world, ready to take a robot.
 
+    Args:
+        world: a shipped world's name or the path of a file.
+        report: gets what of an SDF world is not simulated.
+
     Raises:
-        WorldError: there is no such world, or it is not MuJoCo XML; the message names the file.
+        WorldError: there is no such world, or it is neither MuJoCo XML nor SDF; the message names
+            the file.
     """
     path = find_world(world)
+    if path.suffix in SDF_SUFFIXES:
+        return read_sdf_world(path, report or BuildReport())
     try:
         return mujoco.MjSpec.from_file(str(path))
     except (ValueError, mujoco.FatalError) as error:
@@ -65,4 +75,5 @@ def check_world(world: str | Path) -> None:
 
 def _unusable(path: Path, error: Exception) -> WorldError:
     reason = " ".join(str(error).split())
-    return WorldError(f"the world {path} is not usable MuJoCo XML: {reason}")
+    kind = "SDF" if path.suffix in SDF_SUFFIXES else "MuJoCo XML"
+    return WorldError(f"the world {path} is not usable {kind}: {reason}")

@@ -1,6 +1,7 @@
 """Any robot in any world: the simulation with its controllers, and the state publisher."""
 
 from launch_py import (
+    AppendEnvironmentVariable,
     DeclareLaunchArgument,
     ExecuteProcess,
     LaunchDescription,
@@ -15,6 +16,8 @@ from launch_py.launch_context import LaunchContext
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 
+MODEL_PATH = "GZ_SIM_RESOURCE_PATH"
+"""Where Gazebo's users say where their models are."""
 ROBOT_ARGUMENTS = {
     "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
     "controllers": (
@@ -39,7 +42,10 @@ ROBOT_ARGUMENTS = {
 }
 
 SIMULATION_ARGUMENTS = {
-    "world": ("empty", "a shipped world (empty, objects), or a MuJoCo XML file"),
+    "world": (
+        "empty",
+        "empty, objects, shapes, pick_and_place_demo, house, or a MuJoCo XML or SDF file",
+    ),
     "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible"),
     "physics_step": ("0.0", "in s; 0 chooses one of at most 2 ms that fits the control rate"),
     "hold_joints": ("true", "joints that no controller claims hold their position"),
@@ -170,6 +176,14 @@ def generate_launch_description() -> LaunchDescription:
                 description='Gazebo\'s words for the same: "-r -v 4 objects.sdf"',
             ),
             OpaqueFunction(function=take_gz_args),
+            DeclareLaunchArgument(
+                "resource_path",
+                default_value="",
+                description="folders for model://, before GZ_SIM_RESOURCE_PATH's own, with colons",
+            ),
+            AppendEnvironmentVariable(
+                MODEL_PATH, LaunchConfiguration("resource_path"), prepend=True
+            ),
             *declared(ROBOT_ARGUMENTS),
             *declared(SIMULATION_ARGUMENTS),
             *declared(NODE_ARGUMENTS),

@@ -24,12 +24,34 @@ def bare(tmp_path):
     return model
 
 
-def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare):
+@pytest.fixture
+def sdf_world(tmp_path):
+    """The file of a world that includes a model from the folder `models` beside it."""
+    can = tmp_path / "models" / "can" / "model.sdf"
+    can.parent.mkdir(parents=True)
+    can.write_text('<sdf version="1.7"><model name="can"><static>1</static></model></sdf>')
+    world = tmp_path / "lab.sdf"
+    world.write_text(
+        '<sdf version="1.7"><world name="lab"><plugin name="p" filename="f"/>'
+        "<include><uri>model://can</uri></include></world></sdf>"
+    )
+    return world
+
+
+def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sdf_world):
     from sensor_msgs.msg import JointState
     from std_msgs.msg import Float64MultiArray
 
-    launched = launch("arm_gazebo", "sim.launch.py", f"model:={bare}", "namespace:=left")
+    launched = launch(
+        "arm_gazebo",
+        "sim.launch.py",
+        f"model:={bare}",
+        "namespace:=left",
+        f"gz_args:=-r {sdf_world}",
+        f"resource_path:={sdf_world.parent / 'models'}",
+    )
     launched.wait_until_ready()
+    assert "plugin 'p' in lab.sdf (line 1): it is not simulated" in launched.output
     assert "one is made up that commands shoulder, elbow" in launched.output
     states = client.subscribe(JointState, "/left/joint_states")
     commands = client.publisher(Float64MultiArray, "/left/position_controller/commands")

@@ -15,7 +15,7 @@ class SimulationSettings:
 
     Attributes:
         robots: at least one.
-        world: a shipped world's name or the path of a MuJoCo XML file.
+        world: a shipped world's name or the path of a MuJoCo XML or SDF file.
         real_time_factor: simulated over wall time; 0 is as fast as possible.
         physics_step_s: None lets the step follow from the control rate.
         hold_joints: whether joints that no controller claims hold their position.
@@ -47,7 +47,7 @@ def read_settings(node: Node) -> SimulationSettings:
     values = ParameterValues(node)
     return SimulationSettings(
         robots=read_robots(values),
-        world=values.text("world", "empty", "a shipped world's name, or a MuJoCo XML file"),
+        world=values.text("world", "empty", "a shipped world's name, or a file: MuJoCo XML, SDF"),
         real_time_factor=values.number(
             "real_time_factor", 1.0, "simulated over wall time; 0 is as fast as possible"
         ),
