@@ -3,6 +3,7 @@
 The folder is a stand-in; the locks are real, held by real processes.
 """
 
+import mmap
 import os
 import select
 import subprocess
@@ -95,6 +96,17 @@ def test_a_port_that_another_process_has_taken_over_stays(tmp_path, segment):
     end(owner)
     segment("fastrtps_port7411")
     assert ledger.sweep() == []
+
+
+def test_a_port_that_somebody_still_sends_to_stays(tmp_path, segment):
+    owner = segment("fastrtps_port7411")
+    ledger = SharedMemoryLedger(lambda pid: pid == owner.pid, str(tmp_path))
+    ledger.observe()
+    end(owner)
+    (tmp_path / "fastrtps_port7411").write_bytes(bytes(4096))
+    with (tmp_path / "fastrtps_port7411").open("r+b") as file, mmap.mmap(file.fileno(), 0):
+        assert ledger.sweep() == []
+    assert "fastrtps_port7411" in ledger.sweep()
 
 
 def test_a_folder_that_does_not_exist_is_empty():

@@ -3,8 +3,9 @@
 A participant that ends in order removes its own files; one that is killed leaves up to eight.
 Each segment `fastrtps_X` comes with a lock file `fastrtps_X_el` on which its owner holds a lock, so
 the kernel's list of locks says who owns what. The lock is looked up when the file appears
-(inotify); after the owner's death the files go, but only if the lock can be taken, because then
-nobody lives in them.
+(inotify). After the owner's death the files go, but only where no living process has the segment
+mapped and the lock can be taken. Who has sent to a participant keeps its port mapped; the next
+participant takes the same port over, and what is sent to it must not go to a file that is no more.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import ctypes
 import fcntl
 import os
+import re
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -48,15 +50,22 @@ class SharedMemoryLedger:
         What has been removed stays noted: a survivor that still sends to a dead process makes the
         segment of its port anew, and leaves it behind even when it ends in order itself.
         """
+        left = [stem for stem in sorted(self._owned) if self._files(stem)]
+        in_use = _mapped_files(self._folder) if left else set[str]()
         removed: list[str] = []
-        for stem in sorted(self._owned):
-            if self._is_abandoned(stem):
-                files = (stem, *(stem + suffix for suffix in LOCK_SUFFIXES), f"sem.{stem}_mutex")
-                for name in files:
+        for stem in left:
+            # In this order: to try the lock of a segment in the making would disturb its maker.
+            if stem not in in_use and self._is_abandoned(stem):
+                for name in self._files(stem):
                     with suppress(OSError):
                         os.unlink(os.path.join(self._folder, name))
                         removed.append(name)
         return removed
+
+    def _files(self, stem: str) -> list[str]:
+        """Return which files of a segment there are."""
+        names = (stem, *(stem + suffix for suffix in LOCK_SUFFIXES), f"sem.{stem}_mutex")
+        return [name for name in names if os.path.exists(os.path.join(self._folder, name))]
 
     def _lock_files(self) -> list[tuple[str, int]]:
         try:
@@ -104,6 +113,22 @@ def _stem(lock_file: str) -> str:
     for suffix in LOCK_SUFFIXES:
         lock_file = lock_file.removesuffix(suffix)
     return lock_file
+
+
+def _mapped_files(folder: str) -> set[str]:
+    """Return the names of the folder's segments that some process has mapped; see proc_pid_maps(5).
+
+    Processes of other users cannot be looked into; their locks still count.
+    """
+    wanted = re.compile(f"{re.escape(folder)}/({PREFIX}\\S+)$", re.MULTILINE)
+    names: set[str] = set()
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        with (
+            suppress(OSError),
+            open(f"/proc/{pid}/maps", encoding="utf-8", errors="replace") as file,
+        ):
+            names.update(wanted.findall(file.read()))
+    return names
 
 
 def _lock_owners(folder: str) -> dict[int, set[int]]:
