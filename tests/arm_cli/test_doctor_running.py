@@ -119,6 +119,14 @@ def test_a_clock_that_stands_still_is_an_error(clock, sentence):
     says(ClockAdvancing, observation, "error", sentence)
 
 
+def test_nodes_that_wait_for_a_clock_which_nobody_publishes():
+    waiting = Observation(publishers={"/clock": ()}, clock_readers=("/watcher",))
+    sentence = "time stands still for those who go by it: /watcher"
+    says(ClockAdvancing, waiting, "error", sentence, "use_sim_time")
+    says(ControllersActive, waiting, "error", "there is no controller manager")
+    assert len(examine_running(waiting)) > 1
+
+
 def test_without_a_clock_time_is_the_machines():
     says(ClockAdvancing, Observation(), "ok", "time is the machine's")
 

@@ -19,7 +19,7 @@ class ControllersActive:
         """Look for a manager without answer or controllers, then for one that is not active."""
         managers = self.observation.managers
         if not managers:
-            return _without_manager(is_simulated="/clock" in self.observation.publishers)
+            return _without_manager(is_simulated=self.observation.is_timed)
         faults = [fault for manager in managers if (fault := _fault(manager))]
         if faults:
             return max(faults, key=lambda fault: fault.severity == "error")

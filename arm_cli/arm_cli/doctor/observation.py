@@ -104,6 +104,7 @@ class Observation:
         publishers: names of the publishing nodes, by topic.
         descriptions: the robot description that came on each such topic, empty where none came.
         clock: None where nothing came on /clock.
+        clock_readers: names of the nodes that go by /clock.
         mismatches: end points that cannot talk to each other.
         commands: topics with set-points.
     """
@@ -112,10 +113,16 @@ class Observation:
     publishers: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     descriptions: Mapping[str, str] = field(default_factory=dict)
     clock: ClockReading | None = None
+    clock_readers: tuple[str, ...] = ()
     mismatches: tuple[Mismatch, ...] = ()
     commands: tuple[CommandTopic, ...] = ()
 
     @property
     def is_empty(self) -> bool:
         """Whether there is nothing to examine."""
-        return not (self.managers or "/clock" in self.publishers or self.descriptions)
+        return not (self.managers or self.is_timed or self.descriptions)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether somebody publishes /clock, or goes by it."""
+        return bool(self.publishers.get("/clock") or self.clock_readers)

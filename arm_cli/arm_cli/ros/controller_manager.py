@@ -19,7 +19,7 @@ from controller_manager_msgs.srv import (
 )
 from lifecycle_msgs.msg import State
 
-from arm_cli.ros.service_call import call_service
+from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
 from arm_cli.ros.session import Session
 
 SWITCH_TIMEOUT_S = 5.0
@@ -34,10 +34,13 @@ _STATE_IDS = {
 class ControllerManagerClient:
     """Asks one manager. Every method raises UnansweredError where it does not answer."""
 
-    def __init__(self, session: Session, manager: str) -> None:
+    def __init__(
+        self, session: Session, manager: str, answer_timeout_s: float = ANSWER_TIMEOUT_S
+    ) -> None:
         """Ask the manager whose node has that absolute name."""
         self._session = session
         self._manager = manager
+        self._answer_timeout_s = answer_timeout_s
 
     def controllers(self) -> list[Any]:
         """Return a ControllerState for each loaded controller, newest first."""
@@ -108,4 +111,11 @@ class ControllerManagerClient:
 
     def _call(self, service_class: Any, service: str, **fields: Any) -> Any:
         name = f"{self._manager}/{service}"
-        return call_service(self._session, service_class, name, service_class.Request(**fields))
+        request = service_class.Request(**fields)
+        return call_service(
+            self._session,
+            service_class,
+            name,
+            request,
+            answer_timeout_s=self._answer_timeout_s,
+        )

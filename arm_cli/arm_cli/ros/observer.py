@@ -22,6 +22,8 @@ from arm_cli.ros.simulation_listener import ClockListener, DescriptionListener
 WINDOW_S = 1.0
 """How long the clock is watched, and commands are waited for."""
 FIRST_MESSAGE_S = 3.0
+ANSWER_TIMEOUT_S = 5.0
+"""Whoever takes longer is stuck."""
 LIST_CONTROLLERS = "/list_controllers"
 LIST_TYPE = "controller_manager_msgs/srv/ListControllers"
 CLOCK = "/clock"
@@ -57,6 +59,7 @@ def observe(session: Session) -> Observation:
         publishers={name: _names(graph.publishers(name)) for name in topics},
         descriptions={d.topic: d.text for d in descriptions},
         clock=_reading(session, graph, clock),
+        clock_readers=_names(graph.subscriptions(CLOCK)),
         mismatches=tuple(m for name in topics for m in _mismatches(graph, name)),
         commands=tuple(
             c.report(_names(graph.publishers(c.topic)), _names(graph.subscriptions(c.topic)))
@@ -74,7 +77,7 @@ def _manager_names(graph: Graph) -> list[str]:
 
 
 def _ask(session: Session, name: str) -> ControlState:
-    client = ControllerManagerClient(session, name)
+    client = ControllerManagerClient(session, name, ANSWER_TIMEOUT_S)
     try:
         controllers, components = client.controllers(), client.hardware_components()
     except UnansweredError:
@@ -108,7 +111,7 @@ def _wanted_factor(session: Session, graph: Graph) -> float | None:
     if not graph.server_count(f"{node.full_name}/get_parameters"):
         return None
     try:
-        values = NodeParameters(session, node).values([FACTOR])
+        values = NodeParameters(session, node, ANSWER_TIMEOUT_S).values([FACTOR])
     except UnansweredError:
         return None
     return values[0].double_value if values and values[0].type else None

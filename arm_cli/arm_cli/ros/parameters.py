@@ -13,7 +13,7 @@ from rcl_interfaces.srv import (
 
 from arm_cli.errors import NotFoundError
 from arm_cli.ros.graph import NodeName
-from arm_cli.ros.service_call import call_service
+from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
 from arm_cli.ros.session import Session
 from launch_py.near_names import describe_known
 
@@ -21,10 +21,13 @@ from launch_py.near_names import describe_known
 class NodeParameters:
     """Asks one node. Every method raises UnansweredError where it does not answer."""
 
-    def __init__(self, session: Session, node: NodeName) -> None:
+    def __init__(
+        self, session: Session, node: NodeName, answer_timeout_s: float = ANSWER_TIMEOUT_S
+    ) -> None:
         """Ask a node, with a session's node."""
         self._session = session
         self._node = node
+        self._answer_timeout_s = answer_timeout_s
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the names of its parameters, sorted."""
@@ -68,4 +71,6 @@ class NodeParameters:
 
     def _call(self, service_class: Any, service: str, request: Any) -> Any:
         name = f"{self._node.full_name}/{service}"
-        return call_service(self._session, service_class, name, request)
+        return call_service(
+            self._session, service_class, name, request, answer_timeout_s=self._answer_timeout_s
+        )

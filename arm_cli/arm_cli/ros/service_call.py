@@ -18,6 +18,7 @@ def call_service(
     name: str,
     request: Any,
     server_timeout_s: float | None = SERVER_TIMEOUT_S,
+    answer_timeout_s: float = ANSWER_TIMEOUT_S,
 ) -> Any:
     """Call a service of a node of the suite, or one that is like it; return the answer.
 
@@ -27,11 +28,11 @@ def call_service(
     client = session.node.create_client(service_class, absolute_name(name))
     try:
         wait_for_server(session, client, server_timeout_s)
-        answer = session.result(client.call_async(request), ANSWER_TIMEOUT_S)
+        answer = session.result(client.call_async(request), answer_timeout_s)
     finally:
         session.node.destroy_client(client)
     if answer is None:
-        raise UnansweredError(f"no answer from {name} within {ANSWER_TIMEOUT_S:g} s")
+        raise UnansweredError(f"no answer from {name} within {answer_timeout_s:g} s")
     return answer
 
 

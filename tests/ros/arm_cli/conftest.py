@@ -167,6 +167,8 @@ def run_until(start: Callable[[str], CommandLine]) -> Callable[..., str]:
 
 
 @pytest.fixture(scope="module")
-def simulation(launch_for_file) -> None:
+def simulation(launch_for_file):
     """The main job, ready."""
-    launch_for_file().wait_until_ready()
+    launched = launch_for_file()
+    launched.wait_until_ready()
+    return launched
