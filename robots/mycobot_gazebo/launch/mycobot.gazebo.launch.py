@@ -33,7 +33,7 @@ ARGUMENTS = {
     "jsp_gui": ("false", "sliders, where no controllers publish joint states", SWITCH),
     "use_gazebo": ("true", "the simulation is the robot's hardware", SWITCH),
     "use_sim_time": ("true", "the nodes' clock is the simulation's", SWITCH),
-    "world_file": ("empty", "a shipped world, or a MuJoCo XML or SDF file", None),
+    "world_file": ("pick_and_place_demo", "a shipped world, or a MuJoCo XML or SDF file", None),
     "x": ("0.0", "where base_link is in the world, in m", None),
     "y": ("0.0", "likewise", None),
     "z": ("0.025", "likewise; the underside of the base is 0.025 m lower", None),
