@@ -29,28 +29,29 @@ class SdfFrames:
         Raises:
             WorldError: it is relative to nothing that is there, or in a circle.
         """
-        return self._resolved(element, element.pose(), ())
+        return self._resolved(element, element.pose())
 
     def within(self, owner: SdfElement, part: SdfElement) -> NDArray[np.float64]:
         """Return the pose (4, 4) of a part of one of the elements in that element's frame."""
         pose = part.pose()
         if not pose.relative_to:
             return pose.matrix
-        return np.linalg.inv(self.matrix(owner)) @ self._resolved(part, pose, ())
+        return np.linalg.inv(self.matrix(owner)) @ self._resolved(part, pose)
 
-    def _resolved(
-        self, element: SdfElement, pose: SdfPose, behind: tuple[str, ...]
-    ) -> NDArray[np.float64]:
-        name = pose.relative_to or element.attribute("attached_to")
-        if name in ROOTS:
-            return pose.matrix
-        if name not in self._elements:
-            known = listing(sorted(self._elements))
-            raise element.error(f"is relative to '{name}', which is not there; there are {known}")
-        if name in behind:
-            raise element.error(f"is relative to '{name}', and that in a circle to itself")
-        other = self._elements[name]
-        return self._resolved(other, other.pose(), (*behind, name)) @ pose.matrix
+    def _resolved(self, element: SdfElement, pose: SdfPose) -> NDArray[np.float64]:
+        """Follow a pose from frame to frame up to the scope's own."""
+        matrix, passed = pose.matrix, set[str]()
+        while (name := pose.relative_to or element.attribute("attached_to")) not in ROOTS:
+            if name not in self._elements:
+                known = listing(sorted(self._elements))
+                raise element.error(f"is relative to '{name}', not one of {known}")
+            if name in passed:
+                raise element.error(f"is relative to '{name}', and that in a circle to itself")
+            passed.add(name)
+            element = self._elements[name]
+            pose = element.pose()
+            matrix = pose.matrix @ matrix
+        return matrix
 
 
 def pose_of(matrix: NDArray[np.float64]) -> Pose:

@@ -17,7 +17,7 @@ DOWN = (0.0, 0.0, -1.0)
 SUN_DIRECTION = (-0.5, 0.1, -0.9)
 """That of Gazebo's own sun."""
 SUN_HEIGHT_M = 10.0
-BRIGHTEST = 1.0
+NO_ATTENUATION = (1.0, 0.0, 0.0)
 
 
 def add_sky(spec: mujoco.MjSpec, world: SdfElement) -> None:
@@ -59,9 +59,9 @@ def add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
     added.castshadow = light.flag("cast_shadows")
     attenuation = light.child("attenuation")
     if attenuation and kind != "directional":
-        # As in Gazebo all of it is 1 near by; MuJoCo wants something to divide by.
+        # All three may be 0, and MuJoCo divides by their sum.
         terms = [attenuation.number(term, 0.0) for term in ("constant", "linear", "quadratic")]
-        added.attenuation = terms if sum(terms) > 0 else [BRIGHTEST, 0.0, 0.0]
+        added.attenuation = terms if sum(terms) > 0 else NO_ATTENUATION
     spot = light.child("spot")
     if spot:
         added.cutoff = min(math.degrees(spot.number("outer_angle")) / 2, 90.0)

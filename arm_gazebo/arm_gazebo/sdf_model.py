@@ -25,6 +25,7 @@ from arm_description.robot import (
     Vector,
     Visual,
 )
+from arm_gazebo.gazebo_materials import gazebo_color
 from arm_gazebo.gazebo_tags import GazeboTags, LinkTags
 from arm_gazebo.mesh_data import Color
 from arm_gazebo.sdf_element import SdfElement
@@ -208,7 +209,9 @@ def _color(visual: SdfElement) -> Color | None:
     ambient, diffuse = material.child("ambient"), material.child("diffuse")
     color = diffuse or ambient
     if color is None:
-        return None
+        script = material.child("script")
+        named = gazebo_color(script.text("name")) if script else None
+        return named and (*named[:3], named[3] * opacity)
     r, g, b, a = np.clip(material.numbers(color.tag, 4), 0.0, 1.0).tolist()
     return (r, g, b, a * opacity)
 

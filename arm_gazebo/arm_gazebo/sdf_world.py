@@ -155,9 +155,8 @@ def _model_file(found: Path, include: SdfElement) -> Path:
     """Return the SDF file that is meant by a file, or by a model's folder."""
     if found.is_file():
         return found
-    names = [f for f in ("model.sdf", *sorted(p.name for p in found.glob("*.sdf")))]
-    for name in names:
-        if (found / name).is_file():
-            return found / name
+    for file in (found / "model.sdf", *sorted(found.glob("*.sdf"))):
+        if file.is_file():
+            return file
     there = listing(sorted(path.name for path in found.iterdir()))
-    raise include.error(f"means the folder {found}, which has no model.sdf, only {there}")
+    raise include.error(f"means the folder {found}, which has no .sdf file; it has {there}")
