@@ -109,6 +109,16 @@ def test_a_port_that_somebody_still_sends_to_stays(tmp_path, segment):
     assert "fastrtps_port7411" in ledger.sweep()
 
 
+def test_what_a_dead_process_sent_goes_though_somebody_still_reads_it(tmp_path, segment):
+    owner = segment("fastrtps_1")
+    ledger = SharedMemoryLedger(lambda pid: pid == owner.pid, str(tmp_path))
+    ledger.observe()
+    (tmp_path / "fastrtps_1").write_bytes(bytes(4096))
+    with (tmp_path / "fastrtps_1").open("r+b") as file, mmap.mmap(file.fileno(), 0):
+        end(owner)
+        assert "fastrtps_1" in ledger.sweep()
+
+
 def test_a_folder_that_does_not_exist_is_empty():
     ledger = SharedMemoryLedger(lambda _: True, "/nowhere")
     ledger.observe()

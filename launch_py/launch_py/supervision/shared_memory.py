@@ -3,9 +3,10 @@
 A participant that ends in order removes its own files; one that is killed leaves up to eight.
 Each segment `fastrtps_X` comes with a lock file `fastrtps_X_el` on which its owner holds a lock, so
 the kernel's list of locks says who owns what. The lock is looked up when the file appears
-(inotify). After the owner's death the files go, but only where no living process has the segment
-mapped and the lock can be taken. Who has sent to a participant keeps its port mapped; the next
-participant takes the same port over, and what is sent to it must not go to a file that is no more.
+(inotify). After the owner's death the files go, but only if the lock can be taken, because then
+nobody lives in them. A port stays, too, while a living process has it mapped: who has sent to a
+participant keeps its port, the next participant takes the same port over, and what is sent to it
+must not go to a file that is no more.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from contextlib import suppress
 
 SHM_FOLDER = "/dev/shm"
 PREFIX = "fastrtps_"
+PORT_PREFIX = "fastrtps_port"
 LOCK_SUFFIXES = ("_el", "_sl")
 _IN_CREATE = 0x100
 
@@ -51,10 +53,10 @@ class SharedMemoryLedger:
         segment of its port anew, and leaves it behind even when it ends in order itself.
         """
         left = [stem for stem in sorted(self._owned) if self._files(stem)]
-        in_use = _mapped_files(self._folder) if left else set[str]()
+        in_use = _mapped_ports(self._folder) if left else set[str]()
         removed: list[str] = []
         for stem in left:
-            # In this order: to try the lock of a segment in the making would disturb its maker.
+            # In this order: to try the lock of a port in the making would disturb its maker.
             if stem not in in_use and self._is_abandoned(stem):
                 for name in self._files(stem):
                     with suppress(OSError):
@@ -115,12 +117,12 @@ def _stem(lock_file: str) -> str:
     return lock_file
 
 
-def _mapped_files(folder: str) -> set[str]:
-    """Return the names of the folder's segments that some process has mapped; see proc_pid_maps(5).
+def _mapped_ports(folder: str) -> set[str]:
+    """Return the names of the folder's ports that some process has mapped; see proc_pid_maps(5).
 
     Processes of other users cannot be looked into; their locks still count.
     """
-    wanted = re.compile(f"{re.escape(folder)}/({PREFIX}\\S+)$", re.MULTILINE)
+    wanted = re.compile(f"{re.escape(folder)}/({PORT_PREFIX}\\S+)$", re.MULTILINE)
     names: set[str] = set()
     for pid in filter(str.isdigit, os.listdir("/proc")):
         with (
