@@ -20,6 +20,7 @@ from arm_description.joint_state_encoding import (
     read_joint_positions,
 )
 from arm_description.names import listing
+from arm_description.ros.stamp_clock import StampClock
 from arm_description.ros.transform_publisher import TransformPublisher
 from arm_description.state_publisher_settings import StatePublisherSettings
 from arm_description.state_throttle import StateThrottle
@@ -59,6 +60,7 @@ class RobotStatePublisher(Node):
 
     def __init__(self) -> None:
         super().__init__("robot_state_publisher")
+        self._stamp_clock = StampClock(self)
         for name, (default, description) in _PARAMETERS.items():
             # Dynamic, so that `publish_frequency: 30` of a YAML file, an integer, is taken too.
             descriptor = ParameterDescriptor(description=description, dynamic_typing=True)
@@ -143,6 +145,7 @@ class RobotStatePublisher(Node):
         if len(state.names) != len(state.positions):
             self._complain_of_sizes(state)
             return
+        self._stamp_clock.hear(state.stamp_ns)
         if self._throttle.went_back(self.get_clock().now().nanoseconds):
             self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
         outlet = self._outlet(state.names)
