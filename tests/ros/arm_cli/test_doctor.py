@@ -84,15 +84,3 @@ def test_a_command_by_the_wall_clock(doctor, client):
     found = doctor(lambda f: f["commands"]["severity"] == "error", code=1)
     assert "ahead of the simulation's time" in found["commands"]["sentence"]
     assert "use_sim_time" in found["commands"]["fix"]
-
-
-def test_a_simulation_that_is_stuck(doctor, simulation):
-    [node] = [p for p in simulation.descendants() if "arm_gazebo_node" in str(p.cmdline())]
-    node.suspend()
-    try:
-        found = doctor(lambda f: f["clock"]["severity"] == "error", code=1)
-    finally:
-        node.resume()
-    assert "nobody publishes /clock" in found["clock"]["sentence"]
-    assert "/robot_state_publisher" in found["clock"]["sentence"]
-    assert "there is no controller manager" in found["controllers"]["sentence"]

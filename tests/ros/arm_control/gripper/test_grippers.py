@@ -108,14 +108,6 @@ def test_a_goal_that_is_no_number_is_rejected_and_the_log_says_why(
     manager.wait_for_line("Received action goal whose position is not finite: nan")
 
 
-def test_the_action_works_again_after_another_configure(active: Any, grip: Any) -> None:
-    grip(-0.1).wait()
-    assert active.switch([], [GRIPPER]).ok
-    assert active.configure(GRIPPER)
-    assert active.switch([GRIPPER]).ok
-    assert grip(-0.2).wait().status == SUCCEEDED
-
-
 def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(
     control: Any, grip: Any
 ) -> None:
