@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -102,8 +103,7 @@ class Launched:
         """Send a signal, wait for the end, and return the exit code."""
         if self.process.poll() is None:
             self.process.send_signal(number)
-        code = self.wait(timeout_s)
-        return code
+        return self.wait(timeout_s)
 
     def wait(self, timeout_s: float = START_TIMEOUT_S) -> int:
         """Wait for the end and return the exit code."""
@@ -255,11 +255,19 @@ class Client:
         client = self.node.create_client(service_type, name)
         if not client.wait_for_service(timeout_sec=timeout_s):
             pytest.fail(f"no service {name} within {timeout_s} s")
-        future = client.call_async(request)
+        return self.result_of(client.call_async(request), name, timeout_s)
+
+    def run(self, function: Callable[[], object], what: str) -> Any:
+        """Run a function on the executor's thread; return what it returns."""
+        return self.result_of(self.executor.create_task(function), what)
+
+    @staticmethod
+    def result_of(future: Any, what: str, timeout_s: float = WAIT_TIMEOUT_S) -> Any:
+        """Block until the executor has completed a future; return its result."""
         done = threading.Event()
         future.add_done_callback(lambda _: done.set())
         if not done.wait(timeout_s):
-            pytest.fail(f"no answer from {name} within {timeout_s} s")
+            pytest.fail(f"no answer from {what} within {timeout_s} s")
         return future.result()
 
     def close(self) -> None:
@@ -269,6 +277,119 @@ class Client:
         self.executor.shutdown()
         self.node.destroy_node()
         self.context.try_shutdown()
+
+
+class SentGoal:
+    """A goal from the sight of its client.
+
+    Attributes:
+        accepted: whether the server took it.
+        feedback: what came of it so far.
+    """
+
+    def __init__(
+        self, caller: "ActionCaller", handle: Any, ended: Any, feedback: Collector
+    ) -> None:
+        self.accepted = handle.accepted
+        self.feedback = feedback
+        self._caller = caller
+        self._handle = handle
+        self._ended = ended
+
+    def wait(self) -> Any:
+        """Wait for the end; return the answer with its `status` and `result`."""
+        return Client.result_of(self._ended, "the goal")
+
+    def wait_until_running(self) -> None:
+        """Wait for the first feedback: the client hears of its acceptance before the controller."""
+        self.feedback.wait_for(1)
+
+    def ended(self) -> bool:
+        """Return whether there is a result."""
+        return self._ended.done()
+
+    def cancel(self) -> int:
+        """Ask for the end; return how many goals are being cancelled."""
+        return len(self._caller.await_on_executor(self._handle.cancel_goal_async).goals_canceling)
+
+
+class ActionCaller:
+    """Sends goals to one action.
+
+    rclpy's action client notes a request only after it has sent it: from another thread than the
+    executor's, an answer that is quick enough is thrown away. So all of it happens there.
+    """
+
+    def __init__(self, client: Client, action_type: type, name: str) -> None:
+        from rclpy.action.client import ActionClient
+
+        self._type = action_type
+        self._client = client
+        self._name = name
+        self._action = client.run(lambda: ActionClient(client.node, action_type, name), name)
+        self._servers: set[bytes] = set()
+
+    def wait_for_server(self) -> None:
+        """Wait until there is a server, another one than the last time."""
+        known = self._servers
+
+        def found() -> bool:
+            self._servers = self._find_servers()
+            ready = self._action.server_is_ready()
+            return ready and len(self._servers) == 1 and self._servers != known
+
+        self._client.wait_until(found, f"a new server of {self._name}")
+        # It may not know of its client yet, and an answer would be lost.
+        threading.Event().wait(0.2)
+
+    def send(self, **fields: object) -> SentGoal:
+        """Send a goal with these fields; return it once it is accepted or rejected."""
+        if not self._servers:
+            self.wait_for_server()
+        feedback = Collector()
+
+        async def carry_out() -> tuple[Any, Any]:
+            handle = await self._action.send_goal_async(
+                self._type.Goal(**fields), lambda message: feedback(message.feedback)
+            )
+            return handle, handle.get_result_async() if handle.accepted else None
+
+        return SentGoal(self, *self.await_on_executor(carry_out), feedback)
+
+    def send_and_forget(self, **fields: object) -> None:
+        """Send a goal and wait for nothing; to be called on the executor's thread."""
+        self._action.send_goal_async(self._type.Goal(**fields))
+
+    def await_on_executor(self, function: Callable[[], Any]) -> Any:
+        """Return what the awaitable results in that a function returns, on the executor."""
+
+        async def carry_out() -> Any:
+            return await function()
+
+        return self._client.run(carry_out, self._name)
+
+    def close(self) -> None:
+        """Destroy it, and wait for that."""
+        self._client.run(self._action.destroy, self._name)
+
+    def _find_servers(self) -> set[bytes]:
+        status = f"{self._name}/_action/status"
+        found = self._client.node.get_publishers_info_by_topic(status)
+        return {bytes(info.endpoint_gid) for info in found}
+
+
+@pytest.fixture
+def action_caller(client: Client) -> Iterator[Callable[[type, str], ActionCaller]]:
+    """Return a function that makes a client of an action, from its type and name."""
+    callers: list[ActionCaller] = []
+
+    def make(action_type: type, name: str) -> ActionCaller:
+        callers.append(ActionCaller(client, action_type, name))
+        return callers[-1]
+
+    yield make
+    for caller in callers:
+        caller.close()
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from rclpy.task import Future
 
 from arm_control.control_loop import ControlLoop
 from arm_control.goal_outcome import Outcome
-from arm_control.ros.executor_bridge import EXECUTOR_TIMEOUT_S, settle
+from arm_control.ros.executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer, settle
 
 RESULT_TIMEOUT_S = 10
 """How long a result is kept for its client. With rclpy's quarter of an hour a stream of goals
@@ -127,6 +127,7 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
     def wait_for_results(self) -> None:
         """Wait until the results of all goals are out; a control-plane thread."""
         self._idle.wait(EXECUTOR_TIMEOUT_S)
+        let_executor_answer(self._executor)
 
     # Loop thread
 

@@ -16,7 +16,11 @@ from arm_control.control_loop import ControlLoop
 
 ResultT = TypeVar("ResultT")
 
-EXECUTOR_TIMEOUT_S = 1.0
+EXECUTOR_TIMEOUT_S = 5.0
+
+PASSES_TO_ANSWER = 2
+"""In the first the executor takes the requests that have come, in the second it runs the tasks
+which answer them."""
 
 
 def settle(future: Future, result: object, executor: Executor) -> None:
@@ -47,16 +51,19 @@ async def call_on_loop(
     return cast(ResultT, await future)
 
 
-def run_on_executor(executor: Executor, function: Callable[[], None]) -> None:
+def run_on_executor(executor: Executor, function: Callable[[], None]) -> bool:
     """Run a function where the executor runs callbacks, and wait for it; not on that thread.
 
     For what must not happen while the executor gathers the entities to wait for, such as the end
     of an action server. Where the executor does not spin the function runs here.
+
+    Returns:
+        Whether the executor spins.
     """
     if not executor.get_nodes():
         # One that was shut down has let go of its nodes, and takes no tasks any more.
         function()
-        return
+        return False
     done = threading.Event()
 
     def run() -> None:
@@ -66,6 +73,19 @@ def run_on_executor(executor: Executor, function: Callable[[], None]) -> None:
             done.set()
 
     task = executor.create_task(run)
-    if not done.wait(EXECUTOR_TIMEOUT_S):
-        task.cancel()
-        function()
+    if done.wait(EXECUTOR_TIMEOUT_S):
+        return True
+    task.cancel()
+    function()
+    return False
+
+
+def let_executor_answer(executor: Executor) -> None:
+    """Wait until the executor has answered what has come to it by now; not on its thread.
+
+    rclpy sends an action's result in a task of its own, and the executor runs the latest task
+    first: an action server that is destroyed in the next one takes the result with it.
+    """
+    for _ in range(PASSES_TO_ANSWER):
+        if not run_on_executor(executor, lambda: None):
+            return

@@ -1,5 +1,6 @@
 """Lines that move the arm, and lines that run until Ctrl-C."""
 
+import re
 import signal
 
 import pytest
@@ -70,11 +71,50 @@ def test_the_course_project_s_executable_moves_the_arm(start, arrives):
     assert node.interrupt() == 0
 
 
+def test_controllers_change_places_and_a_goal_is_followed(run, start, arrives):
+    state = "arm control set_controller_state joint_trajectory_controller"
+    load = "arm control load_controller --set-state inactive joint_trajectory_controller"
+    assert run(load).endswith("joint_trajectory_controller into state inactive\n")
+    assert "Error activating controller, check" in run(f"{state} active", code=1)
+    switch = (
+        "arm control switch_controllers --activate joint_trajectory_controller "
+        "--deactivate position_controller --strict"
+    )
+    assert run(switch) == "Successfully switched controllers!\n"
+    assert run("arm action list -t") == (
+        "/joint_trajectory_controller/follow_joint_trajectory "
+        "[control_msgs/action/FollowJointTrajectory]\n"
+    )
+    done = start(f'{FOLLOW} "{TRAJECTORY % ("0.3, 0.2, 0.1, 0.0", "1.5")}"')
+    assert done.wait() == 0
+    assert done.err == (
+        "arm action send_goal: trajectory.points[0].time_from_start.sec: 1.5 is truncated to 1 "
+        "(int32)\n"
+    )
+    assert re.search(
+        r"^Goal accepted with ID: [0-9a-f]{32}\n\nResult:\n    error_code: 0\n",
+        done.out,
+        re.MULTILINE,
+    )
+    assert done.out.endswith("Goal finished with status: SUCCEEDED\n")
+    arrives(0.3, 0.2, 0.1, 0.0)
+    _a_goal_is_cancelled_by_ctrl_c(start)
+    rejected = run(f'{FOLLOW} "{{trajectory: {{joint_names: [j9]}}}}"')
+    assert rejected.endswith("Goal was rejected.\n")
+    assert run(f"{state} inactive") == "Successfully deactivated joint_trajectory_controller\n"
+    unload = "arm control unload_controller joint_trajectory_controller"
+    assert run(unload) == "Successfully unloaded controller joint_trajectory_controller\n"
+    again = run("arm control switch_controllers --activate position_controller")
+    assert again.startswith("Successfully switched controllers!\n")
+
+
 def _a_goal_is_cancelled_by_ctrl_c(start):
     goal = start(f'{FOLLOW} --feedback "{TRAJECTORY % ("0.0, 0.0, 0.0, 0.0", "60")}"')
     goal.wait_for("Feedback:\n    header:")
     assert goal.interrupt() == signal.SIGINT
-    assert goal.out.endswith("Canceling goal...\nGoal canceled.\n")
+    # Feedback comes until the server has cancelled it.
+    assert goal.out.count("Canceling goal...\n") == 1
+    assert goal.out.endswith("Goal canceled.\n")
 
 
 @pytest.mark.parametrize(

@@ -109,6 +109,22 @@ def test_a_function_runs_on_the_executors_thread(client: Any, bridge: Any) -> No
     assert threads == executors != [threading.get_ident()]
 
 
+def test_what_the_executor_has_yet_to_answer_is_answered_first(client: Any, bridge: Any) -> None:
+    order: list[str] = []
+    asked = threading.Event()
+
+    def take_request() -> None:
+        client.executor.create_task(lambda: order.append("answer"))
+        asked.set()
+        threading.Event().wait(0.2)  # so that whatever is done meanwhile comes as the latest task
+
+    client.executor.create_task(take_request)
+    assert asked.wait(TIMEOUT_S)
+    bridge.let_executor_answer(client.executor)
+    bridge.run_on_executor(client.executor, lambda: order.append("end"))
+    assert order == ["answer", "end"]
+
+
 def test_a_function_runs_though_the_executor_does_not(bridge: Any, client: Any) -> None:
     from rclpy.executors import SingleThreadedExecutor
 

@@ -1,13 +1,10 @@
 """The simulated arm with a wall beside its last joint, which gripper controllers drive."""
 
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-
-TIMEOUT_S = 30.0
 
 CONTROLLERS = """\
 controller_manager:
@@ -65,77 +62,43 @@ def manager(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     return launched
 
 
-class Goal:
-    """A goal from the sight of its client."""
+@pytest.fixture
+def caller_of(action_caller: Any) -> Callable[[str], Any]:
+    """Return a function that returns the client of a controller's action."""
+    from control_msgs.action import GripperCommand, ParallelGripperCommand
 
-    def __init__(self, handle: Any) -> None:
-        self.accepted = handle.accepted
-        self._handle = handle
-        self._ended = handle.get_result_async() if handle.accepted else None
+    callers: dict[str, Any] = {}
 
-    def wait(self) -> Any:
-        """Wait for the end; return status and result."""
-        return wait(self._ended)
+    def find(controller: str) -> Any:
+        if controller not in callers:
+            is_parallel = controller == "parallel_gripper"
+            action_type = ParallelGripperCommand if is_parallel else GripperCommand
+            callers[controller] = action_caller(action_type, f"/{controller}/gripper_cmd")
+        return callers[controller]
 
-    def cancel(self) -> int:
-        """Ask for the end; return how many goals are being cancelled."""
-        return len(wait(self._handle.cancel_goal_async()).goals_canceling)
-
-
-def wait(future: Any) -> Any:
-    """Block until the client's executor has completed a future; return its result."""
-    done = threading.Event()
-    future.add_done_callback(lambda _: done.set())
-    if not done.wait(TIMEOUT_S):
-        pytest.fail(f"no answer within {TIMEOUT_S} s")
-    return future.result()
+    return find
 
 
 @pytest.fixture
-def send_to(client: Any) -> Iterator[Callable[..., Goal]]:
-    """Return a function that sends a goal to a controller's action."""
-    from rclpy.action.client import ActionClient
-
-    actions: dict[str, ActionClient] = {}
-
-    def send(controller: str, action_type: Any, command: Any) -> Goal:
-        action = actions.get(controller)
-        if action is None:
-            action = ActionClient(client.node, action_type, f"/{controller}/gripper_cmd")
-            actions[controller] = action
-            client.wait_until(action.server_is_ready, "the action")
-            # The server may not know of its client yet, and an answer would be lost.
-            threading.Event().wait(0.2)
-        return Goal(wait(action.send_goal_async(action_type.Goal(command=command))))
-
-    yield send
-    for action in actions.values():
-        client.executor.create_task(action.destroy)
-
-
-@pytest.fixture
-def grip(send_to: Any) -> Callable[..., Goal]:
+def grip(caller_of: Callable[[str], Any]) -> Callable[..., Any]:
     """Return a function that sends a position and an effort."""
-    from control_msgs.action import GripperCommand
-    from control_msgs.msg import GripperCommand as Command
+    from control_msgs.msg import GripperCommand
 
     def send(
         position: float, max_effort: float = 0.0, controller: str = "gripper_controller"
-    ) -> Goal:
-        command = Command(position=position, max_effort=max_effort)
-        return send_to(controller, GripperCommand, command)
+    ) -> Any:
+        command = GripperCommand(position=position, max_effort=max_effort)
+        return caller_of(controller).send(command=command)
 
     return send
 
 
 @pytest.fixture
-def grip_parallel(send_to: Any) -> Callable[..., Goal]:
+def grip_parallel(caller_of: Callable[[str], Any]) -> Callable[..., Any]:
     """Return a function that sends the fields of a joint state."""
-    from control_msgs.action import ParallelGripperCommand
     from sensor_msgs.msg import JointState
 
-    def send(*positions: float, **fields: Any) -> Goal:
-        command = JointState(position=positions, **fields)
-        return send_to("parallel_gripper", ParallelGripperCommand, command)
+    def send(*positions: float, **fields: Any) -> Any:
+        return caller_of("parallel_gripper").send(command=JointState(position=positions, **fields))
 
     return send

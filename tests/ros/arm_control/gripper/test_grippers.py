@@ -108,6 +108,17 @@ def test_a_goal_that_is_no_number_is_rejected_and_the_log_says_why(
     manager.wait_for_line("Received action goal whose position is not finite: nan")
 
 
+def test_the_action_works_again_after_another_configure(
+    active: Any, caller_of: Any, grip: Any
+) -> None:
+    assert grip(-0.1).wait().status == SUCCEEDED
+    assert active.switch([], [GRIPPER]).ok
+    assert active.configure(GRIPPER)
+    assert active.switch([GRIPPER]).ok
+    caller_of(GRIPPER).wait_for_server()
+    assert grip(-0.2).wait().status == SUCCEEDED
+
+
 def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(
     control: Any, grip: Any
 ) -> None:
@@ -156,6 +167,7 @@ rclpy.init()
 node = rclpy.create_node("dying_client")
 action = ActionClient(node, GripperCommand, "/gripper_controller/gripper_cmd")
 action.wait_for_server()
+threading.Event().wait(0.3)  # until the server knows its client, too
 goal = GripperCommand.Goal()
 goal.command.position = -3.0
 sent = action.send_goal_async(goal)

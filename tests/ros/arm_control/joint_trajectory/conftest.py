@@ -1,13 +1,11 @@
 """A manager with a joint trajectory controller, and a client of its action."""
 
-import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
 import yaml
 
-TIMEOUT_S = 30.0
 NAME = "joint_trajectory_controller"
 JOINTS = ("j0", "j1", "j2", "j3")
 FIELDS = ("positions", "velocities", "accelerations")
@@ -85,110 +83,48 @@ def trajectory() -> Callable[..., Any]:
     return make
 
 
-class Feedback:
-    """A goal's feedback as it arrives."""
-
-    def __init__(self) -> None:
-        self.messages: list[Any] = []
-        self.come = threading.Event()
-
-    def __call__(self, message: Any) -> None:
-        self.messages.append(message.feedback)
-        self.come.set()
-
-
 class Goal:
-    """A goal from the sight of its client."""
+    """A goal whose result is a status, an error code and an error string."""
 
-    def __init__(self, handle: Any, feedback: Feedback) -> None:
-        self.feedback = feedback
-        self.accepted = handle.accepted
-        self._handle = handle
-        if handle.accepted:
-            self._ended = handle.get_result_async()
+    def __init__(self, goal: Any) -> None:
+        self._goal = goal
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._goal, name)
 
     def result(self) -> tuple[int, int, str]:
         """Wait for the end; return status, error code and error string."""
-        answer = wait(self._ended)
+        answer = self._goal.wait()
         return answer.status, answer.result.error_code, answer.result.error_string
-
-    def wait_until_running(self) -> None:
-        """Wait for the first feedback: the client hears of its acceptance before the controller."""
-        if not self.feedback.come.wait(TIMEOUT_S):
-            pytest.fail(f"no feedback within {TIMEOUT_S} s")
-
-    def ended(self) -> bool:
-        """Return whether there is a result."""
-        return self._ended.done()
-
-    def cancel(self) -> int:
-        """Ask for the end; return how many goals are being cancelled."""
-        return len(wait(self._handle.cancel_goal_async()).goals_canceling)
-
-
-def wait(future: Any) -> Any:
-    """Block until the client's executor has completed a future; return its result."""
-    done = threading.Event()
-    future.add_done_callback(lambda _: done.set())
-    if not done.wait(TIMEOUT_S):
-        pytest.fail(f"no answer within {TIMEOUT_S} s")
-    return future.result()
 
 
 class Sender:
     """Sends goals, given as the points of their trajectory, to one controller."""
 
-    def __init__(self, client: Any, make_trajectory: Callable[..., Any], name: str) -> None:
-        from control_msgs.action import FollowJointTrajectory
-        from rclpy.action.client import ActionClient
-
-        self._client = client
+    def __init__(self, caller: Any, make_trajectory: Callable[..., Any]) -> None:
+        self._caller = caller
         self._make_trajectory = make_trajectory
-        self._type = FollowJointTrajectory
-        self._is_connected = False
-        self._action = ActionClient(client.node, self._type, f"/{name}/follow_joint_trajectory")
+        self.wait_for_server = caller.wait_for_server
 
-    def __call__(
-        self,
-        *points: Point,
-        joints: Sequence[str] = JOINTS,
-        **fields: Any,
-    ) -> Goal:
-        if not self._is_connected:
-            self._connect()
-        goal = self._type.Goal(trajectory=self._make_trajectory(*points, joints=joints))
-        for name, value in fields.items():
-            setattr(goal, name, value)
-        feedback = Feedback()
-        return Goal(wait(self._action.send_goal_async(goal, feedback)), feedback)
+    def __call__(self, *points: Point, joints: Sequence[str] = JOINTS, **fields: Any) -> Goal:
+        trajectory = self._make_trajectory(*points, joints=joints)
+        return Goal(self._caller.send(trajectory=trajectory, **fields))
 
     def send_and_forget(self, *points: Point) -> None:
         """Send a goal and wait for nothing; on the thread of the client's executor."""
-        goal = self._type.Goal(trajectory=self._make_trajectory(*points, joints=JOINTS))
-        self._action.send_goal_async(goal)
-
-    def close(self) -> None:
-        self._client.executor.create_task(self._action.destroy)
-
-    def _connect(self) -> None:
-        self._is_connected = True
-        self._client.wait_until(self._action.server_is_ready, "the action")
-        # The server may not know of its client yet, and an answer would be lost.
-        threading.Event().wait(0.2)
+        self._caller.send_and_forget(trajectory=self._make_trajectory(*points, joints=JOINTS))
 
 
 @pytest.fixture
-def sender_to(client: Any, trajectory: Any) -> Iterator[Callable[[str], Sender]]:
+def sender_to(action_caller: Any, trajectory: Any) -> Callable[[str], Sender]:
     """Return a function that makes a sender of goals to a controller."""
-    senders: list[Sender] = []
+    from control_msgs.action import FollowJointTrajectory
 
     def make(name: str) -> Sender:
-        senders.append(Sender(client, trajectory, name))
-        return senders[-1]
+        caller = action_caller(FollowJointTrajectory, f"/{name}/follow_joint_trajectory")
+        return Sender(caller, trajectory)
 
-    yield make
-    for sender in senders:
-        sender.close()
+    return make
 
 
 @pytest.fixture

@@ -216,6 +216,7 @@ def test_the_action_works_again_after_another_configure(active: Any, send: Any) 
     assert active.switch([], [NAME]).ok
     assert active.configure(NAME)
     assert active.switch([NAME]).ok
+    send.wait_for_server()
     assert send((0.1, HERE)).result() == REACHED
 
 
@@ -233,6 +234,7 @@ node = rclpy.create_node("dying_client")
 action = ActionClient(node, FollowJointTrajectory,
     "/joint_trajectory_controller/follow_joint_trajectory")
 action.wait_for_server()
+threading.Event().wait(0.3)  # until the server knows its client, too
 point = JointTrajectoryPoint(positions=[0.5] * 4, time_from_start=Duration(sec=1))
 goal = FollowJointTrajectory.Goal(
     trajectory=JointTrajectory(joint_names=["j0", "j1", "j2", "j3"], points=[point]))
