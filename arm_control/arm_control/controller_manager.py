@@ -90,6 +90,7 @@ class ControllerManager:
         self.updates = self._supervision.record()
         self.resources = ResourceManager(
             hardware,
+            update_rate_hz,
             self._supervision,
             command_inactive=policy.activate_with_inactive_hardware,
         )
@@ -158,6 +159,8 @@ class ControllerManager:
         finally:
             self._hardware_changed()
         self.read(0.0, 0.0)
+        for component in self.resources.components.values():
+            component.restart_cadence()
 
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
         """Walk a component to a state; controllers stop where their interfaces vanish."""
@@ -168,7 +171,7 @@ class ControllerManager:
 
     def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
         """Return every component."""
-        return self.resources.list_components(self.update_rate_hz)
+        return self.resources.list_components()
 
     def component_runs(self) -> tuple[tuple[HardwareComponentStatus, RunRecord, RunRecord], ...]:
         """Return every component with the records of its reads and its writes."""

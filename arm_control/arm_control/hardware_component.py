@@ -1,12 +1,16 @@
 """One hardware component in the manager's care: its driver and its life cycle."""
 
+import logging
 from collections.abc import Callable
 
+from arm_control.cadence import Cadence, possible_rate_hz
 from arm_control.guarded import failure_of
 from arm_control.hardware import Hardware, HardwareReturn
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.run_record import RunRecord
 from arm_control.run_supervision import RunSupervision
+
+logger = logging.getLogger(__name__)
 
 
 class HardwareComponent:
@@ -14,17 +18,33 @@ class HardwareComponent:
 
     Attributes:
         hardware: the driver.
+        rate_hz: how often it is really read and written.
         state: of its life cycle.
         reads: its latest reads, in the manager's time.
         writes: its latest writes, in the manager's time.
     """
 
-    def __init__(self, hardware: Hardware, supervision: RunSupervision | None = None) -> None:
+    def __init__(
+        self, hardware: Hardware, cycle_rate_hz: int, supervision: RunSupervision | None = None
+    ) -> None:
+        """Take over a driver, still unconfigured.
+
+        Args:
+            hardware: the driver.
+            cycle_rate_hz: cycles per second; of these its own rate picks some.
+            supervision: of its reads and writes.
+        """
         self.hardware = hardware
         self.state = LifecycleState.UNCONFIGURED
         supervision = supervision or RunSupervision()
         self.reads = supervision.record()
         self.writes = supervision.record()
+        owner, info = f"hardware component '{self.name}'", hardware.info
+        self.rate_hz = possible_rate_hz(owner, info.read_write_rate_hz, cycle_rate_hz)
+        self._reading = Cadence(self.rate_hz, cycle_rate_hz)
+        self._writing = Cadence(self.rate_hz, cycle_rate_hz)
+        if info.is_async:
+            logger.warning("%s has is_async set; it has no thread of its own here", owner)
         self._now_s = supervision.now_s
         self._on_exception = supervision.on_exception
 
@@ -51,9 +71,14 @@ class HardwareComponent:
             if reason:
                 return reason
             self.state = step.goal
-            self.reads.clear()
-            self.writes.clear()
+            self.restart_cadence()
         return ""
+
+    def restart_cadence(self) -> None:
+        """Let the next read and the next write be the first."""
+        for cadence, runs in ((self._reading, self.reads), (self._writing, self.writes)):
+            cadence.restart()
+            runs.clear()
 
     def fail(self) -> None:
         """Take the component down after an error: unconfigured, or finalized if it cannot."""
@@ -63,12 +88,18 @@ class HardwareComponent:
         self.state = LifecycleState.FINALIZED if reason else LifecycleState.UNCONFIGURED
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Read the states; whatever the driver raises is an error of the component."""
-        return self._exchange(self.hardware.read, self.reads, time_s, period_s)
+        """Read the states if it is time; whatever the driver raises is the component's error."""
+        due_s = self._reading.due_period_s(time_s, period_s)
+        if due_s is None:
+            return HardwareReturn.OK
+        return self._exchange(self.hardware.read, self.reads, time_s, due_s)
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Write the commands; whatever the driver raises is an error of the component."""
-        return self._exchange(self.hardware.write, self.writes, time_s, period_s)
+        """Write the commands if it is time; whatever the driver raises is the component's error."""
+        due_s = self._writing.due_period_s(time_s, period_s)
+        if due_s is None:
+            return HardwareReturn.OK
+        return self._exchange(self.hardware.write, self.writes, time_s, due_s)
 
     def _exchange(
         self,

@@ -79,6 +79,8 @@ class HardwareInfo:
         gpios: in document order.
         parameters: the `<param>`s of `<hardware>`, as text.
         group: components of one group are configured, then activated, together; empty for none.
+        read_write_rate_hz: how often to read and write it; 0 for the manager's rate.
+        is_async: whether it wants a thread of its own.
         line: where the block starts in the description.
     """
 
@@ -90,6 +92,8 @@ class HardwareInfo:
     gpios: tuple[JointInfo, ...] = ()
     parameters: Mapping[str, str] = field(default_factory=dict)
     group: str = ""
+    read_write_rate_hz: int = 0
+    is_async: bool = False
     line: int = 0
 
     @property
@@ -181,8 +185,20 @@ def _parse_component(element: "etree._Element", mimics: Mapping[str, MimicInfo])
         gpios=_parse_parts(element, "gpio", where),
         parameters=_parse_parameters(hardware, where),
         group=(hardware.findtext("group") or "").strip(),
+        read_write_rate_hz=_parse_rate(element, where),
+        is_async=element.get("is_async", "false").strip().lower() == "true",
         line=element.sourceline or 0,
     )
+
+
+def _parse_rate(element: "etree._Element", where: str) -> int:
+    text = element.get("rw_rate", "0").strip()
+    if not text.isdecimal():
+        raise HardwareInfoError(
+            f"line {element.sourceline}: rw_rate of {where} is '{text}'; it must be a whole number "
+            "of Hz, or 0 for the controller manager's rate"
+        )
+    return int(text)
 
 
 def _parse_parts(

@@ -4,6 +4,7 @@ import logging
 from math import nan
 from typing import Any
 
+from arm_control.cadence import Cadence, possible_rate_hz
 from arm_control.chainable_controller import ChainableController
 from arm_control.controller import Controller, ReturnType
 from arm_control.guarded import failure_of
@@ -43,9 +44,7 @@ class ManagedController:
         self.commands: tuple[str, ...] = ()
         self.states: tuple[str, ...] = ()
         self._manager_rate_hz = manager_rate_hz
-        self._own_period_s = 0.0
-        self._last_update_s: float | None = None
-        self.update_rate_hz = manager_rate_hz
+        self._cadence = Cadence(manager_rate_hz, manager_rate_hz)
         supervision = supervision or RunSupervision()
         self.runs = supervision.record()
         self._now_s = supervision.now_s
@@ -55,6 +54,11 @@ class ManagedController:
     def name(self) -> str:
         """The controller's name."""
         return self.controller.name
+
+    @property
+    def update_rate_hz(self) -> int:
+        """How often it really runs."""
+        return self._cadence.rate_hz
 
     @property
     def is_active(self) -> bool:
@@ -82,27 +86,9 @@ class ManagedController:
 
     def set_update_rate(self, requested_hz: int) -> None:
         """Choose the rate nearest to the one asked for that divides the manager's; 0 = that."""
-        rate_hz = self._manager_rate_hz
-        if requested_hz > rate_hz:
-            logger.warning(
-                "controller '%s' asks for %d Hz; it runs at the controller manager's %d Hz",
-                self.name,
-                requested_hz,
-                rate_hz,
-            )
-        elif 0 < requested_hz < rate_hz:
-            rate_hz = rate_hz // round(rate_hz / requested_hz)
-            if rate_hz != requested_hz:
-                logger.warning(
-                    "controller '%s' asks for %d Hz, which does not divide the controller "
-                    "manager's %d Hz; it runs at %d Hz",
-                    self.name,
-                    requested_hz,
-                    self._manager_rate_hz,
-                    rate_hz,
-                )
-        self.update_rate_hz = rate_hz
-        self._own_period_s = 1.0 / rate_hz if rate_hz < self._manager_rate_hz else 0.0
+        manager_rate_hz = self._manager_rate_hz
+        rate_hz = possible_rate_hz(f"controller '{self.name}'", requested_hz, manager_rate_hz)
+        self._cadence = Cadence(rate_hz, manager_rate_hz)
 
     def resolve_interfaces(self, resources: ResourceManager) -> None:
         """Ask the controller what it wants, and look up what that means now."""
@@ -124,18 +110,17 @@ class ManagedController:
 
     def restart_cadence(self) -> None:
         """Let the next cycle be the first: it runs at once, with the nominal period."""
-        self._last_update_s = None
+        self._cadence.restart()
         self.runs.clear()
 
     def run(self, time_s: float, period_s: float) -> bool:
         """Update the controller if its cycle has come; return False where that failed."""
-        if self._own_period_s:
-            period_s = self._due_period_s(time_s, period_s)
-            if period_s <= 0.0:
-                return True
+        due_s = self._cadence.due_period_s(time_s, period_s)
+        if due_s is None:
+            return True
         began_s = self._now_s()
         try:
-            outcome = self.controller.update(time_s, period_s)
+            outcome = self.controller.update(time_s, due_s)
         except Exception as error:
             # A controller is outside code; as a rule the manager deactivates it and goes on.
             self._on_exception(f"controller '{self.name}' raised in its update", error)
@@ -170,16 +155,3 @@ class ManagedController:
         configured = self.state in (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
         controller = self.controller
         return controller if configured and isinstance(controller, ChainableController) else None
-
-    def _due_period_s(self, time_s: float, tick_s: float) -> float:
-        """Return the period to update with, 0 where a later tick is nearer to the own period."""
-        last_s = self._last_update_s
-        if last_s is None or time_s < last_s:
-            elapsed_s = self._own_period_s
-        else:
-            elapsed_s = time_s - last_s
-            error_s = abs(elapsed_s - self._own_period_s)
-            if error_s > abs(elapsed_s + tick_s - self._own_period_s):
-                return 0.0
-        self._last_update_s = time_s
-        return elapsed_s

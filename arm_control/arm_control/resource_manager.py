@@ -33,6 +33,7 @@ class ResourceManager:
     def __init__(
         self,
         hardware: Sequence[Hardware],
+        cycle_rate_hz: int,
         supervision: RunSupervision | None = None,
         *,
         command_inactive: bool = False,
@@ -41,6 +42,7 @@ class ResourceManager:
 
         Args:
             hardware: the drivers.
+            cycle_rate_hz: how often `read` and `write` are called.
             supervision: of their reads and writes.
             command_inactive: whether components that are only configured may be commanded, too.
 
@@ -51,7 +53,7 @@ class ResourceManager:
         self._state_owner: dict[str, HardwareComponent] = {}
         self._command_owner: dict[str, HardwareComponent] = {}
         for driver in hardware:
-            self._add(HardwareComponent(driver, supervision))
+            self._add(HardwareComponent(driver, cycle_rate_hz, supervision))
         self.states = np.full(len(self._state_owner), np.nan)
         self.commands = np.full(len(self._command_owner), np.nan)
         self._read_only_states = self.states.view()
@@ -146,7 +148,7 @@ class ResourceManager:
         return ""
 
     def read(self, time_s: float, period_s: float) -> list[Trouble]:
-        """Read every configured component; return those that had trouble."""
+        """Read every configured component that is due; return those that had trouble."""
         trouble: list[Trouble] = []
         for component in self._reading:
             outcome = component.read(time_s, period_s)
@@ -155,7 +157,7 @@ class ResourceManager:
         return trouble
 
     def write(self, time_s: float, period_s: float) -> list[Trouble]:
-        """Write every active component; return those that had trouble."""
+        """Write every active component that is due; return those that had trouble."""
         trouble: list[Trouble] = []
         for component in self._writing:
             outcome = component.write(time_s, period_s)
@@ -194,15 +196,16 @@ class ResourceManager:
             tuple(map(self._state_status, sorted((*self._state_owner, *exported.states())))),
         )
 
-    def list_components(self, rate_hz: int) -> tuple[HardwareComponentStatus, ...]:
-        """Return every component, read and written at this rate."""
+    def list_components(self) -> tuple[HardwareComponentStatus, ...]:
+        """Return every component."""
         return tuple(
             HardwareComponentStatus(
                 name=component.name,
                 type=component.hardware.info.type,
                 plugin=component.hardware.info.plugin,
                 state=component.state,
-                read_write_rate_hz=rate_hz,
+                read_write_rate_hz=component.rate_hz,
+                is_async=component.hardware.info.is_async,
                 command_interfaces=tuple(
                     map(self._command_status, component.hardware.command_interfaces)
                 ),

@@ -189,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
         "--switch-asap",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="passed on to the controller manager",
+        help="passed on to the controller manager; this one always switches between two cycles",
     )
     _add_controller_options(parser)
     return parser

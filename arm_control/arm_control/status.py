@@ -22,13 +22,25 @@ class InterfaceStatus:
 
 @dataclass(frozen=True, slots=True)
 class HardwareComponentStatus:
-    """A hardware component and its interfaces."""
+    """A hardware component and its interfaces.
+
+    Attributes:
+        name: of the component.
+        type: 'system', 'actuator' or 'sensor'.
+        plugin: the driver's type string.
+        state: of its life cycle.
+        read_write_rate_hz: how often it is really read and written.
+        is_async: whether the description asks for a thread of its own.
+        command_interfaces: in the driver's order.
+        state_interfaces: in the driver's order.
+    """
 
     name: str
     type: str
     plugin: str
     state: LifecycleState
     read_write_rate_hz: int
+    is_async: bool
     command_interfaces: tuple[InterfaceStatus, ...]
     state_interfaces: tuple[InterfaceStatus, ...]
 

@@ -26,7 +26,7 @@ class Plant:
     def __init__(self, kind: str, *limits: JointLimits, states: tuple[str, ...] = KINDS[:2]):
         joints = [f"j{i}" for i in range(len(limits))]
         hardware = fake_hardware(joints, command_interfaces=[kind], state_interfaces=states)
-        self.resources = ResourceManager([hardware])
+        self.resources = ResourceManager([hardware], 100)
         self.limiter = CommandLimiter(dict(zip(joints, limits, strict=True)), self.resources)
         self.names = [f"{joint}/{kind}" for joint in joints]
         self.limiter.claimed(self.names)

@@ -140,3 +140,30 @@ def test_a_mimic_that_is_no_number_is_named_with_its_line() -> None:
         parse_hardware_info(
             "<robot>\n<joint name='b'><mimic joint='a' multiplier='x'/></joint></robot>"
         )
+
+
+def with_attributes(attributes: str) -> HardwareInfo:
+    text = block().replace("type='system'", f"type='system' {attributes}")
+    (info,) = parse_hardware_info(robot(text))
+    return info
+
+
+@pytest.mark.parametrize(
+    ("attributes", "rate_hz", "is_async"),
+    [
+        ("", 0, False),
+        ("rw_rate='50' is_async='true'", 50, True),
+        ("rw_rate='0' is_async='False'", 0, False),
+    ],
+)
+def test_a_component_may_ask_for_a_rate_and_a_thread(
+    attributes: str, rate_hz: int, is_async: bool
+) -> None:
+    info = with_attributes(attributes)
+    assert (info.read_write_rate_hz, info.is_async) == (rate_hz, is_async)
+
+
+@pytest.mark.parametrize("text", ["-1", "2.5", "fast", ""])
+def test_a_rate_is_a_whole_number(text: str) -> None:
+    with pytest.raises(HardwareInfoError, match=rf"rw_rate of .*'H'> is '{text}'; it must be a wh"):
+        with_attributes(f"rw_rate='{text}'")

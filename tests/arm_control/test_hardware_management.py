@@ -8,6 +8,7 @@ import pytest
 
 from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
 from arm_control.hardware import HardwareReturn
+from arm_control.hardware_info import HardwareInfo
 from arm_control.manager_policy import ManagerPolicy
 from arm_control.testing import FakeHardware, fake_hardware
 
@@ -169,3 +170,71 @@ def test_two_components_of_one_name_are_refused() -> None:
 def test_two_components_with_the_same_interface_are_refused() -> None:
     with pytest.raises(ControllerManagerError, match=r"'j0/position' belongs to .*'FakeSystem'"):
         ControllerManager([fake_hardware(), fake_hardware(("j0",), name="B")], 100)
+
+
+class Visited(FakeHardware):
+    """Fake hardware that notes when it is read and written, and with which period."""
+
+    def __init__(self, info: HardwareInfo) -> None:
+        super().__init__(info)
+        self.visits: list[tuple[str, float, float]] = []
+
+    def read(self, time_s: float, period_s: float) -> HardwareReturn:
+        self.visits.append(("read", time_s, period_s))
+        return super().read(time_s, period_s)
+
+    def write(self, time_s: float, period_s: float) -> HardwareReturn:
+        self.visits.append(("write", time_s, period_s))
+        return super().write(time_s, period_s)
+
+
+def visited(rate_hz: int, **changes: Any) -> tuple[ControllerManager, Visited]:
+    info = dataclasses.replace(fake_hardware().info, read_write_rate_hz=rate_hz, **changes)
+    hardware = Visited(info)
+    manager = ControllerManager([hardware], 100)
+    manager.bring_up()
+    hardware.visits.clear()
+    return manager, hardware
+
+
+def test_a_component_is_read_and_written_at_its_own_rate() -> None:
+    manager, hardware = visited(25)
+    # A clock that does not begin at zero: the first cycle is one of its own all the same.
+    for cycle in range(100, 110):
+        manager.read(cycle / 100, 0.01)
+        manager.write(cycle / 100, 0.01)
+    for exchange in ("read", "write"):
+        visits = [(t, p) for name, t, p in hardware.visits if name == exchange]
+        assert [t for t, _ in visits] == pytest.approx([1.0, 1.04, 1.08])
+        assert [p for _, p in visits] == pytest.approx([0.04] * 3)
+    (component,) = manager.list_hardware_components()
+    assert component.read_write_rate_hz == 25
+
+
+@pytest.mark.parametrize(
+    ("asked", "given", "says"),
+    [
+        (0, 100, ""),
+        (30, 33, "hardware component 'FakeSystem' asks for 30 Hz, which does not divide"),
+        (500, 100, "asks for 500 Hz; it runs at the controller manager's 100 Hz"),
+    ],
+)
+def test_the_rate_shown_is_the_one_that_it_runs_at(
+    asked: int, given: int, says: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    manager, _ = visited(asked)
+    (component,) = manager.list_hardware_components()
+    assert component.read_write_rate_hz == given
+    assert says in caplog.text
+    assert bool(says) is bool(caplog.records)
+
+
+def test_a_component_that_wants_a_thread_is_told_that_it_has_none(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    manager, hardware = visited(0, is_async=True)
+    (component,) = manager.list_hardware_components()
+    assert component.is_async
+    assert "'FakeSystem' has is_async set; it has no thread of its own here" in caplog.text
+    manager.read(0.0, 0.01)
+    assert [name for name, _, _ in hardware.visits] == ["read"]

@@ -21,7 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group = parser.add_mutually_exclusive_group()
     group.add_argument("--strict", action="store_true", help="all or nothing")
     group.add_argument("--best-effort", action="store_true", help="as many as possible")
-    parser.add_argument("--activate-asap", action="store_true", help="do not wait for hardware")
+    parser.add_argument(
+        "--activate-asap", action="store_true", help="passed on to the controller manager"
+    )
     parser.add_argument("--switch-timeout", type=positive_number, default=5.0, metavar="SECONDS")
     add_manager_arguments(parser)
 

@@ -66,6 +66,7 @@ def component_message(status: HardwareComponentStatus) -> HardwareComponentState
         name=status.name,
         type=status.type,
         rw_rate=status.read_write_rate_hz,
+        is_async=status.is_async,
         plugin_name=status.plugin,
         state=state_message(status.state),
         command_interfaces=[interface_message(i) for i in status.command_interfaces],

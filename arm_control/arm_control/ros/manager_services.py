@@ -127,6 +127,8 @@ class ManagerServices:
             response.ok = False
             response.message = f"unknown strictness {request.strictness}; it is 1, 2, 3 or 4"
             return response
+        # activate_asap has no say: a switch is done between two cycles, all of it, and that is
+        # both as soon as possible and without a controller half way.
         result = self._plane.switch_controller(
             SwitchRequest(
                 tuple(request.activate_controllers),

@@ -29,7 +29,7 @@ ARM = f"<ros2_control name='Arm' type='system'>{MOCK}{''.join(map(JOINT.format, 
 ARM += "</ros2_control>"
 LIFT = f"<ros2_control name='Lift' type='actuator'>{MOCK}{JOINT.format('lift')}</ros2_control>"
 SCALE = (
-    f"<ros2_control name='Scale' type='sensor'>{MOCK}"
+    f"<ros2_control name='Scale' type='sensor' rw_rate='50' is_async='true'>{MOCK}"
     "<sensor name='scale'><state_interface name='weight'/></sensor></ros2_control>"
 )
 
@@ -239,12 +239,12 @@ def test_its_loop_runs_at_the_priority_asked_for(manager: Any, control: Any) -> 
 
 def test_components_start_as_they_are_told_to(component: Any) -> None:
     assert [
-        (c.name, c.type, c.state.label, c.plugin_name, c.rw_rate)
+        (c.name, c.type, c.state.label, c.plugin_name, c.rw_rate, c.is_async)
         for c in map(component, ("Arm", "Lift", "Scale"))
     ] == [
-        ("Arm", "system", "active", "mock_components/GenericSystem", 100),
-        ("Lift", "actuator", "unconfigured", "mock_components/GenericSystem", 100),
-        ("Scale", "sensor", "active", "mock_components/GenericSystem", 100),
+        ("Arm", "system", "active", "mock_components/GenericSystem", 100, False),
+        ("Lift", "actuator", "unconfigured", "mock_components/GenericSystem", 100, False),
+        ("Scale", "sensor", "active", "mock_components/GenericSystem", 50, True),
     ]
     assert [i.name for i in component("Arm").command_interfaces] == ["j0/position", "j1/position"]
     assert [i.is_available for i in component("Lift").state_interfaces] == [False, False]
