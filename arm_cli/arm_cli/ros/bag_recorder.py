@@ -18,7 +18,7 @@ from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.names import this_domain
 from arm_cli.ros.bag_qos import RECORDING_DEPTH, offered_qos, recording_profile
 from arm_cli.ros.graph import Graph
-from arm_cli.ros.polled_subscriptions import PolledSubscriptions
+from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_cli.ros.session import PATIENCE_S, Session
 from launch_py.near_names import describe_known
 

@@ -1,0 +1,1 @@
+"""The page: robots, cameras, sliders and plots in a browser; an ordinary ROS node."""

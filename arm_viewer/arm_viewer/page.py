@@ -1,0 +1,68 @@
+"""The page: its parts, where they stand, and the thread that keeps them up to date."""
+
+import logging
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from viser import ViserServer
+
+from arm_viewer.page_look import apply_look
+from arm_viewer.panels.panel import Panel
+from arm_viewer.panels.robot_panel import RobotPanel
+from arm_viewer.requests import Send
+from arm_viewer.snapshot import Snapshot
+
+TICK_S = 1.0 / 30.0
+
+
+@contextmanager
+def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send) -> Iterator[None]:
+    """Fill the page, and keep it up to date in a thread of its own until the end.
+
+    Args:
+        server: serves the page.
+        latest: gives the newest snapshot.
+        send: takes what the user wants.
+    """
+    panels = _build(server, send)
+    ended = threading.Event()
+    thread = threading.Thread(
+        target=_update, args=(server, panels, latest, ended), name="page", daemon=True
+    )
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
+    apply_look(server)
+    places: dict[str, tuple[Panel, ...]] = {
+        "Robot": (RobotPanel(server.scene),),
+    }
+    tabs = server.gui.add_tab_group()
+    for title, panels in places.items():
+        with tabs.add_tab(title):
+            for panel in panels:
+                panel.build(server.gui)
+    return tuple(panel for panels in places.values() for panel in panels)
+
+
+def _update(
+    server: ViserServer,
+    panels: Sequence[Panel],
+    latest: Callable[[], Snapshot],
+    ended: threading.Event,
+) -> None:
+    while not ended.wait(TICK_S):
+        snapshot = latest()
+        for panel in panels:
+            try:
+                with server.atomic():
+                    panel.update(snapshot)
+            except Exception:
+                # The thread's last frame: one part that fails must not stop the others.
+                logging.getLogger(__name__).exception("%s failed", type(panel).__name__)
