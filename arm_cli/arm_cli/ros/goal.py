@@ -4,6 +4,7 @@ from typing import Any
 
 from action_msgs.msg import GoalStatus
 from rclpy.action.client import ActionClient, ClientGoalHandle
+from rclpy.task import Future
 
 from arm_cli.errors import StoppedError, UnansweredError
 from arm_cli.messages.filling import FilledMessage
@@ -43,27 +44,37 @@ class GoalSender:
         """Send a goal, wait for its result and print both; a signal cancels it.
 
         Raises:
-            UnansweredError: the server does not cancel it.
+            UnansweredError: the server does not answer, or does not cancel it.
             StoppedError: a signal came, and the goal is cancelled.
         """
         goal.stamp(self._session.node.get_clock().now().to_msg())
         print(f"Sending goal:\n     {to_yaml(goal.message)}")
         feedback = _print_feedback if with_feedback else None
-        handle = self._session.result(self._client.send_goal_async(goal.message, feedback))
+        sent = self._client.send_goal_async(goal.message, feedback)
+        try:
+            self._follow(sent)
+        except StoppedError:
+            self._cancel(sent)
+            raise
+
+    def _follow(self, sent: Future) -> None:
+        handle: ClientGoalHandle = self._session.result(sent)
         if not handle.accepted:
             print("Goal was rejected.")
             return
         print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
-        try:
-            answer = self._session.result(handle.get_result_async())
-        except StoppedError:
-            self._cancel(handle)
-            raise
+        answer = self._session.result(handle.get_result_async())
         print(f"Result:\n    {to_yaml(answer.result)}")
         print(f"Goal finished with status: {_STATUS_NAMES.get(answer.status, 'UNKNOWN')}")
 
-    def _cancel(self, handle: ClientGoalHandle) -> None:
+    def _cancel(self, sent: Future) -> None:
+        # A server may have started it though its answer is still on its way.
         self._session.go_on()
+        handle: ClientGoalHandle | None = self._session.result(sent, CANCEL_TIMEOUT_S)
+        if handle is None:
+            raise UnansweredError(f"{self.name} did not answer; if it took the goal, that goes on")
+        if not handle.accepted:
+            return
         print("Canceling goal...")
         answer = self._session.result(handle.cancel_goal_async(), CANCEL_TIMEOUT_S)
         if answer is None or not answer.goals_canceling:

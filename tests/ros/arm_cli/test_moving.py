@@ -2,6 +2,7 @@
 
 import re
 import signal
+import threading
 
 import pytest
 from sensor_msgs.msg import JointState
