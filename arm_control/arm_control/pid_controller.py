@@ -14,7 +14,7 @@ from arm_control.interface_configuration import InterfaceConfiguration
 from arm_control.joint_trajectory.angles import shortest_way
 from arm_control.joint_trajectory.pid import Pid
 from arm_control.parameters import ParameterSpec
-from arm_control.pid_controller_parameters import PidControllerParameters
+from arm_control.pid_controller_parameters import DofGains, PidControllerParameters
 
 STATE_FIELDS = (
     "reference",
@@ -155,11 +155,17 @@ class PidController(ChainableController[PidControllerParameters]):
         return reason
 
     def on_activate(self) -> None:
-        """Begin anew: no reference, no integral."""
+        """Begin anew, where the states are, or with no reference."""
+        parameters = self.parameters
         self._offered.clear()
+        if (
+            parameters.set_current_state_as_first_setpoint
+            and not parameters.use_external_measured_states
+        ):
+            self.references[:] = self.states.read()
         self._measured = np.full(self._shape, np.nan)
         self._last_error = np.full(self._shape[1], np.nan)
-        self._pid = Pid([gains.as_pid_gains() for gains in self._gains])
+        self._pid.reset(np.array([gains.save_i_term for gains in self._gains], dtype=np.bool_))
 
     def on_set_chained_mode(self, is_chained: bool) -> None:
         """Drop what was offered meanwhile: it is of another time."""
@@ -227,7 +233,7 @@ class PidController(ChainableController[PidControllerParameters]):
         self._shape = (len(parameters.reference_and_state_interfaces), count)
         self._state = np.zeros((count, len(STATE_FIELDS)))
         self._last_error = np.full(count, np.nan)
-        self._pid = Pid([])
+        self._pid = Pid([DofGains().as_pid_gains()] * count)
         self._take_gains(parameters)
 
     def _take_gains(self, parameters: PidControllerParameters) -> None:

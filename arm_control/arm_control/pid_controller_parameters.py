@@ -21,6 +21,9 @@ class DofGains:
     u_clamp_min: float = parameter(-inf, "Lower bound of the output")
     i_clamp_max: float = parameter(inf, "Upper bound of the integral's part")
     i_clamp_min: float = parameter(-inf, "Lower bound of the integral's part")
+    antiwindup: bool = parameter(
+        False, "With the strategy legacy: clamp the integral itself, not only its part (deprecated)"
+    )
     antiwindup_strategy: str = parameter(
         "legacy",
         "What keeps the integral from running away",
@@ -28,9 +31,10 @@ class DofGains:
         one_of=tuple(strategy.value for strategy in AntiWindup),
     )
     tracking_time_constant: float = parameter(0.0, "Of back_calculation, in s; 0 derives it")
-    error_deadband: float = parameter(0.0, "An error up to this is not integrated")
+    error_deadband: float = parameter(1e-16, "An error up to this is not integrated")
     feedforward_gain: float = parameter(0.0, "Of the reference, or of its derivative if there is")
     angle_wraparound: bool = parameter(False, "The error goes the short way round a full turn")
+    save_i_term: bool = parameter(True, "Keep the integral from one activation to the next")
 
     def as_pid_gains(self) -> PidGains:
         """Return the gains as the PID controller takes them."""
@@ -43,6 +47,7 @@ class DofGains:
             u_max=self.u_clamp_max,
             u_min=self.u_clamp_min,
             anti_windup=AntiWindup(self.antiwindup_strategy),
+            clamps_integral=self.antiwindup,
             tracking_time_constant=self.tracking_time_constant,
             error_deadband=self.error_deadband,
         )
@@ -59,6 +64,9 @@ class CommonPidParameters:
     command_interface: str = parameter("", "Command interface of each", read_only=True)
     reference_and_state_interfaces: tuple[str, ...] = parameter(
         (), "Interface to control, and optionally its derivative", read_only=True
+    )
+    set_current_state_as_first_setpoint: bool = parameter(
+        True, "At the activation, make the measured states the references", read_only=True
     )
     use_external_measured_states: bool = parameter(
         False, "Take the states from ~/measured_state instead of state interfaces", read_only=True

@@ -87,7 +87,7 @@ def bench() -> PidBench:
 
 @pytest.fixture
 def running(bench: PidBench) -> PidBench:
-    bench.configure()
+    bench.configure(set_current_state_as_first_setpoint=False)
     bench.activate()
     bench.measure([0.0, 0.0])
     return bench
@@ -140,17 +140,51 @@ def test_references_that_make_no_sense_are_refused(
     assert np.isnan(running.tick()).all()
 
 
-def test_the_integral_grows_and_is_forgotten_at_the_next_start(bench: PidBench) -> None:
-    bench.configure(**{"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j1.p": 0.0})
+def test_it_holds_what_it_finds_at_its_activation(bench: PidBench) -> None:
+    bench.configure()
+    bench.measure([0.5, -0.5])
+    bench.activate()
+    assert bench.pid.references.tolist() == [0.5, -0.5]
+    assert bench.tick() == [0.0, 0.0]
+    bench.measure([0.4, -0.5])
+    assert bench.tick() == pytest.approx([1.0, 0.0])
+
+
+@pytest.mark.parametrize(("saved", "then"), [(True, 1.02), (False, 0.02)])
+def test_the_integral_grows_and_may_outlast_a_deactivation(
+    bench: PidBench, saved: bool, then: float
+) -> None:
+    gains = {"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j1.p": 0.0, "gains.j1.i": 2.0}
+    bench.configure(**gains, **{"gains.j0.save_i_term": saved, "gains.j1.save_i_term": False})
     bench.activate()
     bench.measure([0.0, 0.0])
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick(50) == pytest.approx([1.0, 0.0])
+    assert bench.tick(50) == pytest.approx([1.0, 1.0])
     bench.manager.switch_controller(SwitchRequest((), ("pid",)))
     assert bench.hardware.commands.tolist() == [0.0, 0.0]
     bench.activate()
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick() == pytest.approx([0.02, 0.0])
+    assert bench.tick() == pytest.approx([then, 0.02])
+    bench.manager.switch_controller(SwitchRequest((), ("pid",)))
+    bench.configure(**gains)
+    bench.activate()
+    bench.pid.offer([], [1.0, 1.0])
+    assert bench.tick() == pytest.approx([0.02, 0.02])
+
+
+@pytest.mark.parametrize(("antiwindup", "held"), [(True, 0.48), (False, 0.5)])
+def test_the_integral_itself_can_be_clamped(bench: PidBench, antiwindup: bool, held: float) -> None:
+    bench.configure(
+        **{"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j0.i_clamp_max": 0.5},
+        **{"gains.j0.antiwindup": antiwindup, "gains.j1.p": 0.0},
+    )
+    bench.activate()
+    bench.measure([0.0, 0.0])
+    bench.pid.offer([], [1.0, 0.0])
+    assert bench.tick(50) == pytest.approx([0.5, 0.0])
+    # What had been wound up beyond the bound has to be unwound first.
+    bench.pid.offer([], [-1.0, 0.0])
+    assert bench.tick() == pytest.approx([held, 0.0])
 
 
 def test_one_interface_is_differentiated(bench: PidBench) -> None:

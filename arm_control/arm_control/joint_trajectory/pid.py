@@ -13,9 +13,9 @@ Array = NDArray[np.float64]
 class AntiWindup(Enum):
     """What keeps the integral from running away; the value is that of the parameter.
 
-    LEGACY lets it grow, but clamps what it contributes. CONDITIONAL_INTEGRATION stops it while
-    the output is saturated and the error would drive it further. BACK_CALCULATION lets the
-    saturation pull it back. NONE does nothing.
+    LEGACY clamps what it contributes, and lets it grow unless told otherwise.
+    CONDITIONAL_INTEGRATION stops it while the output is saturated and the error would drive it
+    further. BACK_CALCULATION lets the saturation pull it back. NONE does nothing.
     """
 
     LEGACY = "legacy"
@@ -37,6 +37,7 @@ class PidGains:
         u_max: greatest output.
         u_min: least output.
         anti_windup: what keeps the integral from running away.
+        clamps_integral: whether LEGACY clamps the integral itself, too.
         tracking_time_constant: of BACK_CALCULATION [s]; 0 derives it from the gains.
         error_deadband: an error up to this is not integrated.
     """
@@ -49,6 +50,7 @@ class PidGains:
     u_max: float = np.inf
     u_min: float = -np.inf
     anti_windup: AntiWindup = AntiWindup.LEGACY
+    clamps_integral: bool = False
     tracking_time_constant: float = 0.0
     error_deadband: float = 0.0
 
@@ -61,6 +63,14 @@ class Pid:
         self._integral = np.zeros(len(gains))
         self.set_gains(gains)
 
+    def reset(self, kept: NDArray[np.bool_]) -> None:
+        """Begin anew, with the integral of those that keep theirs.
+
+        Args:
+            kept: shape (n,).
+        """
+        self._integral[~kept] = 0.0
+
     def set_gains(self, gains: Sequence[PidGains]) -> None:
         """Take other gains, one for each joint; the integral stays."""
         self._p, self._i, self._d = (_column(gains, name) for name in ("p", "i", "d"))
@@ -69,6 +79,9 @@ class Pid:
         legacy = _uses(gains, AntiWindup.LEGACY)
         self._i_max = np.where(legacy, _column(gains, "i_max"), np.inf)
         self._i_min = np.where(legacy, _column(gains, "i_min"), -np.inf)
+        clamped = np.array([gain.clamps_integral for gain in gains], dtype=np.bool_)
+        self._integral_max = np.where(clamped, self._i_max, np.inf)
+        self._integral_min = np.where(clamped, self._i_min, -np.inf)
         self._conditional = _uses(gains, AntiWindup.CONDITIONAL_INTEGRATION)
         self._back = np.array([_back_gain(gain) for gain in gains])
         self._grows_first = legacy
@@ -90,6 +103,9 @@ class Pid:
         counts = np.abs(error) > self._deadband
         growth = np.where(counts, self._i * period_s * error, 0.0)
         self._integral += growth * self._grows_first
+        self._integral = np.minimum(
+            np.maximum(self._integral, self._integral_min), self._integral_max
+        )
         wanted = output + np.minimum(np.maximum(self._integral, self._i_min), self._i_max)
         output = self._saturated(wanted)
         if not self._all_grow_first:
