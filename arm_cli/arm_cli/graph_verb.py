@@ -4,21 +4,18 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.drawing.digraph import Digraph, Edge, Shape, Vertex
 from arm_cli.drawing.dot import to_dot
 from arm_cli.drawing.mermaid import to_mermaid
 from arm_cli.drawing.picture_file import write_text
-from arm_cli.drawing.svg import to_svg
-from arm_cli.names import is_hidden
 from arm_cli.ros.connection import connect
+from arm_viewer.drawing.node_graph import NodeTopics, node_graph
+from arm_viewer.drawing.svg import to_svg
 
 if TYPE_CHECKING:
-    from arm_cli.ros.graph import Graph, Types
+    from arm_cli.ros.graph import Graph
 
 WRITERS = {"svg": to_svg, "mermaid": to_mermaid, "dot": to_dot}
 SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".md": "mermaid", ".dot": "dot", ".gv": "dot"}
-EVERYWHERE = ("/rosout", "/parameter_events")
-"""Topics of nearly every node, which would be most of the picture."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,28 +48,18 @@ def run(options: argparse.Namespace) -> None:
 
         graph = Graph(session)
         graph.settle()
-        text = write(node_graph(graph, options.all))
+        text = write(node_graph(topics_by_node(graph), options.all))
     if options.output:
         write_text(Path(options.output), f"```mermaid\n{text}```\n" if suffix == ".md" else text)
     else:
         print(text, end="")
 
 
-def node_graph(graph: "Graph", complete: bool) -> Digraph:
-    """Return nodes as ellipses, topics as boxes, and arrows in the direction of the messages."""
-
-    def shown(topics: "Types") -> list[str]:
-        return [t for t in topics if complete or not (is_hidden(t) or t in EVERYWHERE)]
-
-    vertices: dict[str, Vertex] = {}
-    edges: list[Edge] = []
-    for node in dict.fromkeys(graph.nodes(hidden=complete)):
-        name = node.full_name
-        vertices[f"node {name}"] = Vertex(f"node {name}", name)
-        for topic in shown(graph.published_by(node)):
-            edges.append(Edge(f"node {name}", f"topic {topic}"))
-        for topic in shown(graph.subscribed_by(node)):
-            edges.append(Edge(f"topic {topic}", f"node {name}"))
-    for topic in sorted({key for e in edges for key in (e.source, e.target)} - vertices.keys()):
-        vertices[topic] = Vertex(topic, topic.removeprefix("topic "), Shape.BOX)
-    return Digraph(tuple(vertices.values()), tuple(edges))
+def topics_by_node(graph: "Graph") -> list[NodeTopics]:
+    """Return all nodes, hidden ones too; one entry for each name."""
+    return [
+        NodeTopics(
+            node.full_name, tuple(graph.published_by(node)), tuple(graph.subscribed_by(node))
+        )
+        for node in dict.fromkeys(graph.nodes(hidden=True))
+    ]

@@ -7,7 +7,7 @@ from controller_manager_msgs.msg import ChainConnection, ControllerState
 from arm_cli.control import list_controllers
 from arm_cli.control.set_controller_state import _impossible
 from arm_cli.control.view_controller_chains import controller_graph
-from arm_cli.drawing.digraph import Edge
+from arm_viewer.drawing.digraph import Edge
 
 UPPER = ControllerState(
     name="upper",

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from arm_cli.control.manager import add_manager_arguments, ask_manager
-from arm_cli.drawing.digraph import Digraph, Edge, Shape, Vertex
 from arm_cli.drawing.picture_file import write_picture
+from arm_viewer.drawing.digraph import Digraph, Edge, Shape, Vertex
 
 STEM = "controller_diagram"
 STATES, COMMANDS = "state interfaces", "command interfaces"

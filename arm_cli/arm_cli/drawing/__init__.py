@@ -1,1 +1,1 @@
-"""Graphs as SVG, Mermaid, DOT and PDF. Knows nothing of ROS."""
+"""Graphs as Mermaid, DOT and PDF; `arm_viewer.drawing` makes SVG. Knows nothing of ROS."""

@@ -4,7 +4,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from arm_cli.drawing.digraph import Digraph
+from arm_viewer.drawing.digraph import Digraph
 
 
 def to_dot(graph: Digraph, downward: bool = False) -> str:

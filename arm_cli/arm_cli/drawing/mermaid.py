@@ -1,6 +1,6 @@
 """Graphs in Mermaid, which GitHub and many editors draw."""
 
-from arm_cli.drawing.digraph import Digraph, Shape
+from arm_viewer.drawing.digraph import Digraph, Shape
 
 
 def to_mermaid(graph: Digraph) -> str:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from arm_cli.drawing.digraph import Digraph
 from arm_cli.drawing.dot import has_graphviz, render_pdf, to_dot
-from arm_cli.drawing.svg import to_svg
 from arm_cli.errors import UsageError
+from arm_viewer.drawing.digraph import Digraph
+from arm_viewer.drawing.svg import to_svg
 
 
 def write_picture(graph: Digraph, stem: Path, downward: bool = False) -> Path:

@@ -5,11 +5,11 @@ import time
 from pathlib import Path
 
 from arm_cli.command_parser import positive_number
-from arm_cli.drawing.digraph import Digraph, Edge, Vertex
 from arm_cli.drawing.picture_file import write_picture
 from arm_cli.frames.frame_log import FrameHistory, FrameLog
 from arm_cli.ros.connection import connect
 from arm_cli.tf.listening import listen
+from arm_viewer.drawing.digraph import Digraph, Edge, Vertex
 
 LISTEN_S = 5.0
 BROADCASTER = "default_authority"

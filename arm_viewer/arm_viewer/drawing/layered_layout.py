@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from itertools import pairwise
 
-from arm_cli.drawing.digraph import Digraph
+from arm_viewer.drawing.digraph import Digraph
 
 SWEEPS = 4
 

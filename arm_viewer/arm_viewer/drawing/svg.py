@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
-from arm_cli.drawing.digraph import Digraph, Shape, Vertex
-from arm_cli.drawing.layered_layout import Layout, place
+from arm_viewer.drawing.digraph import Digraph, Shape, Vertex
+from arm_viewer.drawing.layered_layout import Layout, place
 
 CHARACTER_WIDTH = 7.2
 LINE_HEIGHT = 16.0
