@@ -27,6 +27,7 @@ HARDWARE_GROUP = "arm_control.hardware"
 _FORWARD = "arm_control.forward_command_controller"
 _GRIPPER = "arm_control.gripper"
 _CONTROLLERS = {
+    "diff_drive_controller/DiffDriveController": "arm_control.diff_drive:DiffDriveController",
     "effort_controllers/GripperActionController": f"{_GRIPPER}:EffortGripperController",
     "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
     "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
