@@ -6,6 +6,7 @@ DescriptionError
 │   └── MimicCycleError      joints that mimic each other in a circle
 ├── XacroError               a xacro file that cannot be expanded
 ├── ResourceNotFoundError    a mesh or another file that a URI names and no folder holds
+├── MeshFileError            a mesh file that cannot be read
 ├── KinematicsError          joint positions that do not fit the robot
 ├── JointStateError          a joint state message that cannot be used
 └── SettingsError            a parameter or an argument of a node that cannot be used
@@ -34,6 +35,10 @@ class XacroError(DescriptionError):
 
 class ResourceNotFoundError(DescriptionError):
     """A URI names no existing file; the message names every folder tried."""
+
+
+class MeshFileError(DescriptionError):
+    """A mesh file that cannot be read, or whose triangles nobody could draw."""
 
 
 class KinematicsError(DescriptionError):

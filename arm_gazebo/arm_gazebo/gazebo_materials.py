@@ -1,6 +1,6 @@
 """The colours of Gazebo's named materials, as far as robots use them."""
 
-from arm_gazebo.mesh_data import Color
+from arm_description.mesh_data import Color
 
 _PREFIX = "Gazebo/"
 _RGB: dict[str, tuple[float, float, float]] = {

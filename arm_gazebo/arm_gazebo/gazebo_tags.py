@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from arm_description.mesh_data import Color
 from arm_description.names import listing
 from arm_description.xml_document import parse_xml
 from arm_gazebo.build_report import BuildReport, Finding
 from arm_gazebo.gazebo_materials import gazebo_color
-from arm_gazebo.mesh_data import Color
 
 SLIPPERIEST = 1e-5
 ROUGHEST = 10.0

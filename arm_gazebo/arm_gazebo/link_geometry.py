@@ -7,13 +7,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.mesh_data import Color
 from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
 from arm_description.transforms import quaternion_from_rpy
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.collision_policy import CollisionMasks, with_self
 from arm_gazebo.errors import MeshError
 from arm_gazebo.gazebo_tags import GazeboTags
-from arm_gazebo.mesh_data import Color
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mesh_part import MeshPart
 

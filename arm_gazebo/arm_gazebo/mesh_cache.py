@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import MeshData
+from arm_description.errors import MeshFileError
+from arm_description.mesh_data import MeshData
 from arm_gazebo.mesh_part import MeshPart
 
 logger = logging.getLogger(__name__)
@@ -24,7 +24,7 @@ LARGEST_BYTES = 1_000_000_000
 """Of all entries; the ones longest unused go first."""
 
 # numpy tells a broken file by whatever it stumbles over first.
-_UNUSABLE = (OSError, ValueError, TypeError, KeyError, EOFError, MeshError, zipfile.BadZipFile)
+_UNUSABLE = (OSError, ValueError, TypeError, KeyError, EOFError, MeshFileError, zipfile.BadZipFile)
 
 
 def cache_folder(environ: Mapping[str, str] = os.environ) -> Path:

@@ -10,23 +10,19 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.errors import ResourceNotFoundError
+from arm_description.errors import MeshFileError, ResourceNotFoundError
+from arm_description.mesh_data import Color, Scale
+from arm_description.mesh_file import check_mesh_file, read_mesh_file
 from arm_description.resources import resolve_uri
 from arm_description.robot import Mesh
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh_cache import MeshCache
-from arm_gazebo.mesh_data import Color, MeshData, Scale
 from arm_gazebo.mesh_part import MeshPart
-from arm_gazebo.scene_file import read_scene
-from arm_gazebo.stl_file import read_stl
 
 T = TypeVar("T")
 
-STL_SUFFIX = ".stl"
-SCENE_SUFFIXES = (".obj", ".dae", ".glb", ".gltf", ".ply", ".off", ".3mf")
 SCATTERED_SUFFIXES = (".gltf",)
 """Formats whose data lie in other files, so that one file's content does not tell all."""
-LARGEST_BYTES = 500_000_000
 MATERIALS = re.compile(rb"^\s*mtllib\s+(\S.*?)\s*$", re.MULTILINE)
 
 
@@ -134,32 +130,20 @@ class MeshLibrary:
         if path not in self._parts:
             try:
                 self._parts[path] = self._read_or_remember(path)
-            except (MeshError, OSError) as error:
+            except (MeshError, MeshFileError, OSError) as error:
                 raise MeshError(f"cannot use the mesh {path}: {error}") from error
         return self._parts[path]
 
     def _read_or_remember(self, path: Path) -> tuple[MeshPart, ...]:
-        _check_file(path)
+        check_mesh_file(path)
         if self._cache is None or path.suffix.lower() in SCATTERED_SUFFIXES:
-            return _usable(_read_parts(path), MeshPart.of)
+            return _usable(read_mesh_file(path), MeshPart.of)
         key = self._cache.key(path.suffix.lower(), _contents(path))
         parts = self._cache.load(key)
         if parts is None:
-            parts = _usable(_read_parts(path), MeshPart.of)
+            parts = _usable(read_mesh_file(path), MeshPart.of)
             self._cache.store(key, parts)
         return parts
-
-
-def _check_file(path: Path) -> None:
-    """Refuse what is no mesh before it is read: devices, folders, files of other kinds."""
-    suffix = path.suffix.lower()
-    if suffix not in (STL_SUFFIX, *SCENE_SUFFIXES):
-        raise MeshError(f"'{suffix}' is not one of {STL_SUFFIX}, {', '.join(SCENE_SUFFIXES)}")
-    if not path.is_file():
-        raise MeshError("it is no file")
-    size = path.stat().st_size
-    if size > LARGEST_BYTES:
-        raise MeshError(f"it has {size} bytes; at most {LARGEST_BYTES} are read")
 
 
 def _contents(path: Path) -> Iterator[bytes]:
@@ -184,9 +168,3 @@ def _usable(parts: Iterable[T], made: Callable[[T], MeshPart]) -> tuple[MeshPart
     if not usable:
         raise problem
     return tuple(usable)
-
-
-def _read_parts(path: Path) -> tuple[MeshData, ...]:
-    if path.suffix.lower() == STL_SUFFIX:
-        return (read_stl(path.read_bytes()),)
-    return read_scene(path)

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.errors import MeshFileError
+from arm_description.mesh_data import MeshData, Scale
 from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import MeshData, Scale
 from arm_gazebo.mesh_simplification import outermost, simplified
 
 FARTHEST_M = 1e3
@@ -36,7 +37,10 @@ class MeshPart:
         Raises:
             MeshError: MuJoCo could not draw it; the message says why.
         """
-        mesh.check()
+        try:
+            mesh.check()
+        except MeshFileError as error:
+            raise MeshError(str(error)) from error
         return cls(simplified(mesh), outermost(mesh.vertices), len(mesh.faces))
 
     def scaled(self, scale: Scale) -> "MeshPart":

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.mesh_data import MeshData
+from arm_description.mesh_data import MeshData
 
 Array = NDArray[np.float64]
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import DescriptionError
+from arm_description.mesh_data import Color
 from arm_description.resources import SCHEMES
 from arm_description.robot import (
     Box,
@@ -27,7 +28,6 @@ from arm_description.robot import (
 )
 from arm_gazebo.gazebo_materials import gazebo_color
 from arm_gazebo.gazebo_tags import GazeboTags, LinkTags
-from arm_gazebo.mesh_data import Color
 from arm_gazebo.sdf_element import SdfElement
 from arm_gazebo.sdf_frames import SdfFrames, pose_of
 

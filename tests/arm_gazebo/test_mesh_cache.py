@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from arm_description.mesh_data import MeshData
 from arm_gazebo import mesh_library
 from arm_gazebo.mesh_cache import MeshCache, cache_folder
-from arm_gazebo.mesh_data import MeshData
 from arm_gazebo.mesh_part import MeshPart
 
 RED = (1.0, 0.0, 0.0, 1.0)
@@ -34,13 +34,13 @@ def ball():
 def reads(monkeypatch):
     """The mesh files that are read and not remembered."""
     files = []
-    read = mesh_library.read_scene
+    read = mesh_library.read_mesh_file
 
     def counting(path):
         files.append(path.name)
         return read(path)
 
-    monkeypatch.setattr(mesh_library, "read_scene", counting)
+    monkeypatch.setattr(mesh_library, "read_mesh_file", counting)
     return files
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from arm_gazebo.mesh_data import MeshData
+from arm_description.mesh_data import MeshData
 from arm_gazebo.mesh_part import MeshPart
 from arm_gazebo.mesh_simplification import HULL_DIRECTIONS, outermost, simplified
 

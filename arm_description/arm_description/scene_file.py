@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import Color, MeshData
+from arm_description.errors import MeshFileError
+from arm_description.mesh_data import Color, MeshData
 
 COLLADA_UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([^\"']+)[\"']")
 COLLADA_HEAD_BYTES = 65536
@@ -17,7 +17,7 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     """Return the parts of a mesh file in m, one for each material.
 
     Raises:
-        MeshError: trimesh cannot read the file, or it holds no triangles.
+        MeshFileError: trimesh cannot read the file, or it holds no triangles.
     """
     # trimesh takes half a second to import; a robot of STL files does without.
     import trimesh
@@ -27,11 +27,11 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh)]
     except Exception as error:
         # Each of trimesh's loaders raises types of its own, for a broken file any of them.
-        raise MeshError(f"{type(error).__name__}: {error}") from error
+        raise MeshFileError(f"{type(error).__name__}: {error}") from error
     unit = _collada_unit(path)
     parts = tuple(_part(mesh, unit) for mesh in meshes if len(mesh.faces))
     if not parts:
-        raise MeshError("no triangles in it")
+        raise MeshFileError("no triangles in it")
     return parts
 
 
@@ -60,7 +60,7 @@ def _collada_unit(path: Path) -> float:
     try:
         unit = float(found.group(1)) if found else 1.0
     except ValueError as error:
-        raise MeshError(f"its <unit> is no number: {error}") from error
+        raise MeshFileError(f"its <unit> is no number: {error}") from error
     if not (np.isfinite(unit) and unit > 0):
-        raise MeshError(f"its <unit> of {unit:g} m is not above 0")
+        raise MeshFileError(f"its <unit> of {unit:g} m is not above 0")
     return unit

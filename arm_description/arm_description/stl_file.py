@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from arm_gazebo.errors import MeshError
-from arm_gazebo.mesh_data import MeshData, merged
+from arm_description.errors import MeshFileError
+from arm_description.mesh_data import MeshData, merged
 
 HEADER_BYTES = 80
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -16,7 +16,7 @@ def read_stl(data: bytes) -> MeshData:
     """Return the mesh of an STL file's bytes.
 
     Raises:
-        MeshError: neither a binary nor a text STL, or one that is cut off.
+        MeshFileError: neither a binary nor a text STL, or one that is cut off.
     """
     start = HEADER_BYTES + 4
     if len(data) >= start:
@@ -26,15 +26,17 @@ def read_stl(data: bytes) -> MeshData:
             triangles = np.frombuffer(data, TRIANGLE, count, start)
             return merged(triangles["vertices"].reshape(-1, 3))
     if not data.lstrip()[:5].lower() == b"solid":
-        raise MeshError("neither a text STL nor a complete binary one")
+        raise MeshFileError("neither a text STL nor a complete binary one")
     return _read_text(data)
 
 
 def _read_text(data: bytes) -> MeshData:
     corners = VERTEX.findall(data)
     if not corners or len(corners) % 3:
-        raise MeshError(f"a text STL with {len(corners)} vertices, which is no number of triangles")
+        raise MeshFileError(
+            f"a text STL with {len(corners)} vertices, which is no number of triangles"
+        )
     try:
         return merged(np.array(corners).astype(np.float32))
     except ValueError as error:
-        raise MeshError(f"a text STL with a coordinate that is no number: {error}") from error
+        raise MeshFileError(f"a text STL with a coordinate that is no number: {error}") from error

@@ -1,11 +1,11 @@
-"""Triangles in memory: what every mesh file becomes before MuJoCo sees it."""
+"""Triangles in memory: what every mesh file becomes."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.errors import MeshError
+from arm_description.errors import MeshFileError
 
 FEWEST_VERTICES = 4
 Color = tuple[float, float, float, float]
@@ -37,18 +37,20 @@ class MeshData:
         return self.vertices.min(axis=0), self.vertices.max(axis=0)
 
     def check(self) -> None:
-        """Raise a MeshError that says why MuJoCo could not draw this mesh."""
+        """Raise a MeshFileError that says why nobody could draw this mesh."""
         if self.vertices.shape[1:] != (3,) or self.faces.shape[1:] != (3,):
-            raise MeshError("a vertex without three coordinates or a face that is no triangle")
+            raise MeshFileError("a vertex without three coordinates or a face that is no triangle")
         if len(self.vertices) < FEWEST_VERTICES or not len(self.faces):
-            raise MeshError(f"only {len(self.vertices)} vertices and {len(self.faces)} triangles")
+            raise MeshFileError(
+                f"only {len(self.vertices)} vertices and {len(self.faces)} triangles"
+            )
         if not np.isfinite(self.vertices).all():
-            raise MeshError("a vertex that is not finite")
+            raise MeshFileError("a vertex that is not finite")
         if self.faces.min() < 0 or self.faces.max() >= len(self.vertices):
-            raise MeshError("a triangle of a vertex that does not exist")
+            raise MeshFileError("a triangle of a vertex that does not exist")
         sides = self.vertices[self.faces[:, 1:]] - self.vertices[self.faces[:, :1]]
         if not np.cross(sides[:, 0], sides[:, 1]).any():
-            raise MeshError("no triangle with an area")
+            raise MeshFileError("no triangle with an area")
 
 
 def merged(vertices: NDArray[np.float32], rgba: Color | None = None) -> MeshData:
