@@ -8,6 +8,7 @@ from rclpy.node import Node
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.requests import Request
+from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.description_observer import DescriptionObserver
 from arm_viewer.ros.joint_state_observer import JointStateObserver
 from arm_viewer.ros.observer import Observer
@@ -34,10 +35,12 @@ class Viewer(Node):
         self._descriptions = DescriptionObserver(self, polled)
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
+        self._controllers = ControllerObserver(self)
         self._observers: tuple[Observer, ...] = (
             self._descriptions,
             self._transforms,
             self._joint_states,
+            self._controllers,
         )
         self._latest = Snapshot()
         self._requests: SimpleQueue[Request] = SimpleQueue()
@@ -68,6 +71,7 @@ class Viewer(Node):
             descriptions=self._descriptions.descriptions,
             transforms=self._transforms.transforms,
             joint_states=self._joint_states.joint_states,
+            controllers=self._controllers.controllers,
         )
 
     def _serve(self) -> None:
