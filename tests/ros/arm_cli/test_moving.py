@@ -118,6 +118,52 @@ def _a_goal_is_cancelled_by_ctrl_c(start):
     assert goal.out.endswith("Goal canceled.\n")
 
 
+@pytest.fixture
+def slow_server(client):
+    """Offer an action that takes its time to accept; return what lets it, and what it was told."""
+    from control_msgs.action import GripperCommand
+    from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
+    from rclpy.task import Future
+
+    told, may_answer, ended = [], threading.Event(), Future()
+
+    def take(_):
+        told.append("goal")
+        assert may_answer.wait(30.0)
+        return GoalResponse.ACCEPT
+
+    def cancel(_):
+        told.append("cancel")
+        ended.set_result(None)
+        return CancelResponse.ACCEPT
+
+    async def carry_out(handle):
+        await ended
+        handle.canceled()
+        return GripperCommand.Result()
+
+    name = "/slow_gripper"
+    server = client.run(
+        lambda: ActionServer(
+            client.node, GripperCommand, name, carry_out, goal_callback=take, cancel_callback=cancel
+        ),
+        name,
+    )
+    yield may_answer, told
+    client.run(server.destroy, name)
+
+
+def test_a_goal_that_is_not_accepted_yet_is_cancelled_too(start, slow_server):
+    may_answer, told = slow_server
+    goal = start("arm action send_goal /slow_gripper control_msgs/action/GripperCommand '{}'")
+    goal.wait_until(lambda: told == ["goal"], "the server has the goal")
+    goal.process.send_signal(signal.SIGINT)
+    may_answer.set()
+    assert goal.wait() == signal.SIGINT
+    assert goal.out.endswith("Canceling goal...\nGoal canceled.\n")
+    assert told == ["goal", "cancel"]
+
+
 @pytest.mark.parametrize(
     ("line", "text"),
     [
