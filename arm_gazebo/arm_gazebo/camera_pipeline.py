@@ -15,6 +15,8 @@ from arm_gazebo.camera_schedule import FrameDue
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.camera_snapshot import CameraSnapshot
 from arm_gazebo.camera_statistics import CameraStatistics
+from arm_gazebo.depth_image import mark_limits
+from arm_gazebo.depth_noise import DepthNoise
 from arm_gazebo.noise_bank import NoiseBank, noise_for
 
 if TYPE_CHECKING:
@@ -27,15 +29,24 @@ BACKLOG = 2
 
 
 class FrameSink(Protocol):
-    """Where one camera's pictures go."""
+    """Where one camera's pictures and distances go."""
 
     def wants_picture(self) -> bool:
-        """Return whether anybody looks at the pictures now."""
+        """Return whether anybody looks at the colours now."""
+        ...
+
+    def wants_depth(self) -> bool:
+        """Return whether anybody looks at the distances now."""
         ...
 
     @property
     def picture(self) -> NDArray[np.uint8]:
         """The (height, width, 3) array to draw into, always the same one."""
+        ...
+
+    @property
+    def depth(self) -> NDArray[np.float32] | None:
+        """The (height, width) array for the distances; None for a camera that has none."""
         ...
 
     def publish_info(self, time_s: float) -> None:
@@ -44,6 +55,10 @@ class FrameSink(Protocol):
 
     def publish_picture(self, time_s: float) -> None:
         """Publish what stands in `picture`, stamped with the time of its state."""
+        ...
+
+    def publish_depth(self, time_s: float) -> None:
+        """Publish what stands in `depth`, likewise."""
         ...
 
 
@@ -80,7 +95,7 @@ class CameraPipeline:
         self._open_renderer = open_renderer
         self._seed = seed
         self._renderer: Renderer | None = None
-        self._noises: dict[int, NoiseBank | None] = {}
+        self._noises: dict[int, NoiseBank | DepthNoise | None] = {}
         self._model: ModelMessage | None = None
         self._scene: Scene | None = None
         self._posed: CameraSnapshot | None = None
@@ -123,27 +138,42 @@ class CameraPipeline:
     def _take_frame(self, snapshot: CameraSnapshot, frame: FrameDue) -> None:
         self.time_s = snapshot.time_s
         sink = self._sinks[frame.camera]
-        wanted = sink.wants_picture()
+        picture = sink.picture if sink.wants_picture() else None
+        depth = sink.depth if sink.wants_depth() else None
+        wanted = picture is not None or depth is not None
         self.statistics[frame.camera].count_due(frame, wanted)
         sink.publish_info(snapshot.time_s)
         if not wanted:
             return
         start_s = time.perf_counter()
-        self._draw(snapshot, frame)
+        self._draw(snapshot, frame, picture, depth)
         self.statistics[frame.camera].count_rendered(time.perf_counter() - start_s)
-        sink.publish_picture(snapshot.time_s)
+        if picture is not None:
+            sink.publish_picture(snapshot.time_s)
+        if depth is not None:
+            sink.publish_depth(snapshot.time_s)
 
-    def _draw(self, snapshot: CameraSnapshot, frame: FrameDue) -> None:
+    def _draw(
+        self,
+        snapshot: CameraSnapshot,
+        frame: FrameDue,
+        picture: NDArray[np.uint8] | None,
+        depth: NDArray[np.float32] | None,
+    ) -> None:
         renderer, scene = self._ready()
         if self._posed is not snapshot:
             scene.pose(snapshot)
             self._posed = snapshot
-        sensor, picture = self._sensors[frame.camera], self._sinks[frame.camera].picture
-        renderer.render(scene.data, sensor, picture)
+        sensor = self._sensors[frame.camera]
+        renderer.render(scene.data, sensor, picture, depth)
         noise = self._noises.get(frame.camera)
         if frame.camera not in self._noises:
             noise = self._noises[frame.camera] = noise_for(sensor, self._seed)
-        if noise is not None:
+        if depth is not None:
+            if isinstance(noise, DepthNoise):
+                noise.add_to(depth, frame.number)
+            mark_limits(depth, sensor)
+        if picture is not None and isinstance(noise, NoiseBank):
             noise.add_to(picture, frame.number)
 
     def _ready(self) -> "tuple[Renderer, Scene]":

@@ -2,12 +2,11 @@
 
 import logging
 import math
-import re
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from arm_gazebo.errors import CameraError
+from arm_gazebo.sensor_tags import TYPES, SensorTags, sensor_elements, sensor_type
 
 logger = logging.getLogger(__name__)
 
@@ -19,8 +18,10 @@ MAX_SIDE = 8192
 """Widest picture, in pixels: what common GL drivers can render into."""
 FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 NOISE_TYPES = ("none", "gaussian", "gaussian_quantized")
-FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
-TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
+NEARER_SHARE = 0.1
+"""Share of the near clip from which on a depth camera draws: what is nearer than the clip hides
+what is behind it, and is told from it."""
 OPTICAL_RPY = (-math.pi / 2, 0.0, -math.pi / 2)
 
 
@@ -38,10 +39,13 @@ class CameraSensor:
         near: nearest visible distance in m.
         far: farthest visible distance in m.
         rate_hz: frames per second of simulation time.
-        noise_mean: mean of the Gaussian noise, as a fraction of the full range.
-        noise_stddev: its standard deviation, as a fraction of the full range; 0 for none.
+        noise_mean: mean of the Gaussian noise: of the picture, as a fraction of the full range;
+            of a camera without picture of the depth, in m.
+        noise_stddev: its standard deviation likewise; 0 for none.
         image_topics: topics of the picture; relative ones are in the node's namespace.
         info_topics: topics of the intrinsics.
+        depth_topics: topics of the distances.
+        points_topics: topics of the cloud of points.
         xyz: position of the camera in its link, in m.
         rpy: orientation of the camera in its link, in rad.
     """
@@ -59,6 +63,8 @@ class CameraSensor:
     noise_stddev: float = 0.0
     image_topics: tuple[str, ...] = ()
     info_topics: tuple[str, ...] = ()
+    depth_topics: tuple[str, ...] = ()
+    points_topics: tuple[str, ...] = ()
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
@@ -72,15 +78,30 @@ class CameraSensor:
         """Vertical field of view in rad; MuJoCo's `fovy` is this in degrees."""
         return 2 * math.atan(self.height / 2 / self.focal_length)
 
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Every topic of the camera."""
+        return (*self.image_topics, *self.depth_topics, *self.points_topics, *self.info_topics)
+
+    @property
+    def measures_depth(self) -> bool:
+        """Whether distances are among what it shows."""
+        return bool(self.depth_topics or self.points_topics)
+
+    @property
+    def nearest_drawn(self) -> float:
+        """From which distance on things are drawn, in m."""
+        return self.near * NEARER_SHARE if self.measures_depth else self.near
+
 
 def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[CameraSensor, ...]:
     """Return the cameras of a URDF, in document order.
 
-    A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`. What a tag leaves
-    out has Gazebo's default.
+    A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
+    `depth_camera` or `rgbd_camera`. What a tag leaves out has Gazebo's default.
 
     Raises:
-        CameraError: a value is nonsense; the message names sensor, element and line.
+        SensorError: a value is nonsense; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
     # The camera process knows sensors too, but parses nothing and shall start quickly.
@@ -90,10 +111,8 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []
     taken: dict[str, str] = {}
-    for link, element in _camera_elements(root):
-        tags = _SensorTags(element, link)
-        if link not in links:
-            raise tags.error("gazebo", f"no link {link!r}; the robot has {', '.join(links)}")
+    for tags in _camera_tags(root):
+        tags.check_reference("link", links)
         if any(camera.name == tags.name for camera in cameras):
             raise tags.error("sensor", "a second camera of this name; each needs a name of its own")
         camera = _read_camera(tags, root, taken)
@@ -102,120 +121,94 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
     return tuple(cameras)
 
 
-def _camera_elements(root: Any) -> Iterator[tuple[str, Any]]:
-    for gazebo in root.findall("gazebo"):
-        for sensor in gazebo.findall("sensor"):
-            if sensor.get("type") == "camera":
-                yield str(gazebo.get("reference", "")), sensor
-            else:
-                logger.warning(
-                    "sensor %r (line %s) has type %r: it is not simulated, only 'camera' is",
-                    sensor.get("name"),
-                    sensor.sourceline,
-                    sensor.get("type"),
-                )
+def _camera_tags(root: Any) -> Iterator[SensorTags]:
+    for link, sensor in sensor_elements(root):
+        kind = sensor_type(sensor)
+        if kind in CAMERA_TYPES:
+            yield SensorTags(sensor, link, "camera")
+        elif kind is None:
+            logger.warning(
+                "sensor %r (line %s) has type %r: it is not simulated, only %s are",
+                *(sensor.get("name"), sensor.sourceline, sensor.get("type")),
+                ", ".join(dict.fromkeys(TYPES.values())),
+            )
 
 
-class _SensorTags:
-    """The tags of one `<sensor>`: typed look-ups whose errors say where they failed."""
+@dataclass(frozen=True, slots=True)
+class _Topics:
+    """Where what a camera shows goes, by its type, as Gazebo's bridge names it."""
 
-    def __init__(self, element: Any, link: str) -> None:
-        self._element = element
-        self.link = link
-        self.name = str(element.get("name") or "").strip()
-        if not self.name:
-            raise self.error("sensor", "a sensor needs a name")
+    image_topics: tuple[str, ...] = ()
+    info_topics: tuple[str, ...] = ()
+    depth_topics: tuple[str, ...] = ()
+    points_topics: tuple[str, ...] = ()
 
-    def error(self, tag: str, problem: str, element: Any = None) -> CameraError:
-        """Return an error about one tag, or attribute, of this sensor."""
-        line = (self._element if element is None else element).sourceline
-        return CameraError(f"camera sensor {self.name!r}, <{tag}> (line {line}): {problem}")
-
-    def texts(self, *tags: str) -> list[tuple[Any, str]]:
-        """Return element and text of every filled tag of these names, also below `<camera>`."""
-        found = (e for tag in tags for e in self._element.xpath(f"./{tag} | ./camera/{tag}"))
-        return [(e, str(e.text or "").strip()) for e in found if str(e.text or "").strip()]
-
-    def number(
-        self, tag: str, default: float, fits: Callable[[float], bool], must_be: str
-    ) -> float:
-        """Return a finite number that fits; `must_be` says in words what fits."""
-        for element, text in self.texts(tag):
-            try:
-                value = float(text)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value) or not fits(value):
-                raise self.error(tag, f"must be {must_be}, not {text!r}", element)
-            return value
-        return default
-
-    def pixels(self, tag: str, default: int) -> int:
-        """Return a whole number of pixels, at least 1."""
-        must_be = f"a whole number from 1 to {MAX_SIDE}"
-        return int(self.number(tag, default, lambda v: v in range(1, MAX_SIDE + 1), must_be))
-
-    def choice(self, tag: str, choices: tuple[str, ...]) -> str:
-        """Return a tag's text, the first choice where it is missing."""
-        for element, text in self.texts(tag):
-            if text not in choices:
-                raise self.error(tag, f"{text!r} is not one of {', '.join(choices)}", element)
-            return text
-        return choices[0]
-
-    def topics(self, tag: str) -> tuple[str, ...]:
-        """Return the valid ROS topic names that the tags of this name hold."""
-        names: list[str] = []
-        for element, text in self.texts(tag):
-            if not TOPIC.fullmatch(text):
-                raise self.error(tag, f"{text!r} is not a valid ROS topic name", element)
-            names.append(text)
-        return tuple(dict.fromkeys(names))
-
-    def pose(self) -> tuple[float, ...]:
-        """Return x y z roll pitch yaw of the camera in its link."""
-        for element, text in self.texts("pose"):
-            try:
-                values = tuple(float(word) for word in text.split())
-            except ValueError:
-                values = ()
-            if len(values) != 6 or not all(map(math.isfinite, values)):
-                raise self.error("pose", f"{text!r} is not six numbers", element)
-            return values
-        return (0.0,) * 6
+    @classmethod
+    def of(cls, tags: SensorTags, taken: Container[str]) -> "_Topics":
+        topics, infos = tags.own_topics(), tags.topics("camera_info_topic")
+        if tags.type == "rgbd_camera":
+            return cls(
+                image_topics=_below(topics, "image"),
+                info_topics=infos or _below(topics, "camera_info"),
+                depth_topics=_below(topics, "depth_image"),
+                points_topics=_below(topics, "points"),
+            )
+        infos = infos or _default_info_topics(topics, taken)
+        if tags.type == "depth_camera":
+            points = _below(topics, "points")
+            return cls(info_topics=infos, depth_topics=topics, points_topics=points)
+        return cls(image_topics=topics, info_topics=infos)
 
 
-def _read_camera(tags: _SensorTags, root: Any, taken: Mapping[str, str]) -> CameraSensor:
+def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
+    return tuple(f"{topic}/{name}" for topic in topics)
+
+
+def _read_camera(tags: SensorTags, root: Any, taken: Mapping[str, str]) -> CameraSensor:
     near = tags.number("clip/near", DEFAULT_CLIP[0], lambda v: v > 0, "above 0")
     far_default = max(DEFAULT_CLIP[1], 2 * near)
-    tags.choice("image/format", FORMATS)
-    noisy = tags.choice("noise/type", NOISE_TYPES) != "none"
-    images = tags.topics("topic") or (re.sub(r"[^A-Za-z0-9_/]", "_", tags.name),)
-    frames = tags.texts(*FRAME_TAGS)
+    if tags.type == "camera":
+        tags.choice("image/format", FORMATS)
+    noisy = _noise_type(tags) != "none"
+    topics = _Topics.of(tags, taken)
     pose = tags.pose()
-    # Gazebo reads rate 0 as "every step"; nobody wants 500 pictures a second.
-    rate_hz = tags.number("update_rate", 0.0, lambda v: v >= 0, "at least 0") or DEFAULT_RATE_HZ
     return CameraSensor(
         name=tags.name,
-        link=tags.link,
-        optical_frame=frames[0][1] if frames else _optical_child(root, tags.link),
-        width=tags.pixels("image/width", DEFAULT_SIZE[0]),
-        height=tags.pixels("image/height", DEFAULT_SIZE[1]),
+        link=tags.reference,
+        optical_frame=tags.frame(_optical_child(root, tags.reference)),
+        width=_pixels(tags, "image/width", DEFAULT_SIZE[0]),
+        height=_pixels(tags, "image/height", DEFAULT_SIZE[1]),
         hfov=tags.number("horizontal_fov", DEFAULT_HFOV, lambda v: 0 < v < math.pi, "in (0, pi)"),
         near=near,
         far=tags.number("clip/far", far_default, lambda v: v > near, f"above near, {near:g}"),
-        rate_hz=rate_hz,
+        # Gazebo reads rate 0 as "every step"; nobody wants 500 pictures a second.
+        rate_hz=tags.rate_hz() or DEFAULT_RATE_HZ,
         noise_mean=_noise(tags, "mean", -1, "from -1 to 1") if noisy else 0.0,
         noise_stddev=_noise(tags, "stddev", 0, "from 0 to 1") if noisy else 0.0,
-        image_topics=images,
-        info_topics=tags.topics("camera_info_topic") or _default_info_topics(images, taken),
+        image_topics=topics.image_topics,
+        info_topics=topics.info_topics,
+        depth_topics=topics.depth_topics,
+        points_topics=topics.points_topics,
         xyz=(pose[0], pose[1], pose[2]),
         rpy=(pose[3], pose[4], pose[5]),
     )
 
 
-def _noise(tags: _SensorTags, tag: str, least: float, must_be: str) -> float:
+def _noise_type(tags: SensorTags) -> str:
+    # SDF has it as an attribute, too.
+    kind = tags.attribute("noise", "type") or tags.choice("noise/type", NOISE_TYPES)
+    if kind not in NOISE_TYPES:
+        raise tags.error("noise", f"type {kind!r} is not one of {', '.join(NOISE_TYPES)}")
+    return kind
+
+
+def _noise(tags: SensorTags, tag: str, least: float, must_be: str) -> float:
     return tags.number(f"noise/{tag}", 0.0, lambda v: least <= v <= 1, must_be)
+
+
+def _pixels(tags: SensorTags, tag: str, default: int) -> int:
+    must_be = f"a whole number from 1 to {MAX_SIDE}"
+    return int(tags.number(tag, default, lambda v: v in range(1, MAX_SIDE + 1), must_be))
 
 
 def _default_info_topics(images: tuple[str, ...], taken: Container[str]) -> tuple[str, ...]:
@@ -223,13 +216,13 @@ def _default_info_topics(images: tuple[str, ...], taken: Container[str]) -> tupl
 
     The one beside it is left out where an earlier camera has it: two cameras would mix there.
     """
-    below = [f"{image}/camera_info" for image in images]
+    below = _below(images, "camera_info")
     beside = ["".join(image.rpartition("/")[:2]) + "camera_info" for image in images]
     return tuple(dict.fromkeys([*below, *(topic for topic in beside if topic not in taken)]))
 
 
-def _take_topics(camera: CameraSensor, tags: _SensorTags, taken: dict[str, str]) -> None:
-    for topic in (*camera.image_topics, *camera.info_topics):
+def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, str]) -> None:
+    for topic in camera.topics:
         if topic in taken:
             raise tags.error("topic", f"{topic!r} is taken by camera {taken[topic]!r}")
         taken[topic] = camera.name

@@ -1,7 +1,8 @@
 """The errors of this package.
 
 GazeboError
-├── CameraError     a camera's description or its process
+├── SensorError     a sensor's description
+├── CameraError     a camera's process
 │   └── BackendError  an OpenGL library that starts but does not draw
 ├── OrphanError     the simulation ended before its child process was there
 ├── WindowError     a window cannot be opened where the simulation runs
@@ -17,8 +18,12 @@ class GazeboError(Exception):
     """Root of what this package raises; the message is a sentence for the user."""
 
 
+class SensorError(GazeboError):
+    """A sensor is described wrongly; the message names the sensor, the element and the line."""
+
+
 class CameraError(GazeboError):
-    """A camera is described wrongly, or its process cannot do its work."""
+    """A camera's process cannot do its work."""
 
 
 class BackendError(CameraError):

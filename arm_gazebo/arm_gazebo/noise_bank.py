@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.depth_noise import DepthNoise
 
 SPARE_SAMPLES = 1 << 20
 """How much longer than a picture the bank is: so many different noises it has."""
@@ -55,8 +56,13 @@ class NoiseBank:
         return int(mixed[0]) % SPARE_SAMPLES
 
 
-def noise_for(sensor: CameraSensor, seed: int) -> NoiseBank | None:
-    """Return the noise of a camera, None for a camera without."""
+def noise_for(sensor: CameraSensor, seed: int) -> NoiseBank | DepthNoise | None:
+    """Return the noise of a camera, None for a camera without.
+
+    A camera that shows both has exact distances, as Gazebo's.
+    """
     if sensor.noise_stddev == 0.0 and sensor.noise_mean == 0.0:
         return None
+    if sensor.measures_depth and not sensor.image_topics:
+        return DepthNoise(sensor, seed)
     return NoiseBank(sensor, seed)

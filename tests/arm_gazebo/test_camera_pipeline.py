@@ -30,12 +30,18 @@ class Sink:
 
     def __init__(self, sensor: CameraSensor) -> None:
         self.picture = np.zeros((sensor.height, sensor.width, 3), np.uint8)
+        self.depth = np.zeros((sensor.height, sensor.width), np.float32)
         self.watched = True
+        self.measured = False
+        self.depths: list[tuple[float, np.ndarray]] = []
         self.infos_s: list[float] = []
         self.pictures: list[tuple[float, np.ndarray]] = []
 
     def wants_picture(self) -> bool:
         return self.watched
+
+    def wants_depth(self) -> bool:
+        return self.measured
 
     def publish_info(self, time_s: float) -> None:
         self.infos_s.append(time_s)
@@ -43,9 +49,12 @@ class Sink:
     def publish_picture(self, time_s: float) -> None:
         self.pictures.append((time_s, self.picture.copy()))
 
+    def publish_depth(self, time_s: float) -> None:
+        self.depths.append((time_s, self.depth.copy()))
+
 
 class Renderer:
-    """Draws the slider's position as the grey level."""
+    """Draws the slider's position as the grey level, and as the distance."""
 
     backend = "fake"
 
@@ -57,8 +66,17 @@ class Renderer:
     def set_model(self, model: mujoco.MjModel) -> None:
         self.models.append(model)
 
-    def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: np.ndarray) -> None:
-        picture[:] = int(data.qpos[0])
+    def render(
+        self,
+        data: mujoco.MjData,
+        sensor: CameraSensor,
+        picture: np.ndarray | None,
+        depth: np.ndarray | None,
+    ) -> None:
+        if picture is not None:
+            picture[:] = int(data.qpos[0])
+        if depth is not None:
+            depth[:] = data.qpos[0]
         self.mocap_positions.append(data.mocap_pos[0].copy())
 
     def close(self) -> None:
@@ -182,6 +200,40 @@ def test_a_new_model_is_drawn_from_then_on(process):
     process.pipeline.handle([model_message(1), process.state(0.1)])
     process.pipeline.handle([model_message(2), process.state(0.2, version=2)])
     assert len(process.renderer.models) == 2
+
+
+def test_distances_are_drawn_for_those_who_want_them_alone(process):
+    sink = process.sinks[0]
+    sink.watched, sink.measured = False, True
+    process.pipeline.handle([model_message(), process.state(0.5, level=3)])
+    ((time_s, depth),) = sink.depths
+    assert time_s == 0.5
+    assert (depth == 3).all()
+    assert sink.pictures == []
+
+
+def test_distances_out_of_range_say_on_which_side():
+    ranged = Process(near=0.2, far=5.0, depth_topics=("d",))
+    ranged.sinks[0].measured = True
+    ranged.pipeline.handle([model_message(), ranged.state(0.0, level=0)])
+    ranged.pipeline.handle([ranged.state(0.1, level=6)])
+    (_, near), (_, far) = ranged.sinks[0].depths
+    assert (near == -np.inf).all()
+    assert (far == np.inf).all()
+    ranged.pipeline.close()
+
+
+def test_noise_of_a_camera_without_picture_is_in_metres_and_repeatable():
+    depths = []
+    for _ in range(2):
+        noisy = Process(noise_mean=0.1, noise_stddev=0.02, depth_topics=("d",))
+        noisy.sinks[0].measured = True
+        noisy.pipeline.handle([model_message(), noisy.state(0.0, level=4)])
+        depths.append(noisy.sinks[0].depths[0][1])
+        noisy.pipeline.close()
+    assert depths[0].mean() == pytest.approx(4.1, abs=0.005)
+    assert depths[0].std() == pytest.approx(0.02, rel=0.1)
+    np.testing.assert_array_equal(*depths)
 
 
 def test_noise_is_added_and_repeatable():

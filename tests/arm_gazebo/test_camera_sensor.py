@@ -6,7 +6,7 @@ import math
 import pytest
 
 from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
-from arm_gazebo.errors import CameraError
+from arm_gazebo.errors import SensorError
 
 LINKS = '<link name="base_link"/><link name="camera_link"/><link name="eye"/>'
 OPTICAL_JOINT = (
@@ -124,6 +124,42 @@ def test_other_sensors_are_named_and_left_out(caplog):
     assert "'gpu_lidar'" in caplog.text
 
 
+def test_a_depth_camera_has_gazebos_topics_and_no_picture():
+    depth = sensor("<topic>/head/depth</topic>").replace('"camera">', '"depth_camera">')
+    (found,) = parse_cameras(robot(depth))
+    assert found.depth_topics == ("/head/depth",)
+    assert found.points_topics == ("/head/depth/points",)
+    assert found.info_topics == ("/head/depth/camera_info", "/head/camera_info")
+    assert found.image_topics == ()
+    assert found.measures_depth
+
+
+def test_an_rgbd_camera_has_gazebos_topics_below_its_own():
+    rgbd = sensor("<topic>camera_head</topic>").replace('"camera">', '"rgbd_camera">')
+    (found,) = parse_cameras(robot(rgbd))
+    assert found.topics == (
+        "camera_head/image",
+        "camera_head/depth_image",
+        "camera_head/points",
+        "camera_head/camera_info",
+    )
+
+
+def test_noise_type_may_be_an_attribute():
+    noise = '<camera><noise type="gaussian"><stddev>0.1</stddev></noise></camera>'
+    assert camera(noise).noise_stddev == 0.1
+    with pytest.raises(SensorError, match="type 'salt' is not one of none, gaussian"):
+        camera(noise.replace("gaussian", "salt"))
+
+
+def test_cameras_have_rates_sizes_and_noise_of_their_own():
+    wide = "<camera><image><width>640</width></image></camera><update_rate>5</update_rate>"
+    noise = "<camera><noise><type>gaussian</type><stddev>0.02</stddev></noise></camera>"
+    first, second = parse_cameras(robot(sensor(wide, "a"), sensor(noise, "b")))
+    assert (first.width, first.rate_hz, first.noise_stddev) == (640, 5.0, 0.0)
+    assert (second.width, second.rate_hz, second.noise_stddev) == (320, 30.0, 0.02)
+
+
 def test_focal_length_and_vertical_field_of_view():
     found = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047)
     assert found.focal_length == pytest.approx(277.19, abs=0.01)
@@ -157,7 +193,7 @@ def test_focal_length_and_vertical_field_of_view():
     ],
 )
 def test_nonsense_names_sensor_tag_and_line(inside, tag, said):
-    with pytest.raises(CameraError) as caught:
+    with pytest.raises(SensorError) as caught:
         camera(inside)
     message = str(caught.value)
     assert message.startswith(f"camera sensor 'camera', <{tag}> (line 2): ")
@@ -165,21 +201,21 @@ def test_nonsense_names_sensor_tag_and_line(inside, tag, said):
 
 
 def test_an_unknown_link_is_refused_naming_the_known_ones():
-    with pytest.raises(CameraError, match="no link 'head'; the robot has base_link, camera_link"):
+    with pytest.raises(SensorError, match="no link 'head'; the robot has base_link, camera_link"):
         parse_cameras(robot(sensor(), link="head"))
 
 
 def test_two_cameras_of_one_name_are_refused():
-    with pytest.raises(CameraError, match="second camera of this name"):
+    with pytest.raises(SensorError, match="second camera of this name"):
         parse_cameras(robot(sensor("<topic>a</topic>"), sensor("<topic>b</topic>")))
 
 
 def test_two_cameras_on_one_topic_are_refused():
     cameras = (sensor("<topic>/t</topic>", name=name) for name in ("a", "b"))
-    with pytest.raises(CameraError, match=r"'b'.*'/t' is taken by camera 'a'"):
+    with pytest.raises(SensorError, match=r"'b'.*'/t' is taken by camera 'a'"):
         parse_cameras(robot(*cameras))
 
 
 def test_a_sensor_without_a_name_is_refused():
-    with pytest.raises(CameraError, match="needs a name"):
+    with pytest.raises(SensorError, match="needs a name"):
         parse_cameras(robot(sensor(name="")))

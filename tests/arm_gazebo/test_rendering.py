@@ -56,7 +56,7 @@ def draw(tmp_path) -> Draw:
         model, settings, picture = (tmp_path / name for name in ("m.xml", "s.json", "p.npy"))
         model.write_text(mjcf)
         settings.write_text(json.dumps(asdict(sensor)))
-        files = [str(file) for file in (model, settings, picture)]
+        files = [str(file) for file in (model, settings, picture, tmp_path / "d.npy")]
         run = subprocess.run(
             [sys.executable, str(DRAW_PICTURE), backend, *files],
             capture_output=True,

@@ -48,28 +48,53 @@ class GlRenderer:
         self._free_drawing()
         # MuJoCo reads this each time it looks for the GL functions.
         os.environ["MUJOCO_GL"] = self.backend
-        self._drawing = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._drawing)
+        drawing = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        # Numbers near 0 are the finest, and far away the buffer is the coarsest.
+        drawing.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, drawing)
+        self._drawing = drawing
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + MAX_EXTRA_GEOMS)
         self._model = model
 
-    def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]) -> None:
+    def render(
+        self,
+        data: mujoco.MjData,
+        sensor: CameraSensor,
+        picture: NDArray[np.uint8] | None,
+        depth: NDArray[np.float32] | None = None,
+    ) -> None:
         """Draw one camera's view; see `Renderer.render`."""
-        model, drawing, scene = self._model, self._drawing, self._scene
+        model, scene = self._model, self._scene
         assert model is not None
-        assert drawing is not None
         self._camera.fixedcamid = camera_id(model, sensor)
         mujoco.mjv_updateScene(model, data, self._option, None, self._camera, NO_DECORATION, scene)
         # mjv_updateScene sets the flags anew from the model each time.
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
-        _apply_optics(scene, sensor)
-        area = mujoco.MjrRect(0, 0, sensor.width, sensor.height)
-        mujoco.mjr_render(area, scene, drawing)
-        raw = self._raw[: picture.size].reshape(picture.shape)
-        mujoco.mjr_readPixels(raw, None, area, drawing)
         # OpenGL's first row is the bottom one.
-        np.copyto(picture, raw[::-1])
+        if picture is not None:
+            raw = self._raw[: picture.size].reshape(picture.shape)
+            self._draw(sensor, sensor.near, raw, None)
+            np.copyto(picture, raw[::-1])
+        if depth is not None:
+            # The sky would be at some distance.
+            scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
+            buffer = np.empty(depth.shape, np.float32)
+            self._draw(sensor, sensor.nearest_drawn, None, buffer)
+            np.copyto(depth, _distances(buffer[::-1], sensor.nearest_drawn, sensor.far))
+
+    def _draw(
+        self,
+        sensor: CameraSensor,
+        near: float,
+        colours: NDArray[np.uint8] | None,
+        depth: NDArray[np.float32] | None,
+    ) -> None:
+        assert self._drawing is not None
+        _apply_optics(self._scene, sensor, near)
+        area = mujoco.MjrRect(0, 0, sensor.width, sensor.height)
+        mujoco.mjr_render(area, self._scene, self._drawing)
+        mujoco.mjr_readPixels(colours, depth, area, self._drawing)
 
     def close(self) -> None:
         """Free the GL resources and the context."""
@@ -99,13 +124,20 @@ def _lighten(model: mujoco.MjModel, width: int, height: int) -> None:
             width_depth_grid[2] = FLOOR_GRID
 
 
-def _apply_optics(scene: mujoco.MjvScene, sensor: CameraSensor) -> None:
+def _apply_optics(scene: mujoco.MjvScene, sensor: CameraSensor, near: float) -> None:
     """Give the scene's cameras (one per eye, both the same) the sensor's own frustum."""
-    top = sensor.near * math.tan(sensor.vfov / 2)
+    top = near * math.tan(sensor.vfov / 2)
     for eye in scene.camera:
         eye.frustum_center = 0.0
-        eye.frustum_width = sensor.near * math.tan(sensor.hfov / 2)
+        eye.frustum_width = near * math.tan(sensor.hfov / 2)
         eye.frustum_top = top
         eye.frustum_bottom = -top
-        eye.frustum_near = sensor.near
+        eye.frustum_near = near
         eye.frustum_far = sensor.far
+
+
+def _distances(buffer: NDArray[np.float32], near: float, far: float) -> NDArray[np.float32]:
+    """Return the distances that a depth buffer means: 0 is the far clip, 1 the near one."""
+    distances = (near * far) / (near + buffer * (far - near))
+    distances[buffer <= 0] = np.inf
+    return distances

@@ -38,18 +38,27 @@ class RaycastRenderer:
         self._colours = SurfaceColours(model)
         self._steps.clear()
 
-    def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]) -> None:
+    def render(
+        self,
+        data: mujoco.MjData,
+        sensor: CameraSensor,
+        picture: NDArray[np.uint8] | None,
+        depth: NDArray[np.float32] | None = None,
+    ) -> None:
         """Draw one camera's view; see `Renderer.render`."""
         assert self._model is not None
         if sensor not in self._rays:
             self._rays[sensor] = _pixel_rays(sensor)
         if sensor not in self._steps:
             self._steps[sensor] = SamplingStep(sensor.width, sensor.height, sensor.rate_hz)
-        sampling = self._steps[sensor]
-        start_s = time.perf_counter()
         view = _View(self._model, data, self._colours, sensor, self._rays[sensor])
-        fill_picture(picture, sampling.step, view.sample)
-        sampling.note(time.perf_counter() - start_s)
+        if picture is not None:
+            sampling = self._steps[sensor]
+            start_s = time.perf_counter()
+            fill_picture(picture, sampling.step, view.sample)
+            sampling.note(time.perf_counter() - start_s)
+        if depth is not None:
+            np.copyto(depth, view.distances(*depth.shape))
 
     def close(self) -> None:
         """Nothing is held."""
@@ -76,7 +85,7 @@ class _View:
     def sample(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> NDArray[np.uint8]:
         """Return the colours (n, 3) seen at pixels."""
         rays = self._pixel_rays[rows, columns] @ self._rotation.T
-        geoms, distances, normals = self._cast(rays)
+        geoms, distances, normals = self._cast(rays, self._sensor.near)
         hit = geoms >= 0
         # Sky where nothing is hit; what is hit is overwritten.
         light = self._colours.sky(rays)
@@ -85,10 +94,16 @@ class _View:
         light[hit] = self._colours.lit(geoms[hit], brightness)
         return (light * 255.0 + 0.5).astype(np.uint8)
 
+    def distances(self, height: int, width: int) -> NDArray[np.float64]:
+        """Return the depth (height, width) of every pixel, infinite where nothing is."""
+        rays = self._pixel_rays[:height, :width].reshape(-1, 3) @ self._rotation.T
+        geoms, distances, _normals = self._cast(rays, self._sensor.nearest_drawn)
+        return np.where(geoms < 0, np.inf, distances).reshape(height, width)
+
     def _cast(
-        self, rays: NDArray[np.float64]
+        self, rays: NDArray[np.float64], near: float
     ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
-        """Return geom (-1: none), depth and normal of what each ray meets past the near clip.
+        """Return geom (-1: none), depth and normal of what each ray meets past a near clip.
 
         As OpenGL does, surfaces nearer than that and surfaces seen from behind are looked
         through: their geoms are hidden from the rays that met them, layer by layer.
@@ -98,7 +113,7 @@ class _View:
         shown = groups.copy()
         for _ in range(MAX_HIDDEN_LAYERS):
             behind = np.einsum("ij,ij->i", normals, rays) > 0
-            (through,) = np.nonzero((geoms >= 0) & (behind | (depths < self._sensor.near)))
+            (through,) = np.nonzero((geoms >= 0) & (behind | (depths < near)))
             if not through.size:
                 break
             groups[np.unique(geoms[through])] = HIDDEN_GROUP

@@ -25,13 +25,21 @@ class Renderer(Protocol):
         """Draw this model from now on; the caller gives it away: the renderer may change it."""
         ...
 
-    def render(self, data: mujoco.MjData, sensor: CameraSensor, picture: NDArray[np.uint8]) -> None:
-        """Draw one camera's view of a state of the model into `picture`.
+    def render(
+        self,
+        data: mujoco.MjData,
+        sensor: CameraSensor,
+        picture: NDArray[np.uint8] | None,
+        depth: NDArray[np.float32] | None = None,
+    ) -> None:
+        """Draw one camera's view of a state of the model: its colours, its depth, or both.
 
         Args:
             data: state with up-to-date frames of geoms, cameras and lights.
             sensor: the camera; one of those that the renderer was made for.
             picture: (height, width, 3) C-contiguous RGB, overwritten; row 0 is the top.
+            depth: (height, width) C-contiguous distances along the camera's axis in m,
+                overwritten; infinite where nothing is drawn.
         """
         ...
 

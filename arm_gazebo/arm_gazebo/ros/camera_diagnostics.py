@@ -8,7 +8,8 @@ from rclpy.node import Node
 from arm_gazebo.camera_pipeline import CameraPipeline
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.camera_statistics import CameraReport
-from arm_gazebo.ros.camera_publisher import CameraPublisher, set_stamp
+from arm_gazebo.ros.camera_publisher import CameraPublisher
+from arm_gazebo.ros.image_topic import set_stamp
 
 PERIOD_S = 1.0
 LEAST_SHARE = 0.9

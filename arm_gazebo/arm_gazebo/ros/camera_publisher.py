@@ -1,22 +1,18 @@
-"""One camera's topics: pictures, compressed pictures and intrinsics."""
+"""One camera's topics: pictures, compressed pictures, distances and intrinsics."""
 
 from array import array
 
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
-from std_msgs.msg import Header
 
 from arm_gazebo.camera_info import DISTORTION_MODEL, Intrinsics
 from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.ros.depth_publisher import DepthPublisher
+from arm_gazebo.ros.image_topic import QOS, set_stamp, watched
 
-QOS = QoSProfile(depth=2)
-"""Reliable and volatile: default and best-effort subscribers both match."""
 JPEG_QUALITY = 80
-NS_PER_S = 1_000_000_000
 
 
 class CameraPublisher:
@@ -40,6 +36,8 @@ class CameraPublisher:
         self._picture = np.frombuffer(self._image.data, np.uint8).reshape(
             sensor.height, sensor.width, 3
         )
+        self._colours = self._picture if sensor.image_topics else None
+        self._depth = DepthPublisher(node, sensor) if sensor.measures_depth else None
 
     @property
     def picture(self) -> NDArray[np.uint8]:
@@ -47,13 +45,25 @@ class CameraPublisher:
         return self._picture
 
     @property
+    def depth(self) -> NDArray[np.float32] | None:
+        """The (height, width) floats of the depth message; None without one."""
+        return None if self._depth is None else self._depth.depth
+
+    @property
     def subscribers(self) -> int:
-        """How many subscribers the pictures have, compressed ones included."""
-        return sum(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+        """How many subscribers pictures and distances have, compressed pictures included."""
+        pictures = sum(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+        return pictures + (0 if self._depth is None else self._depth.subscribers)
 
     def wants_picture(self) -> bool:
-        """Return whether anybody subscribes to the pictures now; about 1 us a topic."""
-        return any(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+        """Return whether anybody looks at the colours now; about 1 us a topic."""
+        if watched((*self._images, *self._jpegs)):
+            return True
+        return self._colours is not None and self._depth is not None and self._depth.wants_colours()
+
+    def wants_depth(self) -> bool:
+        """Return whether anybody subscribes to the distances now; about 1 us a topic."""
+        return self._depth is not None and self._depth.subscribers > 0
 
     def publish_info(self, time_s: float) -> None:
         """Publish the intrinsics on every info topic."""
@@ -64,23 +74,19 @@ class CameraPublisher:
     def publish_picture(self, time_s: float) -> None:
         """Publish the picture where somebody subscribes to it, compressed or not."""
         set_stamp(self._image.header, time_s)
-        for publisher in _watched(self._images):
+        for publisher in watched(self._images):
             publisher.publish(self._image)
-        jpegs = _watched(self._jpegs)
+        jpegs = watched(self._jpegs)
         if jpegs:
             set_stamp(self._jpeg.header, time_s)
             self._jpeg.data = _compress(self._picture)
             for publisher in jpegs:
                 publisher.publish(self._jpeg)
 
-
-def _watched(publishers: list[Publisher]) -> list[Publisher]:
-    return [p for p in publishers if p.get_subscription_count()]
-
-
-def set_stamp(header: Header, time_s: float) -> None:
-    """Stamp a header with a simulation time."""
-    header.stamp.sec, header.stamp.nanosec = divmod(round(time_s * NS_PER_S), NS_PER_S)
+    def publish_depth(self, time_s: float) -> None:
+        """Publish the distances, and the points that they and the picture make."""
+        if self._depth is not None:
+            self._depth.publish(time_s, self._colours)
 
 
 def _image_message(sensor: CameraSensor) -> Image:

@@ -112,4 +112,6 @@ def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
         name=f"{namespace}_{camera.name}",
         image_topics=below(camera.image_topics),
         info_topics=below(camera.info_topics),
+        depth_topics=below(camera.depth_topics),
+        points_topics=below(camera.points_topics),
     )

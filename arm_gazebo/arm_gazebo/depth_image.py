@@ -1,0 +1,54 @@
+"""What a depth camera says of the distances that were drawn: REP 117's limits, and points."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.camera_sensor import CameraSensor
+
+CHANNELS = 4
+"""Of a point: x, y, z, and its colour."""
+
+
+def mark_limits(depth: NDArray[np.float32], sensor: CameraSensor) -> None:
+    """Say of distances out of range on which side they are, as REP 117 has it; in place.
+
+    Args:
+        depth: in m; what is nearer than the near clip becomes -inf, farther than the far one inf.
+        sensor: the camera.
+    """
+    depth[depth < sensor.near] = -np.inf
+    depth[depth > sensor.far] = np.inf
+
+
+class PointGrid:
+    """Makes points of distances. One thread."""
+
+    def __init__(self, sensor: CameraSensor) -> None:
+        columns = np.arange(sensor.width, dtype=np.float32) + 0.5 - sensor.width / 2
+        rows = np.arange(sensor.height, dtype=np.float32) + 0.5 - sensor.height / 2
+        self._x = (columns / sensor.focal_length).astype(np.float32)
+        self._y = (rows / sensor.focal_length).astype(np.float32)[:, np.newaxis]
+
+    def fill(
+        self,
+        points: NDArray[np.float32],
+        depth: NDArray[np.float32],
+        picture: NDArray[np.uint8] | None,
+    ) -> None:
+        """Write the points of a view.
+
+        Args:
+            points: (height, width, 4), overwritten: x right, y down, z forward in m, all NaN where
+                the depth is no number, and the colour as PCL packs it into the bits of a float.
+            depth: (height, width) in m.
+            picture: (height, width, 3) RGB; None for points without colour.
+        """
+        z = np.where(np.isfinite(depth), depth, np.float32(np.nan))
+        points[..., 0] = self._x * z
+        points[..., 1] = self._y * z
+        points[..., 2] = z
+        colours = points.view(np.uint8).reshape(*depth.shape, 4 * CHANNELS)[..., 12:]
+        colours[:] = 0
+        if picture is not None:
+            # Little-endian 0x00RRGGBB.
+            colours[..., :3] = picture[..., ::-1]

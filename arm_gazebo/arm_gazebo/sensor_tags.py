@@ -1,0 +1,145 @@
+"""The tags of one `<sensor>` of a URDF: typed look-ups whose errors say where they failed."""
+
+import math
+import re
+from collections.abc import Callable, Collection, Iterator
+from typing import Any
+
+from arm_gazebo.errors import SensorError
+
+TYPES = {
+    "camera": "camera",
+    "depth": "depth_camera",
+    "depth_camera": "depth_camera",
+    "rgbd": "rgbd_camera",
+    "rgbd_camera": "rgbd_camera",
+    "imu": "imu",
+    "force_torque": "force_torque",
+    "contact": "contact",
+}
+"""What is simulated: Gazebo's names, older ones included, and the one used here."""
+FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
+TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
+
+
+def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
+    """Return the `<sensor>` elements of a URDF and what each is attached to, in their order."""
+    for gazebo in root.findall("gazebo"):
+        for sensor in gazebo.findall("sensor"):
+            yield str(gazebo.get("reference", "")).strip(), sensor
+
+
+def sensor_type(element: Any) -> str | None:
+    """Return the type of a sensor, None if it is not simulated."""
+    return TYPES.get(str(element.get("type", "")).strip())
+
+
+class SensorTags:
+    """One `<sensor>`.
+
+    Attributes:
+        reference: the link or joint that it is attached to.
+        name: its own.
+        type: one of the values of `TYPES`.
+
+    Args:
+        element: the sensor.
+        reference: see above.
+        below: element in which the tags of this type of sensor stand, too.
+
+    Raises:
+        SensorError: it has no name.
+    """
+
+    def __init__(self, element: Any, reference: str, below: str) -> None:
+        self._element = element
+        self._below = below
+        self.reference = reference
+        self.type = sensor_type(element) or "unknown"
+        self.name = str(element.get("name") or "").strip()
+        if not self.name:
+            raise self.error("sensor", "a sensor needs a name")
+
+    def error(self, tag: str, problem: str, element: Any = None) -> SensorError:
+        """Return an error about one tag, or attribute, of this sensor."""
+        line = (self._element if element is None else element).sourceline
+        return SensorError(f"{self.type} sensor {self.name!r}, <{tag}> (line {line}): {problem}")
+
+    def check_reference(self, kind: str, known: Collection[str]) -> None:
+        """Check that the link or joint exists.
+
+        Raises:
+            SensorError: it does not; the message names those that do.
+        """
+        if self.reference not in known:
+            raise self.error(
+                "gazebo", f"no {kind} {self.reference!r}; the robot has {', '.join(known)}"
+            )
+
+    def texts(self, *tags: str) -> list[tuple[Any, str]]:
+        """Return element and text of every filled tag of these names, outer ones first."""
+        paths = (f"./{tag} | ./{self._below}/{tag}" for tag in tags)
+        found = (element for path in paths for element in self._element.xpath(path))
+        return [(e, str(e.text or "").strip()) for e in found if str(e.text or "").strip()]
+
+    def attribute(self, tag: str, name: str) -> str:
+        """Return an attribute of the first tag of this name; empty where there is none."""
+        found = self._element.xpath(f"./{tag} | ./{self._below}/{tag}")
+        return str(found[0].get(name, "")).strip() if found else ""
+
+    def number(
+        self, tag: str, default: float, fits: Callable[[float], bool], must_be: str
+    ) -> float:
+        """Return a finite number that fits; `must_be` says in words what fits."""
+        for element, text in self.texts(tag):
+            try:
+                value = float(text)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value) or not fits(value):
+                raise self.error(tag, f"must be {must_be}, not {text!r}", element)
+            return value
+        return default
+
+    def rate_hz(self) -> float:
+        """Return the update rate; 0, as Gazebo has it, for every step."""
+        return self.number("update_rate", 0.0, lambda v: v >= 0, "at least 0")
+
+    def choice(self, tag: str, choices: tuple[str, ...]) -> str:
+        """Return a tag's text, the first choice where it is missing."""
+        for element, text in self.texts(tag):
+            if text not in choices:
+                raise self.error(tag, f"{text!r} is not one of {', '.join(choices)}", element)
+            return text
+        return choices[0]
+
+    def topics(self, tag: str) -> tuple[str, ...]:
+        """Return the valid ROS topic names that the tags of this name hold."""
+        names: list[str] = []
+        for element, text in self.texts(tag):
+            if not TOPIC.fullmatch(text):
+                raise self.error(tag, f"{text!r} is not a valid ROS topic name", element)
+            names.append(text)
+        return tuple(dict.fromkeys(names))
+
+    def own_topics(self) -> tuple[str, ...]:
+        """Return what `<topic>` says; where it says nothing, the name made into a topic."""
+        return self.topics("topic") or (_NO_TOPIC.sub("_", self.name),)
+
+    def frame(self, default: str) -> str:
+        """Return the frame of the messages' headers."""
+        frames = self.texts(*FRAME_TAGS)
+        return frames[0][1] if frames else default
+
+    def pose(self) -> tuple[float, ...]:
+        """Return x y z roll pitch yaw of the sensor in what it is attached to."""
+        for element, text in self.texts("pose"):
+            try:
+                values = tuple(float(word) for word in text.split())
+            except ValueError:
+                values = ()
+            if len(values) != 6 or not all(map(math.isfinite, values)):
+                raise self.error("pose", f"{text!r} is not six numbers", element)
+            return values
+        return (0.0,) * 6
