@@ -14,14 +14,15 @@ class DrivenJoint:
         joint: what the model says about the joint.
         mode: how it is driven.
         effort: commanded effort, in the mode EFFORT.
+        effort_limit: what the drive may spend now, at most the joint's own limit.
         setpoint: where the joint is to be at the end of the current control period.
         start_position: where the set-point was at its start.
         start_velocity: its velocity then.
     """
 
     __slots__ = (
+        "_bounds",
         "_braking",
-        "_effort",
         "_jerkless",
         "_period_s",
         "_slack",
@@ -29,6 +30,7 @@ class DrivenJoint:
         "_stream",
         "_velocity",
         "effort",
+        "effort_limit",
         "joint",
         "mode",
         "setpoint",
@@ -45,13 +47,23 @@ class DrivenJoint:
         self.start_velocity = 0.0
         # Looked up in every tick, so copied out of their classes.
         self._speed = joint.velocity
-        self._effort = joint.effort
-        self._braking = bounds.braking
-        self._jerkless = bounds.jerkless
         self._slack = bounds.slack
+        self._bounds = bounds
+        self.limit_effort(joint.effort, 1.0)
         self._period_s = period_s
         self._stream = CommandStream(joint.initial, period_s)
         self._velocity = 0.0
+
+    def limit_effort(self, limit: float, share: float) -> None:
+        """Plan with less effort than the joint's own limit.
+
+        Args:
+            limit: what may be spent, N m or N.
+            share: of what the bounds on motion were computed with.
+        """
+        self.effort_limit = limit
+        self._braking = share * self._bounds.braking
+        self._jerkless = share * self._bounds.jerkless
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
         """Change the mode; a set-point starts from the state of the joint if it had none."""
@@ -110,7 +122,7 @@ class DrivenJoint:
             target, target_velocity, speed = stream.target, stream.velocity, self._speed
             if target == start and not target_velocity and not setpoint.velocity:
                 return False
-        acceleration = EFFORT_SHARE * (self._effort - abs(gravity)) / inertia
+        acceleration = EFFORT_SHARE * (self.effort_limit - abs(gravity)) / inertia
         if acceleration > self._jerkless:
             acceleration = self._jerkless
         if acceleration < self._braking:

@@ -21,7 +21,7 @@ from arm_gazebo.drive_mode import SERVOED, DriveMode
 from arm_gazebo.driven_joint import DrivenJoint
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot_joint import RobotJoint
-from arm_gazebo.servo_tuning import TIME_CONSTANT_S, ServoTuning
+from arm_gazebo.servo_tuning import FULL_EFFORT_ERROR, TIME_CONSTANT_S, ServoTuning
 
 Array = NDArray[np.float64]
 
@@ -125,6 +125,16 @@ class Servo:
         self._joints[index].command(value, self._tick)
         self._awake_ticks = self._settle_ticks
 
+    def limit_effort(self, index: int, limit: float) -> None:
+        """Let a joint's drive spend no more than this, N m or N; only above 0 is it a limit."""
+        driven = self._joints[index]
+        own = driven.joint.effort
+        limit = limit if 0.0 < limit < own else own
+        planned = min(own, self._tuning.stiffness[index] * FULL_EFFORT_ERROR)
+        driven.limit_effort(limit, min(1.0, limit / planned))
+        self._set_gains(index, driven.mode)
+        self._awake_ticks = self._settle_ticks
+
     def stopping_point(self, index: int) -> float:
         """Return where a joint will stand if nothing new is commanded, in rad or m."""
         return self._joints[index].stopping_point()
@@ -174,7 +184,7 @@ class Servo:
         """Return the efforts that the planned motion needs, having slowed one that is too fast."""
         efforts = self._efforts()
         for index, driven in self._servoed:
-            if abs(efforts[index]) > USABLE_EFFORT * driven.joint.effort:
+            if abs(efforts[index]) > USABLE_EFFORT * driven.effort_limit:
                 self._slow_down(efforts, gravity)
                 return self._efforts()
         return efforts
@@ -195,7 +205,7 @@ class Servo:
         """Let all joints that gain speed gain less, by one share, until the efforts suffice."""
         share = 1.0
         for index, driven in self._servoed:
-            limit = USABLE_EFFORT * driven.joint.effort
+            limit = USABLE_EFFORT * driven.effort_limit
             moving = efforts[index] - gravity[index]
             room = limit - math.copysign(gravity[index], gravity[index] * moving)
             if abs(efforts[index]) > limit and 0.0 < room < abs(moving):
@@ -214,7 +224,7 @@ class Servo:
             effort = efforts[index]
             if speed:
                 effort += self._drag[index] * speed + math.copysign(self._friction[index], speed)
-            limit = driven.joint.effort
+            limit = driven.effort_limit
             if effort > limit:
                 effort = limit
             elif effort < -limit:
@@ -234,6 +244,10 @@ class Servo:
             damping, rotor = tuning.damping[index], tuning.armature[index]
         elif mode is DriveMode.EFFORT:
             gain = 1.0
+        limit = self._joints[index].effort_limit
+        if math.isfinite(limit):
+            model.actuator_forcerange[actuator] = -limit, limit
+        model.actuator_forcelimited[actuator] = math.isfinite(limit)
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
         model.dof_armature[self._joints[index].joint.dof_address] = rotor

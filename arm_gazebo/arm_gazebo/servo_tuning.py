@@ -8,6 +8,9 @@ torque of gravity. From those follow:
   joints reach 100 to 300 rad/s2 at full effort against their rotor alone, these 1000.) It also
   keeps the inertia matrix away from singular, M >= diag(armature). A drive that is limp, or
   commanded by effort, has the tenth only: it shall fall and swing as the links do.
+* gears: joints that mimic a driven one get a fiftieth of its rotor, as seen through the gearing.
+  MuJoCo ties joints as firmly as they are heavy, so bare fingers of some grams would give way
+  long before the drive is at its effort limit.
 * damping gain: 2 armature / step. A drive at its effort limit acts explicitly, whatever the
   integrator, and energy then falls in each step as long as step x diag(damping) <= 2 M. So no
   saturated drive can chatter, in any pose, however the joints couple.
@@ -29,6 +32,7 @@ from arm_gazebo.robot_joint import RobotJoint
 Array = NDArray[np.float64]
 
 ARMATURE_SHARE = 0.1
+GEAR_SHARE = 0.02
 TIME_CONSTANT_S = 0.02
 FULL_EFFORT_ERROR = 0.02
 """Error in rad or m at which a drive uses all of its effort, at the latest."""
@@ -74,7 +78,8 @@ class ServoTuning:
         braking: accelerations that all joints can have at once anywhere, rad/s2 or m/s2.
         jerkless: highest accelerations at all, rad/s2 or m/s2.
         gravity: largest efforts that gravity asks for, N m or N.
-        followers: inertia that mimicking joints add to that of their leader, kg m2 or kg.
+        followers: inertia that mimicking joints and their gears add to that of their leader, kg m2
+            or kg.
         coupling: shape (nv, n): velocities of all degrees of freedom for those of the driven
             joints; mimicking joints move along.
     """
@@ -113,11 +118,13 @@ def tune(
     coupling = _coupling(model, joints)
     dofs = [joint.dof_address for joint in joints]
     model.dof_armature[dofs] = 0.0
-    inertias, own, gravities = _sample(model, joints, coupling, qpos)
-    largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0)
     efforts = np.array([joint.effort for joint in joints])
+    rotor = _rotor(efforts, model.opt.timestep)
+    gears = _gear(model, coupling, dofs, rotor)
+    inertias, own, gravities = _sample(model, joints, coupling, qpos)
+    largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0) + gears
     limp_armature = ARMATURE_SHARE * largest
-    armature = np.maximum(limp_armature, _rotor(efforts, model.opt.timestep))
+    armature = np.maximum(limp_armature, rotor)
     model.dof_armature[dofs] = limp_armature
     mujoco.mj_setConst(model, mujoco.MjData(model))
     gravity = gravities.max(axis=0)
@@ -126,7 +133,7 @@ def tune(
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
     jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], USUAL_ACCELERATION)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
-    worst = np.abs(inertias).max(axis=0) + np.diag(armature)
+    worst = np.abs(inertias).max(axis=0) + np.diag(armature + gears)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
@@ -156,6 +163,28 @@ def _rotor(efforts: Array, step_s: float) -> Array:
     """Return the armature, shape (n,), whose stiffness needs FULL_EFFORT_ERROR for all effort."""
     bounded = np.where(np.isfinite(efforts), efforts, USUAL_EFFORT)
     return bounded / FULL_EFFORT_ERROR * TIME_CONSTANT_S * step_s / 2.0
+
+
+def _gear(model: mujoco.MjModel, coupling: Array, dofs: Sequence[int], rotors: Array) -> Array:
+    """Give each follower a share of the rotor of its leader.
+
+    Args:
+        model: gets the followers' `dof_armature`.
+        coupling: see `ServoTuning`.
+        dofs: of the leaders.
+        rotors: of the leaders, shape (n,).
+
+    Returns:
+        What the leaders feel of it, shape (n,).
+    """
+    felt = np.zeros(len(dofs))
+    for column, (dof, share) in enumerate(zip(dofs, GEAR_SHARE * rotors, strict=True)):
+        ratios = coupling[:, column]
+        followers = np.flatnonzero(ratios)
+        followers = followers[followers != dof]
+        model.dof_armature[followers] = share / ratios[followers] ** 2
+        felt[column] = share * len(followers)
+    return felt
 
 
 def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:

@@ -19,6 +19,8 @@ logger = logging.getLogger(__name__)
 
 MODES = {mode.value: mode for mode in (DriveMode.POSITION, DriveMode.VELOCITY, DriveMode.EFFORT)}
 """Command interfaces, and what a joint does with each; of several claimed the first counts."""
+MAX_EFFORT = "max_effort"
+"""Command interface that limits what a joint's drive may spend; nothing above 0 lifts the limit."""
 STATES = ("position", "velocity", "effort")
 UNITS = {
     DriveMode.POSITION: ("rad", "m"),
@@ -49,6 +51,15 @@ class _CommandInterface:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class _LimitInterface:
+    """A command interface that limits a drive: where its value is, and whom it limits."""
+
+    name: str
+    index: int
+    drive: int
+
+
 class SimulatedHardware:
     """A component of the robot description, driven by the simulation's servos.
 
@@ -72,11 +83,15 @@ class SimulatedHardware:
             if part.name in joints and state.name in STATES
         ]
         self._interfaces = self._command_interfaces()
-        self.state_interfaces = tuple(f"{joint.name}/{state}" for state, joint in self._states)
-        self.command_interfaces = tuple(interface.name for interface in self._interfaces)
+        self._limits = self._limit_interfaces(len(self._interfaces))
+        self._sensors = SensorStates(info, instruments)
+        joint_states = (f"{joint.name}/{state}" for state, joint in self._states)
+        self.state_interfaces = (*joint_states, *self._sensors.names)
+        self.command_interfaces = tuple(i.name for i in (*self._interfaces, *self._limits))
         self._log_left_out()
         self._claimed: set[str] = set()
         self._active: tuple[_CommandInterface, ...] = ()
+        self._limiting: tuple[_LimitInterface, ...] = ()
         self._beyond: set[str] = set()
         # One for each interface: a command that trembles about its limit shall not fill the log.
         self._warnings: dict[str, str] = {}
@@ -100,6 +115,8 @@ class SimulatedHardware:
         self.read(self._simulation.time_s, 0.0)
         for interface in self._interfaces:
             self._commands[interface.index] = self._neutral(interface)
+        for limit in self._limits:
+            self._commands[limit.index] = math.nan
         return True
 
     def on_activate(self) -> bool:
@@ -144,6 +161,7 @@ class SimulatedHardware:
             for interface in self._interfaces
             if interface.name in self._claimed and interface.mode is after[interface.drive]
         )
+        self._switch_limits(start, stop)
         self._taken = b""
         return True
 
@@ -160,6 +178,8 @@ class SimulatedHardware:
             return HardwareReturn.OK
         self._taken = commands
         values = self._commands.tolist()
+        for limit in self._limiting:
+            self._servo.limit_effort(limit.drive, values[limit.index])
         for interface in self._active:
             value = values[interface.index]
             if not interface.lower <= value <= interface.upper:
@@ -175,6 +195,14 @@ class SimulatedHardware:
         """Return what users should hear about their commands since the last call."""
         warnings, self._warnings = self._warnings, {}
         return list(warnings.values())
+
+    def _switch_limits(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Begin and end without limits."""
+        for limit in self._limits:
+            if limit.name in start or limit.name in stop:
+                self._commands[limit.index] = math.nan
+                self._servo.limit_effort(limit.drive, math.nan)
+        self._limiting = tuple(limit for limit in self._limits if limit.name in self._claimed)
 
     def _clamped(self, interface: _CommandInterface, value: float) -> float:
         if interface.name not in self._beyond:
@@ -217,6 +245,18 @@ class SimulatedHardware:
                     name, bounds = f"{part.name}/{command.name}", _bounds(joint, mode, command)
                     found.append(_CommandInterface(name, len(found), drive, mode, joint, *bounds))
         return tuple(found)
+
+    def _limit_interfaces(self, first: int) -> tuple[_LimitInterface, ...]:
+        drives = {joint.name: drive for drive, joint in enumerate(self._servo.joints)}
+        limited = [
+            name
+            for name in self.info.command_interface_names
+            if name.partition("/")[0] in drives and name.partition("/")[2] == MAX_EFFORT
+        ]
+        return tuple(
+            _LimitInterface(name, first + place, drives[name.partition("/")[0]])
+            for place, name in enumerate(limited)
+        )
 
     def _log_left_out(self) -> None:
         offered = {*self.state_interfaces, *self.command_interfaces}

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.servo_tuning import tune
+from arm_gazebo.servo_tuning import FULL_EFFORT_ERROR, GEAR_SHARE, TIME_CONSTANT_S, tune
 
 PERIOD_S = 0.01
 ARMS = [(4, 1.3, 0.4), (6, 0.3, 0.28), (6, 18.0, 0.9), (7, 30.0, 1.2)]
@@ -80,9 +80,11 @@ def test_leader_feels_its_followers(parts):
         ),
         parts.ros2_control(["a"]),
     )
-    _, _, tuning = tuned(parts, urdf)
-    assert tuning.followers == pytest.approx([9.0])
-    assert tuning.limp_armature == pytest.approx([1.0])
+    model, _, tuning = tuned(parts, urdf)
+    gear_kg = GEAR_SHARE * 5.0 / FULL_EFFORT_ERROR * TIME_CONSTANT_S * model.opt.timestep / 2
+    assert model.dof_armature[model.joint("b").dofadr] == pytest.approx(gear_kg / 3**2)
+    assert tuning.followers == pytest.approx([9.0 + gear_kg])
+    assert tuning.limp_armature == pytest.approx([0.1 * (10.0 + gear_kg)])
 
 
 def test_robot_without_drives_needs_no_tuning(parts):

@@ -254,3 +254,36 @@ def test_two_components_share_one_simulation(bench, parts):
         first.tick()
     positions = first.simulation.data.qpos
     assert positions == pytest.approx([-0.5, 0.5], abs=1e-3)
+
+
+def test_max_effort_limits_a_drive_as_long_as_it_is_claimed(bench, parts):
+    commands = ("position", "max_effort")
+    pendulum = bench(
+        parts.pendulum().replace(parts.ros2_control(["j"]), parts.ros2_control(["j"], commands))
+    )
+    pendulum.claim("position")
+    pendulum.claim("max_effort")
+    assert math.isnan(pendulum.commanded[0])
+    weight_nm = 0.5 * 9.81
+    pendulum.command(1.2 * weight_nm)
+    assert abs(pendulum.run(1.0)[-1, 0]) < 2e-3
+    pendulum.command(0.5 * weight_nm)
+    assert pendulum.run(0.5)[-1, 0] > 0.3
+    assert pendulum.state("effort") == pytest.approx([-0.5 * weight_nm])
+    pendulum.release("max_effort")
+    pendulum.run(1.0)
+    assert pendulum.state("velocity") == pytest.approx([0.0], abs=1e-3)
+
+
+def test_a_weakened_drive_still_stops_where_it_is_told(bench, parts):
+    commands = ("position", "max_effort")
+    pendulum = bench(
+        parts.pendulum().replace(parts.ros2_control(["j"]), parts.ros2_control(["j"], commands))
+    )
+    pendulum.claim("max_effort")
+    pendulum.command(6.0)
+    pendulum.claim("position")
+    pendulum.command(-1.0)
+    way = pendulum.run(3.0)[:, 0]
+    assert way[-1] == pytest.approx(-1.0, abs=2e-3)
+    assert way.min() > -1.03

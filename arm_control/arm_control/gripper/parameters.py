@@ -13,6 +13,10 @@ LOWEST_MONITOR_RATE_HZ = 0.1
 JOINT = "The joint that opens and closes the gripper"
 MONITOR_RATE = "Known from ros2_control, without effect: a result is out in the cycle of the end"
 
+LIMIT_OF_EFFORT = (
+    "Full name of the command interface that takes the limit of effort; empty for none"
+)
+
 
 @dataclass(frozen=True, slots=True)
 class GripperParameters:
@@ -40,6 +44,13 @@ class GripperParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class PositionGripperParameters(GripperParameters):
+    """Parameters of the controller for hardware that goes where it is told."""
+
+    max_effort_interface: str = parameter("", LIMIT_OF_EFFORT, read_only=True)
+
+
+@dataclass(frozen=True, slots=True)
 class ParallelGripperParameters(GripperParameters):
     """Parameters of the controller for hardware that limits effort and velocity itself."""
 
@@ -49,9 +60,7 @@ class ParallelGripperParameters(GripperParameters):
     state_interfaces: tuple[str, ...] = parameter(
         ("position", "velocity"), "States of the joint to read"
     )
-    max_effort_interface: str = parameter(
-        "", "Full name of the command interface that takes the limit of effort; empty for none"
-    )
+    max_effort_interface: str = parameter("", LIMIT_OF_EFFORT)
     max_velocity: float = parameter(0.1, "Fastest motion where no goal says more, in rad/s or m/s")
     max_velocity_interface: str = parameter(
         "", "Full name of the command interface that takes the limit of velocity; empty for none"

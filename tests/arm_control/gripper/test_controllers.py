@@ -31,6 +31,17 @@ def test_position_keeps_its_command_when_it_ends(make_rig: Any) -> None:
     assert rig.commanded() == 0.7
 
 
+@pytest.mark.parametrize(("of_goal", "limit"), [(5.0, 5.0), (0.0, 100.0)])
+def test_position_limits_the_effort_where_hardware_can(
+    make_rig: Any, of_goal: float, limit: float
+) -> None:
+    rig = make_rig(POSITION, max_effort=100.0, max_effort_interface="grip/most_effort")
+    rig.goal(0.7, efforts=of_goal)
+    rig.tick()
+    assert rig.commanded() == 0.7
+    assert rig.commanded("most_effort") == limit
+
+
 def effort_rig(make_rig: Any, **parameters: Any) -> Any:
     gains = {f"gains.grip.{name}": value for name, value in {"p": 10.0, "d": 2.0}.items()}
     return make_rig(EFFORT, **gains, **parameters)

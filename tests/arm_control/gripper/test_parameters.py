@@ -18,6 +18,8 @@ COMMON = {
     "stall_velocity_threshold": (0.001, False),
 }
 GAINS = {f"gains.grip.{name}": (0.0, False) for name in ("p", "i", "d", "i_clamp")}
+# One more than a real one: so that max_effort can have an effect.
+POSITION = {**COMMON, "max_effort_interface": ("", True)}
 PARALLEL = {
     **COMMON,
     "action_monitor_rate": (20.0, True),
@@ -33,7 +35,7 @@ PARALLEL = {
 @pytest.mark.parametrize(
     ("type_name", "expected"),
     [
-        ("position_controllers/GripperActionController", COMMON),
+        ("position_controllers/GripperActionController", POSITION),
         ("effort_controllers/GripperActionController", {**COMMON, **GAINS}),
         ("parallel_gripper_action_controller/GripperActionController", PARALLEL),
     ],
