@@ -22,6 +22,7 @@ class BuiltModel:
         bodies: ids of the robot's links, by name.
         qpos: positions at the start, shape (nq,), read-only.
         report: what was changed, repaired or left out.
+        robots: names of the bodies right below the world that each robot consists of, by robot.
     """
 
     model: mujoco.MjModel
@@ -30,3 +31,9 @@ class BuiltModel:
     bodies: Mapping[str, int]
     qpos: NDArray[np.float64]
     report: BuildReport
+    robots: Mapping[str, tuple[str, ...]]
+
+    @property
+    def robot_roots(self) -> frozenset[str]:
+        """The bodies right below the world that are robots'."""
+        return frozenset(root for roots in self.robots.values() for root in roots)

@@ -12,7 +12,7 @@ from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.camera_settings import CameraSettings
 from arm_gazebo.rendering.backend_selection import backend_order
 from arm_gazebo.rendering.renderer import camera_id
-from arm_gazebo.state_feed import StateFeed
+from arm_gazebo.state_feed import PreparedModel, StateFeed
 
 LEAST_INTERVAL_S = 0.002
 """Wall time between two states for one camera. A simulation that runs as fast as possible would
@@ -74,9 +74,17 @@ class CameraFeed:
         Raises:
             CameraError: the model lacks one of the cameras, or its state is too large to send.
         """
+        self.prepare(model).show()
+
+    def prepare(self, model: mujoco.MjModel) -> PreparedModel:
+        """Return a model to be drawn later; see `StateFeed.prepare`.
+
+        Raises:
+            CameraError: the model lacks one of the cameras, or its state is too large to send.
+        """
         for camera in self._cameras:
             camera_id(model, camera)
-        self._feed.set_model(model)
+        return self._feed.prepare(model)
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Send the state if a camera takes a picture at this tick; loop thread only.

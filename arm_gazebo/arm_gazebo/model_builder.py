@@ -16,6 +16,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.collision_policy import MOST_LAYERS, CollisionLayer
+from arm_gazebo.element_names import free_name, name_elements
 from arm_gazebo.errors import ModelError
 from arm_gazebo.gazebo_tags import GazeboTags
 from arm_gazebo.robot_part import DEFAULT_OPTIONS, NO_TAGS, RobotInWorld, RobotPart
@@ -50,6 +51,7 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
         raise ModelError(f"{len(entries)} robots are too many for one world: at most {MOST_LAYERS}")
     report = BuildReport()
     spec = load_world(world, report)
+    name_elements(spec)
     parts = []
     for index, entry in enumerate(entries):
         report.add(*entry.tags.findings)
@@ -74,7 +76,20 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
         bodies={name: body for part in parts for name, body in part.bodies(model).items()},
         qpos=qpos,
         report=report,
+        robots=_robots(model, entries, parts),
     )
+
+
+def _robots(
+    model: mujoco.MjModel, entries: Sequence[RobotInWorld], parts: Sequence[RobotPart]
+) -> dict[str, tuple[str, ...]]:
+    """Return the bodies right below the world of each robot; equal names get a number."""
+    robots: dict[str, tuple[str, ...]] = {}
+    for entry, part in zip(entries, parts, strict=True):
+        roots = dict.fromkeys(model.body_rootid[body] for body in part.bodies(model).values())
+        names = tuple(model.body(root).name for root in roots if root)
+        robots[free_name(entry.robot.name, robots)] = names
+    return robots
 
 
 def _set_physics(spec: mujoco.MjSpec, step_s: float) -> None:

@@ -48,12 +48,19 @@ class SdfElement:
     def read(cls, path: Path) -> "SdfElement":
         """Return the root of a file, an <sdf> element."""
         try:
-            root = parse_xml(path.read_text(encoding="utf-8"), str(path))
-        except XmlError as error:
-            raise WorldError(str(error)) from error
+            text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise WorldError(f"cannot read {path}: {error}") from error
-        read = cls(root, path)
+        return cls.parse(text, path)
+
+    @classmethod
+    def parse(cls, text: str, source: Path) -> "SdfElement":
+        """Return the root of a text, an <sdf> element; plain paths start beside the source."""
+        try:
+            root = parse_xml(text, str(source))
+        except XmlError as error:
+            raise WorldError(str(error)) from error
+        read = cls(root, source)
         if read.tag != "sdf":
             raise read.error("is no SDF; its root has to be <sdf>")
         return read

@@ -3,23 +3,14 @@
 from pathlib import Path
 
 import mujoco
-import numpy as np
 
 from arm_description.errors import ResourceNotFoundError
 from arm_description.names import listing
 from arm_description.resources import resolve_uri
 from arm_description.robot import Pose
-from arm_gazebo.body_tree import BodyTree, TreeOptions
 from arm_gazebo.build_report import BuildReport
-from arm_gazebo.collision_policy import WORLD_CONTYPE, CollisionMasks
-from arm_gazebo.link_geometry import (
-    COLLISION_GROUP,
-    DEFAULT_COLOR,
-    VISUAL_GROUP,
-    LinkGeometry,
-    wxyz,
-)
 from arm_gazebo.mesh_library import MeshLibrary
+from arm_gazebo.sdf_body import add_model, add_plane
 from arm_gazebo.sdf_element import SdfElement
 from arm_gazebo.sdf_frames import SdfFrames, pose_of
 from arm_gazebo.sdf_light import add_light, add_sky, add_sun
@@ -113,8 +104,8 @@ class _WorldReader:
             add_sun(self._spec)
             return
         size = (GROUND_SIZE_M, GROUND_SIZE_M)
-        self._add_plane(self._spec.worldbody, SdfPlane(Pose(), size, GROUND_COLOR))
-        self._add_plane(self._spec.worldbody, SdfPlane(Pose()))
+        add_plane(self._spec.worldbody, SdfPlane(Pose(), size, GROUND_COLOR))
+        add_plane(self._spec.worldbody, SdfPlane(Pose()))
 
     def _add(self, model: SdfModel, pose: Pose, element: SdfElement) -> None:
         name = model.robot.name
@@ -123,28 +114,7 @@ class _WorldReader:
         if name in self._names:
             raise element.error(f"is the second one called '{name}'")
         self._names.add(name)
-        default = mujoco.MjSpec().default
-        masks = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
-        geometry = LinkGeometry(self._meshes, default, model.tags, masks, False, self._report)
-        options = TreeOptions(self._spec.option.timestep, default, not model.static, pose)
-        bodies = BodyTree(self._spec, model.robot, geometry, options, self._report).add()
-        for plane in model.planes:
-            self._add_plane(bodies[name], plane)
-
-    def _add_plane(self, body: mujoco.MjsBody, plane: SdfPlane) -> None:
-        geom = body.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_PLANE, pos=plane.pose.xyz, quat=wxyz(plane.pose.rpy)
-        )
-        if plane.size is None:
-            geom.size = [0.0, 0.0, 1.0]
-            geom.group = COLLISION_GROUP
-            if plane.friction is not None:
-                geom.friction = [plane.friction, *geom.friction[1:]]
-        else:
-            geom.size = [*(np.array(plane.size) / 2), 1.0]
-            geom.group = VISUAL_GROUP
-            geom.contype = geom.conaffinity = 0
-            geom.rgba = plane.rgba or DEFAULT_COLOR
+        add_model(self._spec, self._meshes, model, pose, self._report)
 
 
 def _last_word(uri: str) -> str:
@@ -155,8 +125,14 @@ def _model_file(found: Path, include: SdfElement) -> Path:
     """Return the SDF file that is meant by a file, or by a model's folder."""
     if found.is_file():
         return found
-    for file in (found / "model.sdf", *sorted(found.glob("*.sdf"))):
-        if file.is_file():
-            return file
+    file = sdf_file_in(found)
+    if file is not None:
+        return file
     there = listing(sorted(path.name for path in found.iterdir()))
     raise include.error(f"means the folder {found}, which has no .sdf file; it has {there}")
+
+
+def sdf_file_in(folder: Path) -> Path | None:
+    """Return the SDF file of a model's folder, or None."""
+    files = (folder / "model.sdf", *sorted(folder.glob("*.sdf")))
+    return next((file for file in files if file.is_file()), None)

@@ -54,9 +54,6 @@ class Servo:
         tuning: ServoTuning,
         timing: PhysicsTiming,
     ) -> None:
-        self._model = model
-        self._data = data
-        self._tuning = tuning
         self._period_s = timing.period_s
         # The force sees the position at the start of a step and the set-point of its end: at
         # constant speed they lie one step apart.
@@ -66,27 +63,53 @@ class Servo:
             for index, joint in enumerate(joints)
         )
         self._servoed: tuple[tuple[int, DrivenJoint], ...] = ()
-        self._bind(model, data, joints)
-        self._spread = tuning.coupling / timing.period_s
         self._gains = [0.0] * len(joints)
-        self._coupling = np.ascontiguousarray(tuning.coupling.T)
         self._compliance: list[float] = (1.0 / tuning.stiffness).tolist()
         self._followers: list[float] = tuning.followers.tolist()
-        self._friction = _felt(model.dof_frictionloss, tuning.coupling)
-        self._drag = _felt(model.dof_damping, tuning.coupling)
         self._accelerations = np.zeros(len(joints))
-        self._motion = np.zeros(model.nv)
-        self._load = np.zeros(model.nv)
+        self._bind(model, data, joints, tuning)
         self._still: list[float] = []
         self._settle_ticks = math.ceil(SETTLE_S / timing.period_s)
         self._look_ticks = max(1, round(LOOK_EVERY_S / timing.period_s))
         self._tick = 0
         self._awake_ticks = self._settle_ticks
 
+    def rebind(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        joints: Sequence[RobotJoint],
+        tuning: ServoTuning,
+    ) -> None:
+        """Go on in another model: the drives stay as they are, with all that they plan.
+
+        Args:
+            model: has the same driven joints, in the same order, with the gains that they have.
+            data: state that the joints' present one was carried to.
+            joints: the driven joints at their places there.
+            tuning: see `servo_tuning.tuned_again`.
+        """
+        self._bind(model, data, joints, tuning)
+        for driven, joint in zip(self._joints, joints, strict=True):
+            driven.joint = joint
+        # What holds a resting joint was in the state before.
+        self._awake_ticks = self._settle_ticks
+
     def _bind(
-        self, model: mujoco.MjModel, data: mujoco.MjData, joints: Sequence[RobotJoint]
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        joints: Sequence[RobotJoint],
+        tuning: ServoTuning,
     ) -> None:
         """Take hold of MuJoCo's arrays; each look-up of an attribute costs as much as a sum."""
+        self._model, self._data, self._tuning = model, data, tuning
+        self._spread = tuning.coupling / self._period_s
+        self._coupling = np.ascontiguousarray(tuning.coupling.T)
+        self._friction = _felt(model.dof_frictionloss, tuning.coupling)
+        self._drag = _felt(model.dof_damping, tuning.coupling)
+        self._motion = np.zeros(model.nv)
+        self._load = np.zeros(model.nv)
         count = len(joints)
         first = next((j.actuator for j in joints if j.actuator is not None), 0)
         activation = int(model.actuator_actadr[first]) if count else 0

@@ -21,7 +21,7 @@ torque of gravity. From those follow:
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -146,6 +146,25 @@ def tune(
         followers=largest - own.max(axis=0),
         coupling=coupling,
     )
+
+
+def tuned_again(
+    model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
+) -> ServoTuning:
+    """Return the tuning of the same joints in a model that has other things besides.
+
+    What the joints feel of their own robot is as before, and so are gains and bounds.
+
+    Args:
+        model: gets the rotors of limp drives, as by `tune`; it has those of the followers.
+        joints: the driven joints at their places in this model.
+        tuning: of the joints in the model before.
+    """
+    coupling, dofs = _coupling(model, joints), [joint.dof_address for joint in joints]
+    _gear(model, coupling, dofs, _rotor(tuning.efforts, model.opt.timestep))
+    model.dof_armature[dofs] = tuning.limp_armature
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    return replace(tuning, coupling=coupling)
 
 
 def too_weak(joints: Sequence[RobotJoint], tuning: ServoTuning) -> Iterator[tuple[str, str]]:

@@ -102,7 +102,17 @@ class SimulatedHardware:
         self._state_values = states
         self._commands = commands
         self._taken = b""
-        data = self._simulation.data
+        self._find_sources()
+
+    def rebind(self) -> None:
+        """Read from the simulation's new model from now on; see `Simulation.swap`."""
+        joints = self._simulation.built.joints
+        self._states = [(state, joints[joint.name]) for state, joint in self._states]
+        self._find_sources()
+
+    def _find_sources(self) -> None:
+        """Look up where the states are in MuJoCo's arrays, each a view of the present ones."""
+        states, data = self._state_values, self._simulation.data
         sources = {"position": data.qpos, "velocity": data.qvel, "effort": data.qfrc_actuator}
         self._copies = [
             (states[where], source, there)

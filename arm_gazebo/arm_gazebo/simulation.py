@@ -1,6 +1,8 @@
 """The running physics: one model, its state, and the drives of the robot's joints."""
 
 import logging
+from collections.abc import Collection
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -10,13 +12,19 @@ from arm_gazebo.contact_gate import ContactGate
 from arm_gazebo.drive_mode import DriveMode
 from arm_gazebo.errors import TimingError
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
+from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.servo import Servo
-from arm_gazebo.servo_tuning import too_weak, tune
+from arm_gazebo.servo_tuning import ServoTuning, too_weak, tune, tuned_again
+from arm_gazebo.state_transfer import StateTransfer
+from arm_gazebo.world_state import WorldState
 
 logger = logging.getLogger(__name__)
 
 SAVE_EVERY_S = 0.1
 """How often the state is kept, to go back to if the physics fails."""
+
+WIDE_AWAKE = -(1 + mujoco.mjMINAWAKE)
+"""MuJoCo's mark of what moves, and may fall asleep once it has lain still for a while."""
 
 
 class Simulation:
@@ -49,6 +57,7 @@ class Simulation:
         tuning = tune(self.model, driven, built.qpos, timing.period_s)
         for name, problem in too_weak(driven, tuning):
             logger.warning("joint '%s': %s", name, problem)
+        self._tuning = tuning
         self.servo = Servo(self.model, self.data, driven, tuning, timing)
         self._restart(built.qpos, 0.0)
         self._gate = ContactGate(self.model, self.data, timing.period_s)
@@ -92,6 +101,69 @@ class Simulation:
         self._restart(self.built.qpos, time_s)
         self.servo.reset()
 
+    def prepare(self, built: BuiltModel, roots: Collection[str]) -> "NextModel":
+        """Return what `swap` needs to go on with another model; any thread, takes its time.
+
+        Args:
+            built: has the same robots. Its model belongs to the simulation from now on.
+            roots: bodies right below the world whose states are carried over; the others start
+                as `built` says.
+        """
+        transfer = StateTransfer(self.model, built.model, roots)
+        transfer.carry_drives(self.model, built.model)
+        joints = tuple(built.joints[joint.name] for joint in self.servo.joints)
+        tuning = tuned_again(built.model, joints, self._tuning)
+        data = mujoco.MjData(built.model)
+        data.qpos[:] = built.qpos
+        mujoco.mj_forward(built.model, data)
+        gate = ContactGate(built.model, data, self.timing.period_s)
+        return NextModel(built, data, joints, tuning, gate, transfer)
+
+    def swap(self, following: "NextModel") -> None:
+        """Go on with another model in the present state; between two calls of `advance`.
+
+        `model`, `data` and `built` are others from here on: whoever keeps indices or views of
+        them looks them up again.
+        """
+        data = following.data
+        following.transfer.carry(self.data, data)
+        following.transfer.carry_drives(self.model, following.built.model)
+        self.built, self.model, self.data = following.built, following.built.model, data
+        self._tuning, self._gate = following.tuning, following.gate
+        self.servo.rebind(self.model, data, following.joints, following.tuning)
+        warm_start = data.qacc_warmstart.copy()
+        # The drives read inertia and gravity of the last step.
+        mujoco.mj_forward(self.model, data)
+        data.qacc_warmstart[:] = warm_start
+        self._saved_qpos = data.qpos.copy()
+
+    def place(self, joint: str, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Put what hangs on a free joint elsewhere; between two calls of `advance`.
+
+        Args:
+            joint: its name.
+            position: x, y, z and quaternion (w, x, y, z) in the world, shape (7,).
+            velocity: linear in the world, angular in the body's own frame, shape (6,).
+        """
+        data, where = self.data, self.model.joint(joint)
+        data.qpos[where.qposadr[0] :][:7] = position
+        data.qvel[where.dofadr[0] :][:6] = velocity
+        # It may have carried others, and all that sleeps feels nothing of it.
+        data.tree_asleep[:] = WIDE_AWAKE
+        mujoco.mj_forward(self.model, data)
+        self._saved_qpos[:] = data.qpos
+
+    def state(self) -> WorldState:
+        """Return a copy of where everything is."""
+        data = self.data
+        return WorldState(
+            data.time,
+            data.qpos.copy(),
+            data.qvel.copy(),
+            data.mocap_pos.copy(),
+            data.mocap_quat.copy(),
+        )
+
     def take_failures(self) -> list[str]:
         """Return what went wrong in the physics since the last call, one sentence each."""
         failures, self._failures = self._failures, []
@@ -113,6 +185,18 @@ class Simulation:
             f"the physics became unstable at {before_s:.3f} s; it goes on at rest from the pose "
             f"of up to {SAVE_EVERY_S:g} s before"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class NextModel:
+    """A model that the simulation can go on with at once; see `Simulation.prepare`."""
+
+    built: BuiltModel
+    data: mujoco.MjData
+    joints: tuple[RobotJoint, ...]
+    tuning: ServoTuning
+    gate: ContactGate
+    transfer: StateTransfer
 
 
 def _log_warning(message: str) -> None:

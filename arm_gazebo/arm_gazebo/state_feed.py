@@ -3,6 +3,7 @@
 import os
 import threading
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import mujoco
@@ -69,10 +70,15 @@ class StateFeed:
             self._reader.start(self._channel.remote_fd)
 
     def set_model(self, model: mujoco.MjModel) -> None:
-        """Show this model from the next state on.
+        """Show this model from the next state on; call it before the loop starts.
 
-        Call it before the loop starts, or on the loop thread where it swaps the model. Takes
-        some ms: the compiled model is copied.
+        Raises:
+            CameraError: the model's state is too large to send.
+        """
+        self.prepare(model).show()
+
+    def prepare(self, model: mujoco.MjModel) -> "PreparedModel":
+        """Return a model to be shown later; any thread. Takes some ms: it is copied.
 
         Raises:
             CameraError: the model's state is too large to send.
@@ -83,8 +89,14 @@ class StateFeed:
                 f"a state of this model has {state_bytes} bytes, too many for the cameras; "
                 f"at most {self._channel.largest_message} can be sent"
             )
-        file = _compiled(model)
+        return PreparedModel(self, _compiled(model))
+
+    def show(self, file: int) -> None:
+        """Show the compiled model of a file, which is closed in time; see `PreparedModel`."""
         with self._lock:
+            if self._closed:
+                os.close(file)
+                return
             self._flowing = False
             if self._model_file is not None:
                 os.close(self._model_file)
@@ -139,6 +151,22 @@ class StateFeed:
         if self._model_file is not None:
             self._channel.discard_unread()
             self._flowing = self._channel.send_model(self._version, self._model_file)
+
+
+@dataclass(frozen=True, slots=True)
+class PreparedModel:
+    """A model that one feed can show at once."""
+
+    _feed: StateFeed
+    _file: int
+
+    def show(self) -> None:
+        """Show it from the next state on; on the loop thread, where it swaps the model."""
+        self._feed.show(self._file)
+
+    def discard(self) -> None:
+        """Free it; it will not be shown."""
+        os.close(self._file)
 
 
 def _compiled(model: mujoco.MjModel) -> int:

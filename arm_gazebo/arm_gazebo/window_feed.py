@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import mujoco
 
-from arm_gazebo.state_feed import StateFeed
+from arm_gazebo.state_feed import PreparedModel, StateFeed
 from arm_gazebo.window_process import WindowProcess
 
 INTERVAL_S = 1 / 60
@@ -43,6 +43,10 @@ class WindowFeed:
         """
         self._feed.start()
         self._feed.set_model(model)
+
+    def prepare(self, model: mujoco.MjModel) -> PreparedModel:
+        """Return a model to be shown later; see `StateFeed.prepare`."""
+        return self._feed.prepare(model)
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Send the state if the last one is old enough; loop thread only. Never waits.
