@@ -1,9 +1,13 @@
 """`arm doctor` before anything runs: each check, with the thing broken for real."""
 
+import contextlib
 import fcntl
 import os
+import socket
 import subprocess
 import sys
+import threading
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,9 +15,11 @@ import pytest
 
 from arm_cli.doctor.client_library import ClientLibrary
 from arm_cli.doctor.compiler import Compiler
-from arm_cli.doctor.discovery import Discovery
+from arm_cli.doctor.discovery import LARGEST_DOMAIN, Discovery
 from arm_cli.doctor.finding import Severity
 from arm_cli.doctor.interface_packages import InterfacePackages
+from arm_cli.doctor.page_port import PagePort
+from arm_cli.doctor.ports import Ports
 from arm_cli.doctor.python_version import PythonVersion
 from arm_cli.doctor.rendering import Rendering
 from arm_cli.doctor.shared_memory import SharedMemory
@@ -242,6 +248,115 @@ def test_discovery(variables, severity, sentence):
     assert finding.severity is severity
     assert sentence in finding.sentence
     assert bool(finding.fix) is (severity is not Severity.OK)
+
+
+@pytest.fixture
+def taken_domain():
+    """Return a domain whose port for announcements somebody has for himself."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+        for domain in range(LARGEST_DOMAIN, 101, -1):
+            with contextlib.suppress(OSError):
+                stranger.bind(("", 7400 + 250 * domain))
+                yield str(domain)
+                return
+        pytest.fail("no domain has a port left")
+
+
+@pytest.mark.parametrize(
+    ("reach", "severity", "sentence"),
+    [
+        ("", Severity.WARNING, "programs without ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST do not"),
+        ("SUBNET", Severity.ERROR, "nobody finds anybody"),
+        ("LOCALHOST", Severity.OK, "on this machine it is not needed"),
+    ],
+)
+def test_a_port_that_another_program_has(taken_domain, reach, severity, sentence):
+    variables = {"ROS_DOMAIN_ID": taken_domain, "ROS_AUTOMATIC_DISCOVERY_RANGE": reach}
+    finding = Ports(variables).examine()
+    assert finding.severity is severity
+    assert f"for announcements in domain {taken_domain}, is taken" in finding.sentence
+    assert sentence in finding.sentence
+    assert ("ss -ulpn" in finding.fix) is (severity is not Severity.OK)
+
+
+def test_ports_that_are_shared_as_fast_dds_does_are_right():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as participant:
+        participant.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        participant.bind(("", 7400 + 250 * LARGEST_DOMAIN))
+        finding = Ports({"ROS_DOMAIN_ID": str(LARGEST_DOMAIN)}).examine()
+    assert finding.severity is Severity.OK, finding
+    assert str(7400 + 250 * LARGEST_DOMAIN) in finding.sentence
+
+
+def test_a_domain_that_is_none_has_no_port():
+    finding = Ports({"ROS_DOMAIN_ID": "mine"}).examine()
+    assert finding.severity is Severity.OK, finding
+    assert "127.0.0.1" in finding.sentence
+
+
+@pytest.mark.parametrize(
+    ("addresses", "severity", "sentence"),
+    [
+        # Addresses for documentation, which no machine has, and for no use at all.
+        ({"here": "192.0.2.1"}, Severity.ERROR, "what is sent to 192.0.2.1 does not arrive"),
+        ({"group": "240.0.0.1"}, Severity.WARNING, "multicast to 240.0.0.1 does not arrive"),
+    ],
+)
+def test_a_network_that_lets_nothing_pass(addresses, severity, sentence):
+    variables = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_DOMAIN_ID": str(LARGEST_DOMAIN)}
+    finding = Ports(variables, **addresses).examine()
+    assert finding.severity is severity
+    assert sentence in finding.sentence
+    assert finding.fix
+
+
+@pytest.fixture
+def serve():
+    """Return a function that serves a text by HTTP and returns the port."""
+    with contextlib.ExitStack() as servers:
+
+        def start(text: str) -> int:
+            class Page(BaseHTTPRequestHandler):
+                def do_GET(self) -> None:
+                    self.send_response(200)
+                    self.end_headers()
+                    self.wfile.write(text.encode())
+
+                def log_message(self, format: str, *args: object) -> None:
+                    pass
+
+            server = servers.enter_context(HTTPServer(("127.0.0.1", 0), Page))
+            thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+            thread.start()
+            servers.callback(thread.join)
+            servers.callback(server.shutdown)
+            return server.server_port
+
+        yield start
+
+
+def test_the_pages_port_is_free_or_a_pages(serve):
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    assert PagePort(port).examine().sentence == f"port {port} is free for it"
+    page = PagePort(serve("<title>Viser</title>")).examine()
+    assert page.severity is Severity.OK
+    assert "there is one on http://127.0.0.1:" in page.sentence
+
+
+def test_a_page_port_that_another_program_has_is_a_warning(serve):
+    finding = PagePort(serve("<title>My notes</title>")).examine()
+    assert finding.severity is Severity.WARNING
+    assert "is taken by another program" in finding.sentence
+    assert "ss -tlpn" in finding.fix
+
+
+def test_a_page_port_where_nothing_speaks_http_is_a_warning():
+    with socket.socket() as stranger:
+        stranger.bind(("127.0.0.1", 0))
+        # Bound, not listening: whoever connects is turned away.
+        assert PagePort(stranger.getsockname()[1]).examine().severity is Severity.WARNING
 
 
 def test_the_command_says_it_with_the_fix_and_an_exit_code(environ):

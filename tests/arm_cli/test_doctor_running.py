@@ -9,6 +9,7 @@ from arm_cli.doctor.description_published import DescriptionPublished
 from arm_cli.doctor.examination import examine_running, is_healthy
 from arm_cli.doctor.finding import Severity
 from arm_cli.doctor.hardware_active import HardwareActive
+from arm_cli.doctor.joint_states_come import JointStatesCome
 from arm_cli.doctor.joints_claimed import JointsClaimed
 from arm_cli.doctor.observation import (
     ClockReading,
@@ -18,6 +19,7 @@ from arm_cli.doctor.observation import (
     LoadedController,
     Mismatch,
     Observation,
+    StateTopic,
 )
 from arm_cli.doctor.qos_matches import QosMatches
 from arm_cli.doctor.real_time_factor import RealTimeFactor
@@ -32,6 +34,7 @@ HEALTHY = Observation(
     publishers={"/clock": ("/arm_gazebo",), "/joint_states": ("/joint_state_broadcaster",)},
     descriptions={"/robot_description": URDF},
     clock=ClockReading(1.0, 1.0, 1.0),
+    joint_states=(StateTopic("/joint_states", ("/joint_state_broadcaster",), (), 100),),
     commands=(CommandTopic("/position_controller/commands", (), ("/position_controller",)),),
 )
 
@@ -52,7 +55,7 @@ def test_a_healthy_simulation_has_no_fault():
     findings = examine_running(HEALTHY)
     assert [f for f in findings if f.severity is not Severity.OK] == []
     assert is_healthy(findings)
-    assert len({finding.check for finding in findings}) == 9
+    assert len({finding.check for finding in findings}) == 10
 
 
 def test_where_nothing_runs_nothing_is_wrong():
@@ -125,6 +128,32 @@ def test_nodes_that_wait_for_a_clock_which_nobody_publishes():
     says(ClockAdvancing, waiting, "error", sentence, "use_sim_time")
     says(ControllersActive, waiting, "error", "there is no controller manager")
     assert len(examine_running(waiting)) > 1
+
+
+LISTENED_TO = StateTopic("/joint_states", (), ("/robot_state_publisher",))
+SILENT = StateTopic("/joint_states", ("/jsb",), ("/robot_state_publisher",))
+COMING = StateTopic("/left/joint_states", ("/left/jsb",), (), 3)
+
+
+@pytest.mark.parametrize(
+    ("topics", "severity", "sentence"),
+    [
+        ((), "error", "nobody publishes /joint_states: the arm is seen at rest"),
+        ((LISTENED_TO,), "error", "/joint_states, which /robot_state_publisher listens to"),
+        ((SILENT,), "error", "/joint_states is published by /jsb, but nothing comes"),
+        ((SILENT, COMING), "warning", "/joint_states is published by /jsb, but nothing comes"),
+        ((LISTENED_TO, COMING), "warning", "nobody publishes /joint_states, which"),
+        ((COMING,), "ok", "they come on /left/joint_states"),
+    ],
+)
+def test_joint_states(topics, severity, sentence):
+    says(JointStatesCome, Observation(joint_states=topics), severity, sentence)
+
+
+def test_where_the_simulation_is_gone_the_rest_is_not_healthy():
+    # What is left of arm launch where the simulation hangs: nobody else knows of /clock.
+    left = Observation(descriptions={"/robot_description": URDF}, joint_states=(LISTENED_TO,))
+    assert not is_healthy(examine_running(left))
 
 
 def test_without_a_clock_time_is_the_machines():

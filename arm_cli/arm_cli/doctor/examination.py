@@ -13,8 +13,11 @@ from arm_cli.doctor.discovery import Discovery
 from arm_cli.doctor.finding import Finding, Severity
 from arm_cli.doctor.hardware_active import HardwareActive
 from arm_cli.doctor.interface_packages import InterfacePackages
+from arm_cli.doctor.joint_states_come import JointStatesCome
 from arm_cli.doctor.joints_claimed import JointsClaimed
 from arm_cli.doctor.observation import Observation
+from arm_cli.doctor.page_port import PagePort
+from arm_cli.doctor.ports import Ports
 from arm_cli.doctor.python_version import PythonVersion
 from arm_cli.doctor.qos_matches import QosMatches
 from arm_cli.doctor.real_time_factor import RealTimeFactor
@@ -32,6 +35,7 @@ RUNNING_CHECKS: tuple[Callable[[Observation], Check], ...] = (
     ControllersActive,
     JointsClaimed,
     ClockAdvancing,
+    JointStatesCome,
     RealTimeFactor,
     QosMatches,
     SinglePublishers,
@@ -50,6 +54,8 @@ def installation_checks(environ: Mapping[str, str]) -> tuple[Check, ...]:
         Rendering(environ),
         SharedMemory(),
         Discovery(environ),
+        Ports(environ),
+        PagePort(),
     )
 
 

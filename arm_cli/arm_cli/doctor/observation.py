@@ -71,6 +71,23 @@ class Mismatch:
 
 
 @dataclass(frozen=True, slots=True)
+class StateTopic:
+    """A topic on which joint states come, or are waited for.
+
+    Attributes:
+        name: of the topic.
+        publishers: names of the nodes that publish it.
+        listeners: names of the nodes that listen to it.
+        received: how many messages came.
+    """
+
+    name: str
+    publishers: tuple[str, ...] = ()
+    listeners: tuple[str, ...] = ()
+    received: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class CommandTopic:
     """A topic on which set-points come.
 
@@ -105,6 +122,7 @@ class Observation:
         descriptions: the robot description that came on each such topic, empty where none came.
         clock: None where nothing came on /clock.
         clock_readers: names of the nodes that go by /clock.
+        joint_states: topics with joint states.
         mismatches: end points that cannot talk to each other.
         commands: topics with set-points.
     """
@@ -114,6 +132,7 @@ class Observation:
     descriptions: Mapping[str, str] = field(default_factory=dict)
     clock: ClockReading | None = None
     clock_readers: tuple[str, ...] = ()
+    joint_states: tuple[StateTopic, ...] = ()
     mismatches: tuple[Mismatch, ...] = ()
     commands: tuple[CommandTopic, ...] = ()
 

@@ -1,5 +1,7 @@
 """Looks at a running simulation for a second, for the doctor."""
 
+from collections.abc import Mapping
+
 from rclpy.qos import QoSCompatibility, qos_check_compatible
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
@@ -10,6 +12,7 @@ from arm_cli.doctor.observation import (
     LoadedController,
     Mismatch,
     Observation,
+    StateTopic,
 )
 from arm_cli.errors import UnansweredError
 from arm_cli.ros.command_listener import CommandListener, command_controllers
@@ -17,7 +20,11 @@ from arm_cli.ros.controller_manager import ControllerManagerClient
 from arm_cli.ros.graph import Graph, NodeName
 from arm_cli.ros.parameters import NodeParameters
 from arm_cli.ros.session import Session
-from arm_cli.ros.simulation_listener import ClockListener, DescriptionListener
+from arm_cli.ros.simulation_listener import (
+    ClockListener,
+    DescriptionListener,
+    JointStateListener,
+)
 
 WINDOW_S = 1.0
 """How long the clock is watched, and commands are waited for."""
@@ -28,6 +35,7 @@ LIST_CONTROLLERS = "/list_controllers"
 LIST_TYPE = "controller_manager_msgs/srv/ListControllers"
 CLOCK = "/clock"
 DESCRIPTION, DESCRIPTION_TYPE = "robot_description", "std_msgs/msg/String"
+STATES, STATES_TYPE = "joint_states", "sensor_msgs/msg/JointState"
 FACTOR = "real_time_factor"
 
 
@@ -37,15 +45,13 @@ def observe(session: Session) -> Observation:
     graph.settle()
     managers = tuple(_ask(session, name) for name in _manager_names(graph))
     topics = graph.topics()
-    described = [
-        name
-        for name, types in topics.items()
-        if name.rpartition("/")[2] == DESCRIPTION
-        and types == [DESCRIPTION_TYPE]
-        and graph.publishers(name)
-    ]
     clock = ClockListener(session)
-    descriptions = [DescriptionListener(session, name) for name in described]
+    descriptions = [
+        DescriptionListener(session, name)
+        for name in _named(topics, DESCRIPTION, DESCRIPTION_TYPE)
+        if graph.publishers(name)
+    ]
+    states = [JointStateListener(session, name) for name in _named(topics, STATES, STATES_TYPE)]
     commands = [
         CommandListener(session, name, topics[name][0], controller, clock)
         for name, controller in command_controllers(topics, managers).items()
@@ -53,19 +59,43 @@ def observe(session: Session) -> Observation:
     if CLOCK in topics and graph.publishers(CLOCK):
         session.wait_until(lambda: clock.has_begun, timeout_s=FIRST_MESSAGE_S)
     session.spin_for(WINDOW_S)
-    session.wait_until(lambda: all(d.text for d in descriptions), timeout_s=FIRST_MESSAGE_S)
+    session.wait_until(
+        lambda: (
+            all(d.text for d in descriptions)
+            and all(s.received for s in states if graph.publishers(s.topic))
+        ),
+        timeout_s=FIRST_MESSAGE_S,
+    )
     return Observation(
         managers=managers,
         publishers={name: _names(graph.publishers(name)) for name in topics},
         descriptions={d.topic: d.text for d in descriptions},
         clock=_reading(session, graph, clock),
         clock_readers=_names(graph.subscriptions(CLOCK)),
+        joint_states=tuple(
+            StateTopic(
+                s.topic,
+                _names(graph.publishers(s.topic)),
+                _names(graph.subscriptions(s.topic)),
+                s.received,
+            )
+            for s in states
+        ),
         mismatches=tuple(m for name in topics for m in _mismatches(graph, name)),
         commands=tuple(
             c.report(_names(graph.publishers(c.topic)), _names(graph.subscriptions(c.topic)))
             for c in commands
         ),
     )
+
+
+def _named(topics: Mapping[str, list[str]], name: str, type_name: str) -> list[str]:
+    """Return the topics of this name and type in any namespace."""
+    return [
+        topic
+        for topic, types in topics.items()
+        if topic.rpartition("/")[2] == name and types == [type_name]
+    ]
 
 
 def _manager_names(graph: Graph) -> list[str]:

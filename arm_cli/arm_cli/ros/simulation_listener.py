@@ -4,6 +4,7 @@ import time
 
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from arm_cli.ros.qos import MEASURING
@@ -44,6 +45,24 @@ class ClockListener:
         self._arrived_s = time.monotonic()
         if self._first is None:
             self._first = (self.now_s, self._arrived_s)
+
+
+class JointStateListener:
+    """Counts the joint states of one topic.
+
+    Attributes:
+        topic: its absolute name.
+        received: how many messages came.
+    """
+
+    def __init__(self, session: Session, topic: str) -> None:
+        """Subscribe with the session's node."""
+        self.topic = topic
+        self.received = 0
+        session.node.create_subscription(JointState, topic, self._take, MEASURING, raw=True)
+
+    def _take(self, _message: bytes) -> None:
+        self.received += 1
 
 
 class DescriptionListener:

@@ -36,6 +36,7 @@ def _by_check(text: str) -> dict[str, dict]:
 
 def test_a_healthy_simulation(doctor):
     checks = ("description", "hardware", "controllers", "claims", "clock", "QoS", "commands")
+    checks += ("joint states",)
     found = doctor(lambda f: all(f[name]["severity"] == "ok" for name in checks), code=0)
     assert found["claims"]["sentence"] == "4 joints are commanded by active controllers"
     assert found["duplicate publishers"]["severity"] == "ok"
@@ -84,3 +85,15 @@ def test_a_command_by_the_wall_clock(doctor, client):
     found = doctor(lambda f: f["commands"]["severity"] == "error", code=1)
     assert "ahead of the simulation's time" in found["commands"]["sentence"]
     assert "use_sim_time" in found["commands"]["fix"]
+
+
+def test_a_simulation_that_is_stuck(doctor, simulation):
+    [node] = [p for p in simulation.descendants() if "arm_gazebo_node" in str(p.cmdline())]
+    node.suspend()
+    try:
+        found = doctor(lambda f: f.get("joint states", {}).get("severity") == "error", code=1)
+    finally:
+        node.resume()
+    assert "nobody publishes /joint_states" in found["joint states"]["sentence"]
+    assert "/robot_state_publisher" in found["joint states"]["sentence"]
+    assert found["clock"]["sentence"] != "/clock goes on, from /arm_gazebo"
