@@ -13,6 +13,9 @@ class CommandParser(argparse.ArgumentParser):
     def __init__(self, program: str, description: str) -> None:
         """Make it for a verb, such as "arm topic echo"."""
         super().__init__(prog=program, description=description, allow_abbrev=False)
+        # Nobody needs them, there is no daemon; but lines written for ros2 have them.
+        self.add_argument("--no-daemon", action="store_true", help=argparse.SUPPRESS)
+        self.add_argument("--spin-time", type=float, metavar="SECONDS", help=argparse.SUPPRESS)
 
     def parse_words(self, words: Sequence[str]) -> argparse.Namespace:
         """Return the options; what is wrong with the words ends the process with exit code 2."""
@@ -24,7 +27,11 @@ class CommandParser(argparse.ArgumentParser):
             self.error(f"too many words, from {word!r} on")
         from launch_py.near_names import describe_known
 
-        known = [name for name in self._option_string_actions if name.startswith("--")]
+        known = [
+            name
+            for name, action in self._option_string_actions.items()
+            if name.startswith("--") and action.help != argparse.SUPPRESS
+        ]
         self.error(f"no option {word}; {describe_known(word, known)}")
 
     def error(self, message: str) -> NoReturn:

@@ -2,9 +2,7 @@
 
 import argparse
 import os
-import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 
 from arm_cli.doctor.examination import (
@@ -19,7 +17,6 @@ from arm_cli.output import add_json_argument, colour, print_json
 from arm_cli.ros.connection import connect
 
 EXIT_UNHEALTHY = 1
-STDOUT, STDERR = 1, 2
 COLOURS = {Severity.OK: 92, Severity.WARNING: 93, Severity.ERROR: 91}
 SEVERITY_WIDTH = max(map(len, Severity))
 
@@ -58,25 +55,12 @@ def _examine() -> Iterator[Finding]:
 
 def _examine_running() -> list[Finding]:
     try:
-        with _stdout_kept_clean(), connect() as session:
+        with connect() as session:
             from arm_cli.ros.observer import observe
 
             return examine_running(observe(session))
     except ArmCliError as error:
         return [Finding.error(SIMULATION, str(error), "start the simulation again")]
-
-
-@contextmanager
-def _stdout_kept_clean() -> Iterator[None]:
-    """Send to stderr what Fast DDS logs on stdout, where findings are printed."""
-    sys.stdout.flush()
-    output = os.dup(STDOUT)
-    os.dup2(STDERR, STDOUT)
-    try:
-        yield
-    finally:
-        os.dup2(output, STDOUT)
-        os.close(output)
 
 
 def _line(finding: Finding) -> str:

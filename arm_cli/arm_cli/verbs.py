@@ -133,11 +133,12 @@ CONTROL = VerbFamily(
 
 LIFECYCLE = VerbFamily(
     "lifecycle",
-    "show managed nodes",
+    "show and steer managed nodes",
     (
         Verb("nodes", "list the nodes with a lifecycle", "arm_cli.lifecycle.nodes"),
         Verb("get", "print the state of a node, or of all", "arm_cli.lifecycle.get"),
         Verb("list", "list the transitions of a node", "arm_cli.lifecycle.list"),
+        Verb("set", "take a node through a transition", "arm_cli.lifecycle.set"),
     ),
 )
 

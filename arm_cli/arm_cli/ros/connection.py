@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from arm_cli.errors import UsageError
+from arm_cli.ros.library_output import library_output_on_stderr
 from arm_node.environment import MissingInterfacesError, prepare_environment
 from launch_py.child_environment import dds_profile
 
@@ -20,7 +21,7 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Se
     """Give a node for this command; see `open_session`.
 
     The process announces itself as often as the launched ones do, unless the user has a profile:
-    whoever is there answers at once.
+    whoever is there answers at once. Meanwhile stdout is for what Python prints alone.
 
     Raises:
         UsageError: an interface package is missing; the message says the fix.
@@ -34,5 +35,5 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Se
         os.environ.setdefault(PROFILE_VARIABLE, str(profile))
     from arm_cli.ros.session import open_session
 
-    with open_session(name, use_sim_time) as session:
+    with library_output_on_stderr(), open_session(name, use_sim_time) as session:
         yield session
