@@ -5,15 +5,25 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from viser import ViserServer
+from viser import GuiTabHandle, ViserServer
 
 from arm_viewer.page_look import apply_look
+from arm_viewer.panels.clock_panel import ClockPanel
+from arm_viewer.panels.controller_panel import ControllerPanel
+from arm_viewer.panels.graph_panel import GraphPanel
+from arm_viewer.panels.joint_panel import JointPanel
 from arm_viewer.panels.panel import Panel
+from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
+from arm_viewer.panels.topic_panel import TopicPanel
 from arm_viewer.requests import Send
+from arm_viewer.scene.frames import Frames
 from arm_viewer.snapshot import Snapshot
 
 TICK_S = 1.0 / 30.0
+
+Places = dict[str, tuple[Panel, ...]]
+"""What stands under each tab."""
 
 
 @contextmanager
@@ -40,12 +50,26 @@ def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send
 
 def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
     apply_look(server)
-    places: dict[str, tuple[Panel, ...]] = {
-        "Robot": (RobotPanel(server.scene),),
+    frames = Frames(server.scene)
+    main: Places = {
+        "Robot": (JointPanel(send), RobotPanel(server.scene, frames)),
+        "Control": (ClockPanel(), ControllerPanel(send)),
+        "System": (GraphPanel(), TopicPanel(send)),
+    }
+    left: Places = {
+        "Plots": (PlotPanel(),),
     }
     tabs = server.gui.add_tab_group()
+    window = server.gui.add_panel()
+    window.dock_left()
+    return (*_placed(main, server, tabs.add_tab), *_placed(left, server, window.add_tab))
+
+
+def _placed(
+    places: Places, server: ViserServer, add_tab: Callable[[str], GuiTabHandle]
+) -> tuple[Panel, ...]:
     for title, panels in places.items():
-        with tabs.add_tab(title):
+        with add_tab(title):
             for panel in panels:
                 panel.build(server.gui)
     return tuple(panel for panels in places.values() for panel in panels)

@@ -17,6 +17,28 @@ class MoveJoints:
     positions: dict[str, float]
 
 
-Request = MoveJoints
+@dataclass(frozen=True, slots=True)
+class SwitchControllers:
+    """Activate and deactivate controllers of one manager, all or none.
+
+    Attributes:
+        manager: absolute name of its node.
+        activate: names of inactive controllers.
+        deactivate: names of active controllers.
+    """
+
+    manager: str
+    activate: tuple[str, ...] = ()
+    deactivate: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureRates:
+    """Measure the rates of all topics from now on, or no more."""
+
+    wanted: bool
+
+
+Request = MoveJoints | SwitchControllers | MeasureRates
 Send = Callable[[Request], None]
 """Hands a request to the ROS thread; never blocks, may be called from any thread."""

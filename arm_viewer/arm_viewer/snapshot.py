@@ -11,20 +11,25 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.robot import Robot
+from arm_viewer.drawing.node_graph import NodeTopics
+
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A robot's URDF, and the topic that it came by.
+    """A robot as a topic describes it.
 
     Attributes:
         topic: such as "/left/robot_description".
         namespace: what stands before robot_description, without a slash at the end: "/left", "".
-        urdf: the text.
+        robot: None where the description is none.
+        problem: why it is none; empty where it is one.
     """
 
     topic: str
     namespace: str
-    urdf: str
+    robot: Robot | None
+    problem: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +98,42 @@ class Controller:
 
 
 @dataclass(frozen=True, slots=True)
+class SimulationTime:
+    """What /clock says, and how it keeps up with the clock on the wall.
+
+    Attributes:
+        time_s: the simulation's time.
+        factor: simulated over wall time in the last two seconds; 0 where it stands still.
+        lag_s: how much less than the wall's the simulation's time grew in `measured_s`.
+        measured_s: the wall's seconds that were looked at: ten, fewer at first.
+    """
+
+    time_s: float
+    factor: float
+    lag_s: float
+    measured_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic of the graph.
+
+    Attributes:
+        name: absolute.
+        types: usually one.
+        publishers: how many there are.
+        subscriptions: how many there are, besides the page's own.
+        rate_hz: messages in a second; NaN where that is not measured.
+    """
+
+    name: str
+    types: tuple[str, ...]
+    publishers: int
+    subscriptions: int
+    rate_hz: float
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """All of it. A mapping's keys are topics, but for `transforms`: child frames."""
 
@@ -100,4 +141,14 @@ class Snapshot:
     descriptions: Mapping[str, Description] = field(default_factory=lambda: MappingProxyType({}))
     transforms: Mapping[str, Transform] = field(default_factory=lambda: MappingProxyType({}))
     joint_states: Mapping[str, JointStates] = field(default_factory=lambda: MappingProxyType({}))
+    displayed: frozenset[str] = frozenset()
+    """The namespaces in which the page itself publishes the joint states."""
     controllers: tuple[Controller, ...] = ()
+    refusal: str = ""
+    """Why the last switch of controllers was refused; empty where it was not."""
+    commands: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    """What active controllers were told last, by command interface: "j0/position"."""
+    time: SimulationTime | None = None
+    """None where nobody publishes /clock."""
+    topics: tuple[Topic, ...] = ()
+    nodes: tuple[NodeTopics, ...] = ()

@@ -1,23 +1,107 @@
 """What of the robots is shown: the switches, and the robots themselves in the 3D view."""
 
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import dataclass
+
 from viser import GuiApi, SceneApi
 
-from arm_viewer.scene.frame_tree import FrameTree
-from arm_viewer.snapshot import Snapshot
+from arm_description.names import listing
+from arm_description.robot import Robot
+from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.robot_model import COLLISION, INERTIA, MASS, VISUAL, RobotModel
+from arm_viewer.snapshot import Description, Snapshot
+
+SWITCHES = {
+    VISUAL: ("Visual", "what the links look like"),
+    COLLISION: ("Collision", "what the links are touched by"),
+    MASS: ("Centre of mass", "balls of lead of the links' masses"),
+    INERTIA: ("Inertia", "solid ellipsoids of the links' masses and inertias"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """A robot in the view, what it was made of, and where its links were taken to be."""
+
+    description: Description
+    places: Mapping[str, str]
+    model: RobotModel
 
 
 class RobotPanel:
-    """Keeps the robots of the 3D view, and shows what the switches say."""
+    """Keeps the robots of the 3D view as they are described, where /tf says they are."""
 
-    def __init__(self, scene: SceneApi) -> None:
-        """Draw into this scene."""
-        self._frames = FrameTree(scene)
+    def __init__(self, scene: SceneApi, frames: Frames) -> None:
+        """Draw into this scene, below these frames."""
+        self._scene = scene
+        self._frames = frames
+        self._robots: dict[str, _Shown] = {}
 
     def build(self, gui: GuiApi) -> None:
         """Make the switches."""
-        self._show_frames = gui.add_checkbox("Frames", False)
+        with gui.add_folder("Show"):
+            self._layers = {
+                layer: gui.add_checkbox(label, layer == VISUAL, hint=hint)
+                for layer, (label, hint) in SWITCHES.items()
+            }
+            self._axes = gui.add_checkbox("Frames", False, hint="axes: x red, y green, z blue")
+            self._names = gui.add_checkbox("Frame names", False)
+        self._problem = gui.add_markdown("", visible=False)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Move the frames."""
+        """Show what the switches say, where the transforms say."""
         self._frames.update(snapshot.transforms)
-        self._frames.show_axes(self._show_frames.value)
+        self._frames.show_axes(self._axes.value)
+        self._frames.show_names(self._names.value)
+        for topic, description in snapshot.descriptions.items():
+            self._renew(topic, description)
+        layers = {layer for layer, switch in self._layers.items() if switch.value}
+        inside = self._axes.value or bool(layers & {MASS, INERTIA})
+        for shown in self._robots.values():
+            shown.model.show(layers, seen_through=inside)
+        self._say(_problem(snapshot, self._robots.values(), self._frames.known))
+
+    def _renew(self, topic: str, description: Description) -> None:
+        """Make a robot anew where its description is another one, or its links' frames are."""
+        shown = self._robots.get(topic)
+        robot = description.robot
+        places = {} if robot is None else _places(robot, description.namespace, self._frames.known)
+        if shown is not None:
+            if shown.description is description and shown.places == places:
+                return
+            self._robots.pop(topic).model.remove()
+        if robot is not None:
+            model = RobotModel(self._scene, self._frames, topic.strip("/"), robot, places)
+            self._robots[topic] = _Shown(description, places, model)
+
+    def _say(self, problem: str) -> None:
+        if self._problem.content != problem:
+            self._problem.content = problem
+            self._problem.visible = bool(problem)
+
+
+def _places(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, str]:
+    """Return the frame of each link: its own name, or that below the robot's namespace.
+
+    The second is what a state publisher's frame_prefix is used for, where robots of one kind are
+    told apart by namespaces only.
+    """
+    prefix = f"{namespace.strip('/')}/"
+    return {
+        link.name: prefixed
+        if link.name not in frames and (prefixed := prefix + link.name) in frames
+        else link.name
+        for link in robot.links
+    }
+
+
+def _problem(snapshot: Snapshot, robots: Iterable[_Shown], frames: Container[str]) -> str:
+    lines = [description.problem for description in snapshot.descriptions.values()]
+    lines += [
+        f"No transform on /tf for {listing(missing)} of {shown.description.topic}"
+        for shown in robots
+        if (missing := [frame for frame in shown.places.values() if frame not in frames])
+    ]
+    if not snapshot.descriptions:
+        lines.append("Waiting for a robot on /robot_description")
+    return "\n\n".join(filter(None, lines))

@@ -6,6 +6,8 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
+from arm_description.errors import DescriptionError
+from arm_description.urdf import parse_urdf
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_family import TopicFamily
@@ -32,8 +34,15 @@ class DescriptionObserver:
         for reader in self._topics.readers():
             message = reader.take_newest()
             if message is not None:
-                namespace = reader.topic.removesuffix(f"/{WORD}")
-                description = Description(reader.topic, namespace, message.data)
+                description = _read(reader.topic, message.data)
                 self.descriptions = MappingProxyType(
                     {**self.descriptions, reader.topic: description}
                 )
+
+
+def _read(topic: str, text: str) -> Description:
+    namespace = topic.removesuffix(f"/{WORD}")
+    try:
+        return Description(topic, namespace, parse_urdf(text))
+    except DescriptionError as error:
+        return Description(topic, namespace, None, f"{topic} describes no robot: {error}")

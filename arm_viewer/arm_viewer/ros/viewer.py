@@ -2,18 +2,26 @@
 
 import time
 from queue import Empty, SimpleQueue
+from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.requests import Request
+from arm_viewer.requests import MeasureRates, MoveJoints, Request, SwitchControllers
+from arm_viewer.ros.clock_observer import ClockObserver
+from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver
+from arm_viewer.ros.controller_switch import ControllerSwitch
 from arm_viewer.ros.description_observer import DescriptionObserver
+from arm_viewer.ros.joint_commander import JointCommander
 from arm_viewer.ros.joint_state_observer import JointStateObserver
+from arm_viewer.ros.joint_state_source import JointStateSource
+from arm_viewer.ros.node_observer import NodeObserver
 from arm_viewer.ros.observer import Observer
+from arm_viewer.ros.topic_observer import TopicObserver
 from arm_viewer.ros.transform_observer import TransformObserver
-from arm_viewer.snapshot import Snapshot
+from arm_viewer.snapshot import Controller, Snapshot
 
 TICK_S = 1.0 / 30.0
 DISCOVERY_PERIOD_S = 1.0
@@ -25,22 +33,33 @@ class Viewer(Node):
 
     def __init__(self) -> None:
         super().__init__("arm_viewer")
-        self.port = int(
-            self.declare_parameter(
-                "port", DEFAULT_PORT, ParameterDescriptor(description="of the page, on 127.0.0.1")
-            ).value
-            or 0
+        self.port: int = self._parameter("port", DEFAULT_PORT, "of the page, on 127.0.0.1")
+        displays: bool = self._parameter(
+            "publish_joint_states", False, "by the sliders, for a robot that is not there"
         )
         polled = PolledSubscriptions(self)
         self._descriptions = DescriptionObserver(self, polled)
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
         self._controllers = ControllerObserver(self)
+        self._switch = ControllerSwitch(self, self._listed)
+        self._commands = CommandObserver(self, polled, self._listed)
+        self._commander = JointCommander(self, self.latest)
+        self._source = JointStateSource(self, self.latest) if displays else None
+        self._simulation_clock = ClockObserver(self, polled)
+        self._topics = TopicObserver(self, polled)
+        self._nodes = NodeObserver(self)
         self._observers: tuple[Observer, ...] = (
             self._descriptions,
             self._transforms,
             self._joint_states,
             self._controllers,
+            self._switch,
+            self._commands,
+            self._commander,
+            self._simulation_clock,
+            self._topics,
+            self._nodes,
         )
         self._latest = Snapshot()
         self._requests: SimpleQueue[Request] = SimpleQueue()
@@ -57,6 +76,11 @@ class Viewer(Node):
         self._requests.put(request)
         self._request_waits.trigger()
 
+    def _parameter(self, name: str, default: Any, description: str) -> Any:
+        return self.declare_parameter(
+            name, default, ParameterDescriptor(description=description)
+        ).value
+
     def _discover(self) -> None:
         topics = dict(self.get_topic_names_and_types())
         for observer in self._observers:
@@ -71,7 +95,13 @@ class Viewer(Node):
             descriptions=self._descriptions.descriptions,
             transforms=self._transforms.transforms,
             joint_states=self._joint_states.joint_states,
+            displayed=frozenset({self._source.namespace} if self._source else ()),
             controllers=self._controllers.controllers,
+            refusal=self._switch.refusal,
+            commands=self._commands.commands,
+            time=self._simulation_clock.time,
+            topics=self._topics.topics,
+            nodes=self._nodes.nodes,
         )
 
     def _serve(self) -> None:
@@ -80,4 +110,15 @@ class Viewer(Node):
                 request = self._requests.get_nowait()
             except Empty:
                 return
-            self.get_logger().debug(f"{request}")
+            match request:
+                case MoveJoints():
+                    self._commander.move(request)
+                    if self._source is not None:
+                        self._source.move(request)
+                case SwitchControllers():
+                    self._switch.serve(request)
+                case MeasureRates():
+                    self._topics.measure(request.wanted)
+
+    def _listed(self) -> tuple[Controller, ...]:
+        return self._controllers.controllers
