@@ -24,7 +24,9 @@ from arm_gazebo.model_builder import build_world
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.managed_robot import ManagedRobot
+from arm_gazebo.ros.sensor_publisher import sensor_publisher
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
+from arm_gazebo.sensor_feed import SensorFeed
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
 from arm_gazebo.simulation_tick import SimulationTick
@@ -63,13 +65,14 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         built = _build(robots, settings, timing)
         simulation = Simulation(built, timing, settings.hold_joints)
         for robot in robots:
-            robot.drive(simulation)
+            robot.drive(simulation, settings.seed)
         feeds = [
             ending.enter_context(closing(feed))
             for feed in _feeds(robots, settings, node.get_namespace())
         ]
         managers = [robot.manager for robot in robots]
-        tick = SimulationTick(managers, simulation, RosClockPublisher(node), feeds, timing.period_s)
+        clock, shown = RosClockPublisher(node), [*feeds, *_sensor_feed(robots, node, timing)]
+        tick = SimulationTick(managers, simulation, clock, shown, timing.period_s)
         pacer = Pacer(
             timing.period_s,
             real_time_factor=settings.real_time_factor,
@@ -137,6 +140,16 @@ def _feeds(
     if cameras:
         ros_arguments = ("-r", f"__ns:={namespace}")
         yield CameraFeed(cameras, settings.render_backend, settings.seed, ros_arguments)
+
+
+def _sensor_feed(
+    robots: Sequence[ManagedRobot], node: Node, timing: PhysicsTiming
+) -> Iterator[SensorFeed]:
+    """Make what publishes the robots' sensors; nothing where there are none."""
+    instruments = [instrument for robot in robots for instrument in robot.instruments]
+    if instruments:
+        sinks = [sensor_publisher(node, instrument.sensor) for instrument in instruments]
+        yield SensorFeed(instruments, sinks, timing.period_s)
 
 
 def _supervise(
