@@ -1,4 +1,4 @@
-"""When which camera takes a picture, in simulation time."""
+"""When which camera takes a picture, or another sensor a reading, in simulation time."""
 
 import math
 from collections.abc import Sequence

@@ -22,12 +22,15 @@ from arm_gazebo.default_control import commandable_joints, with_hardware
 from arm_gazebo.description_leftovers import leftovers
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.gazebo_tags import GazeboTags, parse_gazebo_tags
+from arm_gazebo.link_sensor import LinkSensor
 from arm_gazebo.model_builder import build_model
 from arm_gazebo.robot_part import DEFAULT_OPTIONS
+from arm_gazebo.sensor_reader import parse_link_sensors
 from arm_gazebo.servo_tuning import too_weak, tune
-from arm_gazebo.simulated_hardware import STATES
+from arm_gazebo.simulated_hardware import MAX_EFFORT, STATES
 
 PERIOD_S = 0.01
+JOINT_INTERFACES = (*STATES, MAX_EFFORT)
 _LINE = re.compile(r"\bline (\d+)")
 
 
@@ -42,7 +45,8 @@ class RobotSummary:
         joints: how many of each type.
         driven: joints that are commanded.
         mimicking: joints that follow others.
-        cameras: names of the sensors.
+        cameras: names of the cameras.
+        sensors: types and names of the other sensors.
         meshes: mesh files used.
         triangles: of all meshes in the model.
         mass_kg: of all links, repaired ones as repaired.
@@ -55,6 +59,7 @@ class RobotSummary:
     driven: tuple[str, ...]
     mimicking: tuple[str, ...]
     cameras: tuple[str, ...]
+    sensors: tuple[str, ...]
     meshes: int
     triangles: int
     mass_kg: float
@@ -71,6 +76,7 @@ class RobotSummary:
             triangles = _counted(self.triangles, "triangle")
             parts.append(f"{_counted(self.meshes, 'mesh', 'meshes')} of {triangles}")
         parts += [f"camera {name}" for name in self.cameras]
+        parts += self.sensors
         return f"robot '{self.name}', root '{self.root}': {', '.join(parts)}"
 
 
@@ -105,6 +111,7 @@ def check_description(
     robot: Robot | None = None
     hardware: tuple[HardwareInfo, ...] = ()
     cameras: tuple[CameraSensor, ...] = ()
+    sensors: tuple[LinkSensor, ...] = ()
     tags = GazeboTags()
 
     def note(remark: Remark) -> None:
@@ -118,20 +125,25 @@ def check_description(
     with _failures(report, source):
         robot = parse_urdf(urdf, source, note)
     with _failures(report, source):
+        cameras = parse_cameras(urdf)
+        tags = parse_gazebo_tags(urdf)
+    if robot is not None:
+        with _failures(report, source):
+            sensors = parse_link_sensors(urdf, robot)
+    with _failures(report, source):
         hardware = parse_hardware_info(urdf)
         if not hardware and robot is not None:
             hardware = _made_up(urdf, robot, report)
-        _check_interfaces(hardware, report)
-    with _failures(report, source):
-        cameras = parse_cameras(urdf)
-        tags = parse_gazebo_tags(urdf)
+        _check_interfaces(hardware, sensors, report)
     summary = None
     if robot is not None:
         with _failures(report, source):
-            built = build_model(robot, hardware, cameras, options=options, tags=tags)
+            built = build_model(
+                robot, hardware, cameras, options=options, tags=tags, sensors=sensors
+            )
             report.add(*built.report.findings)
             _check_strength(built, report)
-            summary = _summary(robot, built, cameras)
+            summary = _summary(robot, built, cameras, sensors)
     return DescriptionCheck(summary, _without_repeats(report.findings))
 
 
@@ -157,15 +169,16 @@ def _made_up(urdf: str, robot: Robot, report: BuildReport) -> tuple[HardwareInfo
     return parse_hardware_info(with_hardware(urdf, robot))
 
 
-def _check_interfaces(hardware: Sequence[HardwareInfo], report: BuildReport) -> None:
+def _check_interfaces(
+    hardware: Sequence[HardwareInfo], sensors: Sequence[LinkSensor], report: BuildReport
+) -> None:
     for component in hardware:
-        joints = {joint.name for joint in component.joints}
+        offered = {
+            *(f"{joint.name}/{name}" for joint in component.joints for name in JOINT_INTERFACES),
+            *(f"{sensor.name}/{channel}" for sensor in sensors for channel in sensor.channels),
+        }
         every = (*component.command_interface_names, *component.state_interface_names)
-        left_out = [
-            name
-            for name in dict.fromkeys(every)
-            if name.rpartition("/")[0] not in joints or name.rpartition("/")[2] not in STATES
-        ]
+        left_out = [name for name in dict.fromkeys(every) if name not in offered]
         if left_out:
             report.drop(
                 f"<ros2_control name='{component.name}'>",
@@ -181,7 +194,12 @@ def _check_strength(built: BuiltModel, report: BuildReport) -> None:
         report.warn(f"joint '{name}'", problem)
 
 
-def _summary(robot: Robot, built: BuiltModel, cameras: Sequence[CameraSensor]) -> RobotSummary:
+def _summary(
+    robot: Robot,
+    built: BuiltModel,
+    cameras: Sequence[CameraSensor],
+    sensors: Sequence[LinkSensor],
+) -> RobotSummary:
     shapes = [s.geometry for link in robot.links for s in (*link.visuals, *link.collisions)]
     drawn = {
         int(built.model.geom_dataid[geom])
@@ -196,6 +214,7 @@ def _summary(robot: Robot, built: BuiltModel, cameras: Sequence[CameraSensor]) -
         driven=tuple(name for name, j in built.joints.items() if j.actuator is not None),
         mimicking=tuple(joint.name for joint in robot.joints if joint.mimic is not None),
         cameras=tuple(camera.name for camera in cameras),
+        sensors=tuple(f"{sensor.type} {sensor.name}" for sensor in sensors),
         meshes=len({shape.uri for shape in shapes if isinstance(shape, Mesh)}),
         triangles=sum(int(built.model.mesh_facenum[mesh]) for mesh in drawn),
         mass_kg=float(built.model.body_mass[list(built.bodies.values())].sum()),

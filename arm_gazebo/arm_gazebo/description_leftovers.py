@@ -7,7 +7,6 @@ from typing import Any
 from arm_description.urdf_element import written_name
 from arm_description.xml_document import parse_xml
 from arm_gazebo.build_report import Finding, Outcome
-from arm_gazebo.camera_sensor import CAMERA_TYPES
 from arm_gazebo.sensor_tags import sensor_type
 
 _SHAPES = {
@@ -82,7 +81,7 @@ def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
     for element in root.iterfind(".//material/texture"):
         yield "texture", _dropped(element, "<texture>", "surfaces have a colour, no picture")
     for element in root.iterfind("gazebo/sensor"):
-        if sensor_type(element) not in CAMERA_TYPES:
+        if sensor_type(element) is None:
             name = f"sensor '{element.get('name')}'"
             yield (
                 name,

@@ -19,6 +19,7 @@ from arm_gazebo.collision_policy import MOST_LAYERS, CollisionLayer
 from arm_gazebo.element_names import free_name, name_elements
 from arm_gazebo.errors import ModelError
 from arm_gazebo.gazebo_tags import GazeboTags
+from arm_gazebo.link_sensor import LinkSensor
 from arm_gazebo.robot_part import DEFAULT_OPTIONS, NO_TAGS, RobotInWorld, RobotPart
 from arm_gazebo.world_file import check_world, load_world
 
@@ -30,9 +31,10 @@ def build_model(
     world: str | Path = "empty",
     options: BuildOptions = DEFAULT_OPTIONS,
     tags: GazeboTags = NO_TAGS,
+    sensors: Sequence[LinkSensor] = (),
 ) -> BuiltModel:
     """Return the model of one robot in a world; see `RobotInWorld` and `build_world`."""
-    return build_world([RobotInWorld(robot, hardware, cameras, options, tags)], world)
+    return build_world([RobotInWorld(robot, hardware, cameras, options, tags, sensors)], world)
 
 
 def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") -> BuiltModel:

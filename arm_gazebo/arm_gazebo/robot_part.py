@@ -22,6 +22,7 @@ from arm_gazebo.footing import Footing
 from arm_gazebo.gazebo_tags import GazeboTags
 from arm_gazebo.initial_state import initial_positions
 from arm_gazebo.link_geometry import LinkGeometry
+from arm_gazebo.link_sensor import LinkSensor
 from arm_gazebo.mesh_cache import MeshCache
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mimic_joints import add_equalities, followings
@@ -41,6 +42,7 @@ class RobotInWorld:
         cameras: become cameras of the model, of the same names.
         options: the user's choices.
         tags: what the description's <gazebo> elements say.
+        sensors: become sensors of the model.
     """
 
     robot: Robot
@@ -48,6 +50,7 @@ class RobotInWorld:
     cameras: Sequence[CameraSensor] = ()
     options: BuildOptions = DEFAULT_OPTIONS
     tags: GazeboTags = NO_TAGS
+    sensors: Sequence[LinkSensor] = ()
 
     @property
     def self_collides(self) -> bool:
@@ -89,6 +92,8 @@ class RobotPart:
         self._drives = drives(robot, entry.hardware, self._follow, report)
         add_actuators(spec, self._drives, mujoco.MjSpec().default)
         add_cameras(spec, self._bodies, entry.cameras)
+        for sensor in entry.sensors:
+            sensor.add_to(spec, self._bodies)
         self._start = initial_positions(robot, entry.hardware, self._follow, report)
 
     def place(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from arm_control.hardware import HardwareReturn
 from arm_control.hardware_info import HardwareInfo, InterfaceInfo
 from arm_gazebo.drive_mode import DriveMode
+from arm_gazebo.instrument import Instrument
 from arm_gazebo.robot_joint import RobotJoint
+from arm_gazebo.sensor_states import SensorStates
 from arm_gazebo.servo import as_slice
 from arm_gazebo.simulation import Simulation
 
@@ -69,9 +71,12 @@ class SimulatedHardware:
     Args:
         simulation: has the joints.
         info: the component. What of it cannot be simulated is left out and logged.
+        instruments: the robot's sensors.
     """
 
-    def __init__(self, simulation: Simulation, info: HardwareInfo) -> None:
+    def __init__(
+        self, simulation: Simulation, info: HardwareInfo, instruments: Sequence[Instrument] = ()
+    ) -> None:
         self.info = info
         self._simulation = simulation
         self._servo = simulation.servo
@@ -95,7 +100,7 @@ class SimulatedHardware:
         self._beyond: set[str] = set()
         # One for each interface: a command that trembles about its limit shall not fill the log.
         self._warnings: dict[str, str] = {}
-        self.bind(np.empty(len(self._states)), np.empty(len(self._interfaces)))
+        self.bind(np.empty(len(self.state_interfaces)), np.empty(len(self._interfaces)))
 
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
         """Keep these views; see `Hardware.bind`."""
@@ -179,6 +184,7 @@ class SimulatedHardware:
         """Fill the states from the physics."""
         for target, source, there in self._copies:
             target[:] = source[there]
+        self._sensors.fill(self._state_values[len(self._states) :])
         return HardwareReturn.OK
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:

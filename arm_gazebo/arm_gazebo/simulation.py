@@ -15,6 +15,7 @@ from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.servo import Servo
 from arm_gazebo.servo_tuning import ServoTuning, too_weak, tune, tuned_again
+from arm_gazebo.state_probe import StateProbe
 from arm_gazebo.state_transfer import StateTransfer
 from arm_gazebo.world_state import WorldState
 
@@ -59,6 +60,7 @@ class Simulation:
             logger.warning("joint '%s': %s", name, problem)
         self._tuning = tuning
         self.servo = Servo(self.model, self.data, driven, tuning, timing)
+        self.probe = StateProbe()
         self._restart(built.qpos, 0.0)
         self._gate = ContactGate(self.model, self.data, timing.period_s)
         self._failures: list[str] = []
@@ -88,6 +90,7 @@ class Simulation:
             # MuJoCo adds up its steps, and with them their rounding: 3 ns in 12 minutes.
             self._periods += 1
             data.time = self._started_s + self._periods * self.timing.period_s
+        self.probe.expire()
         self._ticks_to_save -= 1
         if self._ticks_to_save < 0:
             self._ticks_to_save = self._save_ticks
@@ -136,6 +139,7 @@ class Simulation:
         mujoco.mj_forward(self.model, data)
         data.qacc_warmstart[:] = warm_start
         self._saved_qpos = data.qpos.copy()
+        self.probe.expire()
 
     def place(self, joint: str, position: np.ndarray, velocity: np.ndarray) -> None:
         """Put what hangs on a free joint elsewhere; between two calls of `advance`.
@@ -152,6 +156,7 @@ class Simulation:
         data.tree_asleep[:] = WIDE_AWAKE
         mujoco.mj_forward(self.model, data)
         self._saved_qpos[:] = data.qpos
+        self.probe.expire()
 
     def state(self) -> WorldState:
         """Return a copy of where everything is."""
@@ -163,6 +168,10 @@ class Simulation:
             data.mocap_pos.copy(),
             data.mocap_quat.copy(),
         )
+
+    def observe(self) -> mujoco.MjData:
+        """Return the present state with all that follows from it; see `StateProbe.look`."""
+        return self.probe.look(self.model, self.data)
 
     def take_failures(self) -> list[str]:
         """Return what went wrong in the physics since the last call, one sentence each."""
@@ -177,6 +186,7 @@ class Simulation:
         self._saved_qpos[:] = qpos
         # The drives read inertia and gravity of the last step.
         mujoco.mj_forward(self.model, self.data)
+        self.probe.expire()
 
     def _recover(self, before_s: float) -> None:
         self._restart(self._saved_qpos.copy(), before_s + self.timing.period_s)

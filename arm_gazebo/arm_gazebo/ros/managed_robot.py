@@ -15,8 +15,10 @@ from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.instrument import Instrument
 from arm_gazebo.robot_part import RobotInWorld
 from arm_gazebo.ros.robot_settings import RobotSettings
+from arm_gazebo.sensor_reader import parse_link_sensors
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
 
@@ -46,6 +48,11 @@ class ManagedRobot:
             _in_namespace(camera, settings.namespace)
             for camera in parse_cameras(settings.robot_description)
         )
+        self._robot = parse_urdf(settings.robot_description)
+        self._sensors = tuple(
+            replace(sensor, topic=_below(settings.namespace, sensor.topic))
+            for sensor in parse_link_sensors(settings.robot_description, self._robot)
+        )
         self.node = ControllerManagerNode(arguments, namespace=settings.namespace)
 
     def in_world(self, options: BuildOptions) -> RobotInWorld:
@@ -56,7 +63,7 @@ class ManagedRobot:
         """
         settings = self._settings
         return RobotInWorld(
-            parse_urdf(settings.robot_description),
+            self._robot,
             self._hardware_info,
             self.cameras,
             replace(
@@ -66,11 +73,20 @@ class ManagedRobot:
                 package_path=settings.package_path,
             ),
             parse_gazebo_tags(settings.robot_description),
+            self._sensors,
         )
 
-    def drive(self, simulation: Simulation) -> None:
-        """Make hardware and manager, before the loop runs."""
-        self.hardware = [SimulatedHardware(simulation, info) for info in self._hardware_info]
+    def drive(self, simulation: Simulation, seed: int) -> None:
+        """Make hardware, sensors and manager, before the loop runs.
+
+        Args:
+            simulation: has the robot.
+            seed: of the sensors' noise.
+        """
+        self.instruments = [Instrument(simulation, sensor, seed) for sensor in self._sensors]
+        self.hardware = [
+            SimulatedHardware(simulation, info, self.instruments) for info in self._hardware_info
+        ]
         description = self._settings.robot_description
         self.manager = configured_manager(self.hardware, self.node.settings, description)
         bring_up(self.manager, self.node.settings)
@@ -105,7 +121,7 @@ def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
         return camera
 
     def below(topics: Sequence[str]) -> tuple[str, ...]:
-        return tuple(t if t.startswith("/") else f"{namespace}/{t}" for t in topics)
+        return tuple(_below(namespace, topic) for topic in topics)
 
     return replace(
         camera,
@@ -115,3 +131,7 @@ def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
         depth_topics=below(camera.depth_topics),
         points_topics=below(camera.points_topics),
     )
+
+
+def _below(namespace: str, topic: str) -> str:
+    return topic if topic.startswith("/") or not namespace else f"{namespace}/{topic}"

@@ -22,7 +22,7 @@ class SimulationSettings:
         self_collide: whether a robot's links touch each other.
         strict: whether a missing mesh is an error instead of a box.
         render_backend: of the cameras.
-        seed: of the cameras' noise.
+        seed: of the sensors' noise.
         headless: False for a window on the simulation.
     """
 
@@ -59,6 +59,6 @@ def read_settings(node: Node) -> SimulationSettings:
         self_collide=values.flag("self_collide", False, "links of a robot touch each other"),
         strict=values.flag("strict", False, "a missing mesh is an error"),
         render_backend=values.choice("render_backend", "auto", PREFERENCES, "of the cameras"),
-        seed=values.whole("seed", 0, "of the cameras' noise"),
+        seed=values.whole("seed", 0, "of the sensors' noise"),
         headless=values.flag("headless", True, "false opens a window on the simulation"),
     )

@@ -1,0 +1,48 @@
+"""Reads the robots' sensors at their rates, for whoever listens."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.camera_schedule import FrameSchedule
+from arm_gazebo.instrument import Instrument
+
+
+class ReadingSink(Protocol):
+    """Where the readings of one sensor go; used on the loop thread."""
+
+    def wanted(self) -> bool:
+        """Return whether anybody listens now."""
+        ...
+
+    def publish(self, time_s: float, reading: NDArray[np.float64]) -> None:
+        """Publish the sensor's channels, stamped with the time of the state that they show."""
+        ...
+
+
+class SensorFeed:
+    """Publishes what sensors read. Nothing is computed for a sensor to which nobody listens.
+
+    Args:
+        instruments: the sensors.
+        sinks: where the readings of each go.
+        period_s: control period; the rate of a sensor that names none.
+    """
+
+    def __init__(
+        self, instruments: Sequence[Instrument], sinks: Sequence[ReadingSink], period_s: float
+    ) -> None:
+        self._channels = tuple(zip(instruments, sinks, strict=True))
+        self._schedule = FrameSchedule([i.sensor.rate_hz or 1 / period_s for i in instruments])
+
+    def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
+        """Publish the readings that are due at this tick; loop thread."""
+        if self._schedule.nothing_due(time_s):
+            return
+        for due in self._schedule.take_due(time_s):
+            instrument, sink = self._channels[due.camera]
+            if sink.wanted():
+                sink.publish(time_s, instrument.read())
