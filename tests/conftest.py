@@ -16,6 +16,9 @@ settings.load_profile("patient")
 DOMAIN_IDS = range(1, 102)
 """ROS domain ids whose ports no operating system hands out by itself."""
 
+DOMAIN_PORTS = (7400, 250)
+"""The first UDP port of domain 0, and how many ports each domain has (DDSI-RTPS 2.5, 9.6.2.3)."""
+
 _held_lock: list[int] = []
 
 
@@ -30,12 +33,24 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([sys.prefix, *filter(None, prefixes)])
 
 
+def _busy_domains() -> set[int]:
+    """Return the domains in which something on this machine listens now."""
+    first, count = DOMAIN_PORTS
+    table = Path("/proc/net/udp")
+    lines = table.read_text().splitlines()[1:] if table.exists() else []
+    ports = (int(line.split()[1].rpartition(":")[2], 16) for line in lines)
+    return {(port - first) // count for port in ports if port >= first}
+
+
 def _lock_a_domain() -> int:
     """Return a domain id that no other session of this machine uses while this one lasts."""
     folder = Path(tempfile.gettempdir()) / "ros-domains-in-tests"
     folder.mkdir(exist_ok=True)
+    busy = _busy_domains()
     for offset in DOMAIN_IDS:
         domain = 1 + (os.getpid() + offset) % len(DOMAIN_IDS)
+        if domain in busy:
+            continue
         lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
