@@ -26,13 +26,20 @@ HARDWARE_GROUP = "arm_control.hardware"
 
 _FORWARD = "arm_control.forward_command_controller"
 _GRIPPER = "arm_control.gripper"
+_FORCE_TORQUE = "arm_control.force_torque_sensor_broadcaster"
 _CONTROLLERS = {
     "diff_drive_controller/DiffDriveController": "arm_control.diff_drive:DiffDriveController",
     "effort_controllers/GripperActionController": f"{_GRIPPER}:EffortGripperController",
     "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
+    "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster": (
+        f"{_FORCE_TORQUE}:ForceTorqueSensorBroadcaster"
+    ),
     "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
     "forward_command_controller/MultiInterfaceForwardCommandController": (
         f"{_FORWARD}:MultiInterfaceForwardCommandController"
+    ),
+    "imu_sensor_broadcaster/IMUSensorBroadcaster": (
+        "arm_control.imu_sensor_broadcaster:ImuSensorBroadcaster"
     ),
     "joint_state_broadcaster/JointStateBroadcaster": (
         "arm_control.joint_state_broadcaster:JointStateBroadcaster"

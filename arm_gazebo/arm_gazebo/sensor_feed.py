@@ -1,26 +1,12 @@
 """Reads the robots' sensors at their rates, for whoever listens."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import mujoco
-import numpy as np
-from numpy.typing import NDArray
 
+from arm_control.sensor_broadcaster import ReadingSink
 from arm_gazebo.camera_schedule import FrameSchedule
 from arm_gazebo.instrument import Instrument
-
-
-class ReadingSink(Protocol):
-    """Where the readings of one sensor go; used on the loop thread."""
-
-    def wanted(self) -> bool:
-        """Return whether anybody listens now."""
-        ...
-
-    def publish(self, time_s: float, reading: NDArray[np.float64]) -> None:
-        """Publish the sensor's channels, stamped with the time of the state that they show."""
-        ...
 
 
 class SensorFeed:

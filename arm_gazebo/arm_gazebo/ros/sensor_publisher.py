@@ -9,10 +9,10 @@ from sensor_msgs.msg import Imu
 from std_msgs.msg import Bool
 
 from arm_control.ros.reading_publisher import ReadingPublisher
+from arm_control.sensor_broadcaster import ReadingSink
 from arm_gazebo.contact_sensor import ContactSensor
 from arm_gazebo.imu_sensor import ImuSensor
 from arm_gazebo.link_sensor import LinkSensor
-from arm_gazebo.sensor_feed import ReadingSink
 from arm_gazebo.sensor_noise import NoiseModel
 
 QOS = QoSProfile(depth=10)
