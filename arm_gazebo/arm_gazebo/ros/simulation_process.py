@@ -24,7 +24,6 @@ from arm_gazebo.model_builder import build_world
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.managed_robot import ManagedRobot
-from arm_gazebo.ros.sensor_publisher import sensor_publisher
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
 from arm_gazebo.sensor_feed import SensorFeed
 from arm_gazebo.simulated_hardware import SimulatedHardware
@@ -148,6 +147,9 @@ def _sensor_feed(
     """Make what publishes the robots' sensors; nothing where there are none."""
     instruments = [instrument for robot in robots for instrument in robot.instruments]
     if instruments:
+        # Only here: messages take time to load, and most robots have no sensors.
+        from arm_gazebo.ros.sensor_publisher import sensor_publisher
+
         sinks = [sensor_publisher(node, instrument.sensor) for instrument in instruments]
         yield SensorFeed(instruments, sinks, timing.period_s)
 
