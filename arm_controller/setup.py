@@ -41,6 +41,8 @@ setup(
             "publisher_terminal = arm_controller.publisher_terminal_node:main",
             "publisher_defined = arm_controller.publisher_defined_node:main",
             "arm_gripper_loop_controller = arm_controller.arm_gripper_loop_controller_node:main",
+            "example_gripper = arm_controller.example_gripper_node:main",
+            "example_diff_drive = arm_controller.example_diff_drive_node:main",
         ],
     },
 )

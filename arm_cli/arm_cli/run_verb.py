@@ -20,6 +20,8 @@ COURSE_EXECUTABLES: dict[tuple[str, str], tuple[str, str, tuple[str, ...]]] = {
     ),
     ("arm_control", "publisher_terminal"): ("arm_controller", "publisher_terminal", ()),
     ("arm_control", "publisher_defined"): ("arm_controller", "publisher_defined", ()),
+    ("gz_ros2_control_demos", "example_gripper"): ("arm_controller", "example_gripper", ()),
+    ("gz_ros2_control_demos", "example_diff_drive"): ("arm_controller", "example_diff_drive", ()),
 }
 """Executables of the course project, by package and name there: what does the same here."""
 

@@ -36,6 +36,11 @@ def test_the_course_project_s_names_work():
     )
 
 
+@pytest.mark.parametrize("name", ["example_gripper", "example_diff_drive"])
+def test_the_demos_names_work(name):
+    assert find_command("gz_ros2_control_demos", name) == find_command("arm_controller", name)
+
+
 def test_an_unknown_executable_names_the_near_one(capsys):
     assert main(["run", "arm_controller", "publisher_terminl"]) == 1
     assert "did you mean 'publisher_terminal'" in capsys.readouterr().err

@@ -1,0 +1,56 @@
+"""robot_state_publisher.launch.py: what its arguments come to, without starting anything."""
+
+import os
+
+import pytest
+import yaml
+
+from launch_py.expansion import expand_description
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.packages import Packages
+from launch_py.plan import GeneratedFile, ProcessStep
+
+FILE = ("yahboom_rosmaster_description", "robot_state_publisher.launch.py")
+
+
+def processes(**arguments: str) -> dict[str, ProcessStep]:
+    file = Packages(os.environ).launch_file(*FILE)
+    plan = expand_description(read_launch_file(file), arguments, dict(os.environ), file)
+    return {step.name: step for step in plan.steps if isinstance(step, ProcessStep)}
+
+
+def parameters(process: ProcessStep) -> dict:
+    (file,) = (word for word in process.command if isinstance(word, GeneratedFile))
+    ((_, entry),) = yaml.safe_load(file.text).items()
+    return entry["ros__parameters"]
+
+
+def test_without_sliders_somebody_else_publishes_the_wheels():
+    started = processes(jsp_gui="false", use_rviz="false")
+
+    assert set(started) == {"robot_state_publisher", "joint_state_publisher"}
+
+
+@pytest.mark.parametrize("prefix", ["", "left_"])
+def test_rviz_looks_from_the_robot_s_own_base(prefix, tmp_path, monkeypatch):
+    program = tmp_path / "rviz2"
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+
+    command = processes(jsp_gui="false", prefix=prefix)["rviz2"].command
+
+    assert command[command.index("-f") + 1] == f"{prefix}base_link"
+    assert str(command[command.index("-d") + 1]).endswith("yahboom_rosmaster_description.rviz")
+
+
+def test_the_arguments_reach_the_description_and_the_clock():
+    started = processes(
+        jsp_gui="false", use_rviz="false", prefix="a_", use_gazebo="true", use_sim_time="true"
+    )
+
+    for process in started.values():
+        given = parameters(process)
+        assert given["use_sim_time"] is True
+        assert 'name="a_front_left_wheel_joint"' in given["robot_description"]
+        assert "arm_gazebo/SimulatedHardware" in given["robot_description"]
