@@ -2,12 +2,13 @@
 
 import logging
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from viser import GuiTabHandle, ViserServer
+from viser import GuiApi, GuiTabHandle, ViserServer
 
-from arm_viewer.page_look import apply_look
+from arm_viewer.page_look import PANEL_WIDTH_PX, apply_look
+from arm_viewer.panels.camera_panel import CameraPanel
 from arm_viewer.panels.clock_panel import ClockPanel
 from arm_viewer.panels.controller_panel import ControllerPanel
 from arm_viewer.panels.graph_panel import GraphPanel
@@ -15,6 +16,7 @@ from arm_viewer.panels.joint_panel import JointPanel
 from arm_viewer.panels.panel import Panel
 from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
+from arm_viewer.panels.status_panel import StatusPanel
 from arm_viewer.panels.topic_panel import TopicPanel
 from arm_viewer.requests import Send
 from arm_viewer.scene.frames import Frames
@@ -22,7 +24,7 @@ from arm_viewer.snapshot import Snapshot
 
 TICK_S = 1.0 / 30.0
 
-Places = dict[str, tuple[Panel, ...]]
+Places = Mapping[str, tuple[Panel, ...]]
 """What stands under each tab."""
 
 
@@ -50,28 +52,36 @@ def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send
 
 def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
     apply_look(server)
+    gui = server.gui
     frames = Frames(server.scene)
-    main: Places = {
+    status = StatusPanel()
+    status.build(gui)
+    main = {
         "Robot": (JointPanel(send), RobotPanel(server.scene, frames)),
         "Control": (ClockPanel(), ControllerPanel(send)),
         "System": (GraphPanel(), TopicPanel(send)),
     }
-    left: Places = {
-        "Plots": (PlotPanel(),),
-    }
-    tabs = server.gui.add_tab_group()
-    window = server.gui.add_panel()
-    window.dock_left()
-    return (*_placed(main, server, tabs.add_tab), *_placed(left, server, window.add_tab))
+    cameras = {"Cameras": (CameraPanel(send, lambda: bool(server.get_clients())),)}
+    plots = {"Plots": (PlotPanel(),)}
+    above, below = gui.add_panel(), gui.add_panel()
+    above.dock_left()
+    below.dock_below(above)
+    above.set_width(PANEL_WIDTH_PX)
+    return (
+        status,
+        *_placed(main, gui, gui.add_tab_group().add_tab),
+        *_placed(cameras, gui, above.add_tab),
+        *_placed(plots, gui, below.add_tab),
+    )
 
 
 def _placed(
-    places: Places, server: ViserServer, add_tab: Callable[[str], GuiTabHandle]
+    places: Places, gui: GuiApi, add_tab: Callable[[str], GuiTabHandle]
 ) -> tuple[Panel, ...]:
     for title, panels in places.items():
         with add_tab(title):
             for panel in panels:
-                panel.build(server.gui)
+                panel.build(gui)
     return tuple(panel for panels in places.values() for panel in panels)
 
 

@@ -3,6 +3,8 @@
 from viser import ViserServer
 
 ACCENT = (77, 171, 247)
+BACKGROUND = (20, 20, 20)
+"""The colour that the dark theme has behind the 3D view."""
 GRID_CELL, GRID_SECTION = (48, 51, 56), (70, 75, 82)
 CAMERA_POSITION, CAMERA_TARGET = (0.75, -0.75, 0.55), (0.0, 0.0, 0.2)
 CAMERA_FOV_RAD = 0.8

@@ -39,6 +39,13 @@ class MeasureRates:
     wanted: bool
 
 
-Request = MoveJoints | SwitchControllers | MeasureRates
+@dataclass(frozen=True, slots=True)
+class ShowPictures:
+    """Subscribe to these image topics, and to no others."""
+
+    topics: frozenset[str]
+
+
+Request = ShowPictures | MoveJoints | SwitchControllers | MeasureRates
 Send = Callable[[Request], None]
 """Hands a request to the ROS thread; never blocks, may be called from any thread."""

@@ -6,6 +6,7 @@ SI units: m, rad, s. `received_s` is a time of `time.monotonic`.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from types import MappingProxyType
 
 import numpy as np
@@ -58,9 +59,9 @@ class JointStates:
     received_s: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """The newest image of a topic, as it was sent."""
+    """An image as it was sent: rows of `step` bytes in `data`, as sensor_msgs/msg/Image says."""
 
     encoding: str
     width: int
@@ -68,7 +69,45 @@ class Picture:
     step: int
     is_bigendian: bool
     data: NDArray[np.uint8]
-    received_s: float
+
+
+class MarkerShape(Enum):
+    """What a marker is, in a cube with sides of 1 that its scale stretches."""
+
+    BOX = "box"
+    BALL = "ball"
+    CYLINDER = "cylinder"
+    MESH = "mesh"
+    TRIANGLES = "triangles"
+
+
+@dataclass(frozen=True, slots=True)
+class MarkerLook:
+    """What a marker looks like, wherever it is.
+
+    Attributes:
+        shape: what it is.
+        scale: along its axes; m for a box, a ball and a cylinder.
+        rgba: colour, each 0 to 1.
+        mesh_uri: of a mesh.
+        points: of triangles: three times x, y, z in float32 for each, before the scale.
+    """
+
+    shape: MarkerShape
+    scale: tuple[float, float, float]
+    rgba: tuple[float, float, float, float]
+    mesh_uri: str = ""
+    points: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """A shape of the world, and where it is in its frame: m, and a unit quaternion."""
+
+    look: MarkerLook
+    frame: str
+    position: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +180,11 @@ class Snapshot:
     descriptions: Mapping[str, Description] = field(default_factory=lambda: MappingProxyType({}))
     transforms: Mapping[str, Transform] = field(default_factory=lambda: MappingProxyType({}))
     joint_states: Mapping[str, JointStates] = field(default_factory=lambda: MappingProxyType({}))
+    image_topics: tuple[str, ...] = ()
+    pictures: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
+    """The newest of the topics that the page wants to see."""
+    markers: Mapping[str, Marker] = field(default_factory=lambda: MappingProxyType({}))
+    """The world's shapes, by a name of their own."""
     displayed: frozenset[str] = frozenset()
     """The namespaces in which the page itself publishes the joint states."""
     controllers: tuple[Controller, ...] = ()

@@ -8,6 +8,8 @@ from viser import GuiApi, SceneApi
 from arm_description.names import listing
 from arm_description.robot import Robot
 from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.markers import Markers
+from arm_viewer.scene.node_name import node_name
 from arm_viewer.scene.robot_model import COLLISION, INERTIA, MASS, VISUAL, RobotModel
 from arm_viewer.snapshot import Description, Snapshot
 
@@ -35,6 +37,7 @@ class RobotPanel:
         """Draw into this scene, below these frames."""
         self._scene = scene
         self._frames = frames
+        self._markers = Markers(scene, frames)
         self._robots: dict[str, _Shown] = {}
 
     def build(self, gui: GuiApi) -> None:
@@ -46,6 +49,7 @@ class RobotPanel:
             }
             self._axes = gui.add_checkbox("Frames", False, hint="axes: x red, y green, z blue")
             self._names = gui.add_checkbox("Frame names", False)
+            self._world = gui.add_checkbox("World", True, hint="what stands around the robots")
         self._problem = gui.add_markdown("", visible=False)
 
     def update(self, snapshot: Snapshot) -> None:
@@ -53,6 +57,8 @@ class RobotPanel:
         self._frames.update(snapshot.transforms)
         self._frames.show_axes(self._axes.value)
         self._frames.show_names(self._names.value)
+        self._markers.update(snapshot.markers)
+        self._markers.show(self._world.value)
         for topic, description in snapshot.descriptions.items():
             self._renew(topic, description)
         layers = {layer for layer, switch in self._layers.items() if switch.value}
@@ -71,7 +77,7 @@ class RobotPanel:
                 return
             self._robots.pop(topic).model.remove()
         if robot is not None:
-            model = RobotModel(self._scene, self._frames, topic.strip("/"), robot, places)
+            model = RobotModel(self._scene, self._frames, node_name(topic), robot, places)
             self._robots[topic] = _Shown(description, places, model)
 
     def _say(self, problem: str) -> None:
@@ -102,6 +108,4 @@ def _problem(snapshot: Snapshot, robots: Iterable[_Shown], frames: Container[str
         for shown in robots
         if (missing := [frame for frame in shown.places.values() if frame not in frames])
     ]
-    if not snapshot.descriptions:
-        lines.append("Waiting for a robot on /robot_description")
     return "\n\n".join(filter(None, lines))

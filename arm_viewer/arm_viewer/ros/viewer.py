@@ -8,15 +8,17 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.requests import MeasureRates, MoveJoints, Request, SwitchControllers
+from arm_viewer.requests import MeasureRates, MoveJoints, Request, ShowPictures, SwitchControllers
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.controller_switch import ControllerSwitch
 from arm_viewer.ros.description_observer import DescriptionObserver
+from arm_viewer.ros.image_observer import ImageObserver
 from arm_viewer.ros.joint_commander import JointCommander
 from arm_viewer.ros.joint_state_observer import JointStateObserver
 from arm_viewer.ros.joint_state_source import JointStateSource
+from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.node_observer import NodeObserver
 from arm_viewer.ros.observer import Observer
 from arm_viewer.ros.topic_observer import TopicObserver
@@ -41,6 +43,8 @@ class Viewer(Node):
         self._descriptions = DescriptionObserver(self, polled)
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
+        self._images = ImageObserver(self, polled)
+        self._markers = MarkerObserver(self, polled)
         self._controllers = ControllerObserver(self)
         self._switch = ControllerSwitch(self, self._listed)
         self._commands = CommandObserver(self, polled, self._listed)
@@ -53,6 +57,8 @@ class Viewer(Node):
             self._descriptions,
             self._transforms,
             self._joint_states,
+            self._images,
+            self._markers,
             self._controllers,
             self._switch,
             self._commands,
@@ -95,6 +101,9 @@ class Viewer(Node):
             descriptions=self._descriptions.descriptions,
             transforms=self._transforms.transforms,
             joint_states=self._joint_states.joint_states,
+            image_topics=self._images.topics,
+            pictures=self._images.pictures,
+            markers=self._markers.markers,
             displayed=frozenset({self._source.namespace} if self._source else ()),
             controllers=self._controllers.controllers,
             refusal=self._switch.refusal,
@@ -115,6 +124,8 @@ class Viewer(Node):
                     self._commander.move(request)
                     if self._source is not None:
                         self._source.move(request)
+                case ShowPictures():
+                    self._images.serve(request)
                 case SwitchControllers():
                     self._switch.serve(request)
                 case MeasureRates():

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from viser import FrameHandle, LabelHandle, SceneApi
 
 from arm_viewer.scene.frame_poses import FramePose, frame_poses
+from arm_viewer.scene.node_name import node_name
 from arm_viewer.snapshot import Transform
 
 AXES_LENGTH, AXES_RADIUS = 0.06, 0.0018
@@ -93,8 +94,7 @@ class Frames:
 
 
 def _path(frame: str) -> str:
-    # A slash in a frame's name must not make a level of the scene's tree.
-    return "/frames/" + frame.replace("/", "\N{DIVISION SLASH}")
+    return f"/frames/{node_name(frame)}"
 
 
 def _differ(first: FramePose, second: FramePose) -> bool:

@@ -1,0 +1,83 @@
+"""The images of cameras, each with a switch; only those that are shown are subscribed to."""
+
+from collections.abc import Callable
+
+import numpy as np
+from viser import GuiApi, GuiImageHandle
+
+from arm_viewer.errors import PictureError
+from arm_viewer.picture_colours import colours
+from arm_viewer.requests import Send, ShowPictures
+from arm_viewer.snapshot import Picture, Snapshot
+
+NOTHING = np.zeros((3, 4, 3), dtype=np.uint8)
+NO_CAMERA = "Nobody publishes images."
+
+
+class CameraPanel:
+    """A switch and an image for every image topic; the first to come is shown by itself."""
+
+    def __init__(self, send: Send, is_watched: Callable[[], bool]) -> None:
+        """Show images while `is_watched` says that somebody looks."""
+        self._send = send
+        self._is_watched = is_watched
+        self._cameras: dict[str, _Camera] = {}
+        self._wanted: frozenset[str] = frozenset()
+
+    def build(self, gui: GuiApi) -> None:
+        """Make the place for the images."""
+        self._gui = gui
+        self._place = gui.add_folder(None)
+        with self._place:
+            self._hint = gui.add_markdown(NO_CAMERA)
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Show the newest images."""
+        for topic in snapshot.image_topics:
+            if topic not in self._cameras:
+                with self._place:
+                    self._cameras[topic] = _Camera(self._gui, topic, shown=not self._cameras)
+        self._hint.visible = not snapshot.image_topics
+        for topic, camera in self._cameras.items():
+            camera.update(topic in snapshot.image_topics, snapshot.pictures.get(topic))
+        shown = [topic for topic, camera in self._cameras.items() if camera.is_shown]
+        wanted = frozenset(shown if self._is_watched() else ())
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self._send(ShowPictures(wanted))
+
+
+class _Camera:
+    """The image of one topic."""
+
+    def __init__(self, gui: GuiApi, topic: str, shown: bool) -> None:
+        self._folder = gui.add_folder(None)
+        with self._folder:
+            self._switch = gui.add_checkbox(topic, shown)
+            self._image: GuiImageHandle = gui.add_image(NOTHING, format="jpeg", visible=False)
+            self._problem = gui.add_markdown("", visible=False)
+        self._picture: Picture | None = None
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the user wants to see it, and there is something to see."""
+        return self._switch.value and self._folder.visible
+
+    def update(self, is_published: bool, picture: Picture | None) -> None:
+        """Show a picture; the last one stays where none has come."""
+        self._folder.visible = is_published
+        if not self._switch.value:
+            self._image.visible = self._problem.visible = False
+            self._picture = None
+        elif picture is not None and picture is not self._picture:
+            self._picture = picture
+            self._show(picture)
+
+    def _show(self, picture: Picture) -> None:
+        try:
+            self._image.image = colours(picture)
+        except PictureError as error:
+            self._problem.content = f"{error}"
+            self._problem.visible, self._image.visible = True, False
+        else:
+            self._problem.visible, self._image.visible = False, True

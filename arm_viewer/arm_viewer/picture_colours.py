@@ -1,0 +1,80 @@
+"""Images of ROS as what a browser shows: red, green and blue of 8 bits each."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_viewer.errors import PictureError
+from arm_viewer.snapshot import Picture
+
+MOST_PIXELS_WIDE = 480
+"""Wider images are made smaller: they are shown in a column, and encoding them takes its time."""
+
+_CHANNELS = {
+    "rgb8": (np.uint8, 3),
+    "bgr8": (np.uint8, 3),
+    "rgba8": (np.uint8, 4),
+    "bgra8": (np.uint8, 4),
+    "mono8": (np.uint8, 1),
+    "8UC1": (np.uint8, 1),
+    "mono16": (np.uint16, 1),
+    "16UC1": (np.uint16, 1),
+    "32FC1": (np.float32, 1),
+}
+"""Type and number of a pixel's values, by encoding."""
+_DISTANCES = ("16UC1", "32FC1")
+"""Encodings of depth images: shown as colours, near red and far blue, unknown black."""
+
+
+def colours(picture: Picture) -> NDArray[np.uint8]:
+    """Return the image (h, w, 3), at most MOST_PIXELS_WIDE wide.
+
+    Raises:
+        PictureError: an encoding that is not known, or less data than there are pixels.
+    """
+    pixels = _shrunk(_pixels(picture))
+    encoding = picture.encoding
+    if encoding in _DISTANCES:
+        return _distance_colours(pixels[:, :, 0].astype(np.float32))
+    if encoding == "mono16":
+        pixels = (pixels >> 8).astype(np.uint8)
+    if encoding.startswith("bgr"):
+        pixels = pixels[:, :, 2::-1]
+    elif pixels.shape[2] == 1:
+        pixels = np.repeat(pixels, 3, axis=2)
+    return np.ascontiguousarray(pixels[:, :, :3])
+
+
+def _pixels(picture: Picture) -> NDArray:
+    if picture.encoding not in _CHANNELS:
+        known = ", ".join(_CHANNELS)
+        raise PictureError(f"cannot show the encoding '{picture.encoding}'; known are {known}")
+    kind, channels = _CHANNELS[picture.encoding]
+    kind = np.dtype(kind).newbyteorder(">" if picture.is_bigendian else "<")
+    row = picture.width * channels * kind.itemsize
+    if not 0 < row <= picture.step or not picture.height:
+        raise PictureError(
+            f"an image of {picture.width}x{picture.height} pixels of {picture.encoding} with "
+            f"rows of {picture.step} bytes"
+        )
+    if picture.data.size < picture.height * picture.step:
+        raise PictureError(f"{picture.data.size} bytes for {picture.height} rows of {picture.step}")
+    rows = picture.data[: picture.height * picture.step].reshape(picture.height, picture.step)
+    values = np.ascontiguousarray(rows[:, :row]).view(kind)
+    return values.reshape(picture.height, picture.width, channels)
+
+
+def _shrunk(pixels: NDArray) -> NDArray:
+    every = -(-pixels.shape[1] // MOST_PIXELS_WIDE)
+    return pixels[::every, ::every]
+
+
+def _distance_colours(distances: NDArray[np.float32]) -> NDArray[np.uint8]:
+    known = np.isfinite(distances) & (distances > 0.0)
+    if not known.any():
+        return np.zeros((*distances.shape, 3), dtype=np.uint8)
+    nearest, farthest = distances[known].min(), distances[known].max()
+    share = np.where(known, (farthest - distances) / max(farthest - nearest, 1e-6), 0.0)
+    coloured = cv2.applyColorMap((share * 255.0).astype(np.uint8), cv2.COLORMAP_TURBO)
+    coloured[~known] = 0
+    return np.ascontiguousarray(coloured[:, :, ::-1], dtype=np.uint8)

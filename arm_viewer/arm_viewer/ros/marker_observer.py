@@ -1,0 +1,75 @@
+"""The world's shapes, from topics whose last word is world_markers."""
+
+import math
+from types import MappingProxyType
+
+import numpy as np
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from visualization_msgs.msg import Marker as MarkerMessage
+from visualization_msgs.msg import MarkerArray
+
+from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.topic_family import TopicFamily
+from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
+
+WORD = "world_markers"
+_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_SHAPES = {
+    MarkerMessage.CUBE: MarkerShape.BOX,
+    MarkerMessage.SPHERE: MarkerShape.BALL,
+    MarkerMessage.CYLINDER: MarkerShape.CYLINDER,
+    MarkerMessage.MESH_RESOURCE: MarkerShape.MESH,
+    MarkerMessage.TRIANGLE_LIST: MarkerShape.TRIANGLES,
+}
+
+
+class MarkerObserver:
+    """Keeps the newest marker of each name; other kinds of markers are passed over."""
+
+    def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
+        """Start to look."""
+        self._topics = TopicFamily(node, polled, MarkerArray, WORD, _QOS)
+        self.markers: MappingProxyType[str, Marker] = MappingProxyType({})
+
+    def discover(self, topics: TopicTypes) -> None:
+        """Subscribe to new topics."""
+        self._topics.discover(topics)
+
+    def collect(self, now_s: float) -> None:
+        """Take what has arrived."""
+        for reader in self._topics.readers():
+            message = reader.take_newest()
+            if message is not None:
+                markers = dict(self.markers)
+                for marker in message.markers:
+                    _take(markers, reader.topic, marker)
+                self.markers = MappingProxyType(markers)
+
+
+def _take(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> None:
+    name = f"{topic}/{message.ns}/{message.id}"
+    if message.action == MarkerMessage.DELETEALL:
+        for known in [known for known in markers if known.startswith(f"{topic}/")]:
+            del markers[known]
+    elif message.action == MarkerMessage.DELETE:
+        markers.pop(name, None)
+    elif message.type in _SHAPES:
+        marker = _read(message)
+        if marker is not None:
+            markers[name] = marker
+
+
+def _read(message: MarkerMessage) -> Marker | None:
+    move, turn = message.pose.position, message.pose.orientation
+    position, rotation = (move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w)
+    scale = (message.scale.x, message.scale.y, message.scale.z)
+    length = math.hypot(*rotation)
+    if not all(map(math.isfinite, (*position, length, *scale))) or length == 0.0:
+        return None
+    rgba = (message.color.r, message.color.g, message.color.b, message.color.a)
+    points = np.array([(p.x, p.y, p.z) for p in message.points], dtype=np.float32)
+    look = MarkerLook(_SHAPES[message.type], scale, rgba, message.mesh_resource, points.tobytes())
+    x, y, z, w = (component / length for component in rotation)
+    return Marker(look, message.header.frame_id, position, (x, y, z, w))
