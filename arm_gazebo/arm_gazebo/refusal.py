@@ -22,6 +22,8 @@ class Refusal(Enum):
     UNSUPPORTED_ELEMENTS = auto()
     INVALID_POSE = auto()
     NO_WORLD = auto()
+    ALREADY_THERE = auto()
+    INCORRECT_TRANSITION = auto()
 
 
 class RefusedError(GazeboError):

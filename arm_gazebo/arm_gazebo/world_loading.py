@@ -107,21 +107,25 @@ def named_world(path: Path) -> NamedWorld:
     return NamedWorld(path.stem, path.absolute().as_uri(), "shipped" if shipped else "")
 
 
-def available_worlds(folders: Sequence[str]) -> list[NamedWorld]:
-    """Return the shipped worlds, then those in folders, by path or URI.
+def available_worlds(folders: Sequence[str], go_on: bool = False) -> list[NamedWorld]:
+    """Return the shipped worlds, then those in folders.
+
+    Args:
+        folders: paths or URIs.
+        go_on: pass over folders that cannot be read.
 
     Raises:
-        RefusedError: a folder does not exist.
+        RefusedError: a folder cannot be read.
     """
     found = list(shipped_worlds().values())
     for folder in folders:
         try:
-            path = resolve_uri(folder)
-        except ResourceNotFoundError as error:
-            raise RefusedError(Refusal.NO_RESOURCE, str(error)) from error
-        if not path.is_dir():
-            raise RefusedError(Refusal.NO_RESOURCE, f"{path} is no folder")
-        found += sorted(file for file in path.iterdir() if file.suffix in SUFFIXES)
+            files = sorted(resolve_uri(folder).iterdir())
+        except (ResourceNotFoundError, OSError) as error:
+            if not go_on:
+                raise RefusedError(Refusal.FAILED, str(error)) from error
+            continue
+        found += [file for file in files if file.suffix in SUFFIXES]
     return [named_world(file) for file in found]
 
 

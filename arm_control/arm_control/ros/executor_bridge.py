@@ -37,6 +37,15 @@ async def call_on_loop(
     Returns:
         Its result, or what it raised; `LoopStoppedError` where the loop runs no more.
     """
+    return await completed(loop.call(function), executor)
+
+
+async def completed(promised: "LoopFuture[ResultT]", executor: Executor) -> ResultT:
+    """Wait for what another thread has promised; for coroutines of `executor`.
+
+    Returns:
+        The result, or what was raised instead.
+    """
     future = Future()
 
     def pass_on(done: "LoopFuture[Any]") -> None:
@@ -47,7 +56,7 @@ async def call_on_loop(
         future.set_exception(error)
         executor.wake()
 
-    loop.call(function).add_done_callback(pass_on)
+    promised.add_done_callback(pass_on)
     return cast(ResultT, await future)
 
 

@@ -22,6 +22,11 @@ class ExecutorThread:
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
 
+    @property
+    def executor(self) -> SingleThreadedExecutor:
+        """The executor; for coroutines that wait for other threads, see `executor_bridge`."""
+        return self._executor
+
     def start(self, node: Node) -> None:
         """Serve this node from now on."""
         self._executor.add_node(node)

@@ -17,7 +17,7 @@ class SurfaceColours:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         geoms = range(model.ngeom)
-        self._paint = np.array([_paint(model, i) for i in geoms], np.float32)
+        self._paint = np.array([_paint(model, i)[:3] for i in geoms], np.float32)
         self._tint = np.array([_tint(model, i) for i in geoms], np.float32)
         self._glow = np.array([_emission(model, i) for i in geoms], np.float32)
         self._sky = _sky_rows(model)
@@ -39,11 +39,21 @@ class SurfaceColours:
         return self._sky[rows]
 
 
+def flat_colours(model: mujoco.MjModel) -> Colours:
+    """Return one colour and opacity for each geom, shape (ngeom, 4)."""
+    colours = np.ones((model.ngeom, 4), np.float32)
+    for geom in range(model.ngeom):
+        colours[geom] = _paint(model, geom)
+        colours[geom, :3] *= _tint(model, geom)
+    return np.clip(colours, 0.0, 1.0)
+
+
 def _paint(model: mujoco.MjModel, geom: int) -> Colours:
+    """Return colour and opacity, shape (4,)."""
     material = model.geom_matid[geom]
     own: Colours = model.geom_rgba[geom]
     from_material = material >= 0 and np.array_equal(own, UNSET_RGBA)
-    return model.mat_rgba[material][:3] if from_material else own[:3]
+    return model.mat_rgba[material] if from_material else own
 
 
 def _tint(model: mujoco.MjModel, geom: int) -> Colours:

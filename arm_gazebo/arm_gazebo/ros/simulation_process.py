@@ -15,16 +15,17 @@ from rclpy.node import Node
 from arm_control.control_loop import ControlLoop
 from arm_control.pacer import Pacer
 from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.camera_feed import CameraFeed
 from arm_gazebo.display import check_display
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.mesh_cache import cache_folder
 from arm_gazebo.model_builder import build_world
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
+from arm_gazebo.robot_part import RobotInWorld
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
+from arm_gazebo.ros.simulation_server import SimulationServer
 from arm_gazebo.sensor_feed import SensorFeed
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
@@ -61,7 +62,9 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             robots.append(ManagedRobot(robot_settings, arguments))
             nodes.callback(robots[-1].destroy_nodes)
         timing = _timing(robots, settings)
-        built = _build(robots, settings, timing)
+        entries = _entries(robots, settings, timing)
+        built = build_world(entries, settings.world)
+        built.report.log(logger)
         simulation = Simulation(built, timing, settings.hold_joints)
         for robot in robots:
             robot.drive(simulation, settings.seed)
@@ -87,6 +90,11 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             feed.start(built.model)
         hardware = [component for robot in robots for component in robot.hardware]
         _supervise(node, pacer, simulation, hardware, feeds)
+        server = SimulationServer(
+            simulation, loop, entries, hardware, feeds, settings.world, process.stop
+        )
+        nodes.callback(server.destroy_node)
+        ending.callback(server.shutdown)
         yield
 
 
@@ -110,18 +118,16 @@ def _timing(robots: Sequence[ManagedRobot], settings: SimulationSettings) -> Phy
     return physics_timing(robots[0].node.settings.update_rate, settings.physics_step_s)
 
 
-def _build(
+def _entries(
     robots: Sequence[ManagedRobot], settings: SimulationSettings, timing: PhysicsTiming
-) -> BuiltModel:
+) -> list[RobotInWorld]:
     options = BuildOptions(
         step_s=timing.step_s,
         self_collide=settings.self_collide,
         strict=settings.strict,
         mesh_cache=cache_folder(),
     )
-    built = build_world([robot.in_world(options) for robot in robots], settings.world)
-    built.report.log(logger)
-    return built
+    return [robot.in_world(options) for robot in robots]
 
 
 def _feeds(

@@ -1,0 +1,141 @@
+"""The services of simulation_interfaces about entities: spawn, delete, find, ask, move."""
+
+from typing import Any
+
+from rclpy.node import Node
+from simulation_interfaces.srv import (
+    DeleteEntity,
+    GetEntities,
+    GetEntitiesStates,
+    GetEntityBounds,
+    GetEntityInfo,
+    GetEntityState,
+    SetEntityInfo,
+    SetEntityState,
+    SpawnEntity,
+)
+
+from arm_gazebo.refusal import Refusal, RefusedError
+from arm_gazebo.ros.service_table import ServiceRow, create_services
+from arm_gazebo.ros.world_convert import (
+    answer,
+    bounds_message,
+    filter_of,
+    info_message,
+    matrix_of,
+    note_of,
+    state_message,
+    twist_of,
+)
+from arm_gazebo.world_keeper import SpawnRequest, WorldKeeper
+
+SPAWN_CODES = {
+    Refusal.NAME_NOT_UNIQUE: SpawnEntity.Response.NAME_NOT_UNIQUE,
+    Refusal.NAME_INVALID: SpawnEntity.Response.NAME_INVALID,
+    Refusal.UNSUPPORTED_FORMAT: SpawnEntity.Response.UNSUPPORTED_FORMAT,
+    Refusal.NO_RESOURCE: SpawnEntity.Response.NO_RESOURCE,
+    Refusal.NAMESPACE_INVALID: SpawnEntity.Response.NAMESPACE_INVALID,
+    Refusal.UNREADABLE: SpawnEntity.Response.RESOURCE_PARSE_ERROR,
+    Refusal.MISSING_ASSETS: SpawnEntity.Response.MISSING_ASSETS,
+    Refusal.INVALID_POSE: SpawnEntity.Response.INVALID_POSE,
+}
+MOVE_CODES = {Refusal.INVALID_POSE: SetEntityState.Response.INVALID_POSE}
+
+
+class EntityServices:
+    """Creates the services on a node and answers them; they may block its executor."""
+
+    def __init__(self, node: Node, keeper: WorldKeeper) -> None:
+        self._keeper = keeper
+        services: tuple[ServiceRow, ...] = (
+            (SpawnEntity, "spawn_entity", self._spawn),
+            (DeleteEntity, "delete_entity", self._delete),
+            (GetEntities, "get_entities", self._names),
+            (GetEntitiesStates, "get_entities_states", self._states),
+            (GetEntityState, "get_entity_state", self._state),
+            (SetEntityState, "set_entity_state", self._move),
+            (GetEntityInfo, "get_entity_info", self._info),
+            (SetEntityInfo, "set_entity_info", self._describe),
+            (GetEntityBounds, "get_entity_bounds", self._bounds),
+        )
+        create_services(node, services)
+
+    def _spawn(
+        self, request: SpawnEntity.Request, response: SpawnEntity.Response
+    ) -> SpawnEntity.Response:
+        def spawn() -> None:
+            response.entity_name = self._keeper.spawn(
+                SpawnRequest(
+                    name=request.name,
+                    uri=request.entity_resource.uri,
+                    text=request.entity_resource.resource_string,
+                    pose=matrix_of(request.initial_pose.pose),
+                    frame=request.initial_pose.header.frame_id,
+                    namespace=request.entity_namespace,
+                    allow_renaming=request.allow_renaming,
+                )
+            )
+
+        return answer(response, SPAWN_CODES, spawn)
+
+    def _delete(self, request: Any, response: Any) -> Any:
+        return answer(response, {}, lambda: self._keeper.delete(request.entity))
+
+    def _names(self, request: GetEntities.Request, response: GetEntities.Response) -> Any:
+        def find() -> None:
+            chosen = filter_of(request.filters).choose(
+                self._keeper.entities, self._keeper.motions()
+            )
+            response.entities = [entity.name for entity in chosen]
+
+        return answer(response, {}, find)
+
+    def _states(
+        self, request: GetEntitiesStates.Request, response: GetEntitiesStates.Response
+    ) -> Any:
+        def find() -> None:
+            motions = self._keeper.motions()
+            chosen = filter_of(request.filters).choose(self._keeper.entities, motions)
+            response.entities = [entity.name for entity in chosen]
+            response.states = [state_message(motions.motion(e.roots[0])) for e in chosen]
+
+        return answer(response, {}, find)
+
+    def _state(self, request: Any, response: Any) -> Any:
+        def look() -> None:
+            entity = self._keeper.entities.find(request.entity)
+            response.state = state_message(self._keeper.motions().motion(entity.roots[0]))
+
+        return answer(response, {}, look)
+
+    def _move(self, request: SetEntityState.Request, response: SetEntityState.Response) -> Any:
+        def move() -> None:
+            state = request.state
+            if request.set_acceleration:
+                raise RefusedError(
+                    Refusal.UNSUPPORTED, "accelerations follow from forces and cannot be set"
+                )
+            pose = matrix_of(state.pose) if request.set_pose else None
+            twist = twist_of(state.twist) if request.set_twist else None
+            self._keeper.place(request.entity, pose, state.header.frame_id, twist)
+
+        return answer(response, MOVE_CODES, move)
+
+    def _info(self, request: Any, response: Any) -> Any:
+        def look() -> None:
+            response.info = info_message(self._keeper.entities.find(request.entity).note)
+
+        return answer(response, {}, look)
+
+    def _describe(self, request: Any, response: Any) -> Any:
+        return answer(
+            response, {}, lambda: self._keeper.describe(request.entity, note_of(request.info))
+        )
+
+    def _bounds(self, request: Any, response: Any) -> Any:
+        def look() -> None:
+            entity = self._keeper.entities.find(request.entity)
+            motions = self._keeper.motions()
+            response.bounds = bounds_message(motions.bounds(entity, motions.pose(entity.roots[0])))
+
+        return answer(response, {}, look)
