@@ -32,7 +32,7 @@ setup(
     zip_safe=True,
     description=(
         "Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined, "
-        "arm_gripper_loop_controller."
+        "arm_gripper_loop_controller, mycobot_pick_and_place."
     ),
     license="Apache-2.0",
     entry_points={
@@ -41,6 +41,7 @@ setup(
             "publisher_terminal = arm_controller.publisher_terminal_node:main",
             "publisher_defined = arm_controller.publisher_defined_node:main",
             "arm_gripper_loop_controller = arm_controller.arm_gripper_loop_controller_node:main",
+            "mycobot_pick_and_place = arm_controller.pick_and_place_node:main",
             "example_gripper = arm_controller.example_gripper_node:main",
             "example_diff_drive = arm_controller.example_diff_drive_node:main",
         ],

@@ -3,11 +3,10 @@
 import logging
 from typing import Protocol
 
+from arm_controller.mycobot import CLOSED, HOME, OPEN
+
 TARGET = (1.345, -1.23, 0.264, -0.296, 0.389, -1.5)
-HOME = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Positions of the arm's joints (rad)."""
-CLOSED, OPEN = -0.7, 0.0
-"""Positions of the gripper (rad)."""
 PAUSE_S = 1.0
 
 logger = logging.getLogger(__name__)

@@ -5,7 +5,9 @@
     ├── CommandLineError     a typed line that is no pose
     ├── PoseFileError        a file of poses that cannot be used
     ├── DeliveryError        nobody took a command
-    └── ParameterValueError  a node parameter that makes no sense
+    ├── ParameterValueError  a node parameter that makes no sense
+    ├── PlanError            what shall be picked up cannot be, from where it stands
+    └── PickError            a pick that did not come off
 
 Every message is a sentence for the user.
 """
@@ -33,3 +35,11 @@ class DeliveryError(ArmControllerError):
 
 class ParameterValueError(ArmControllerError):
     """A parameter of a node has a value that the node cannot work with."""
+
+
+class PlanError(ArmControllerError):
+    """There is no way for the arm to do what it shall; the message says why."""
+
+
+class PickError(ArmControllerError):
+    """A step of a pick failed; the message says which and why."""

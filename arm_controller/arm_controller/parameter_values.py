@@ -8,6 +8,7 @@ import math
 from array import array
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeGuard
 
 from arm_controller.errors import ParameterValueError
 from arm_controller.pose import JointPose
@@ -20,7 +21,7 @@ def read_number(value: object, *, positive: bool = True) -> float:
         ParameterValueError: it is something else.
     """
     wanted = "a number above 0" if positive else "0 or a number above"
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not _is_finite(value):
         raise ParameterValueError(f"must be {wanted}, not {value!r}")
     if value < 0 or (positive and value == 0):
         raise ParameterValueError(f"must be {wanted}, not {value:g}")
@@ -60,6 +61,31 @@ def read_joint_names(value: object) -> tuple[str, ...]:
     return names
 
 
+def read_place(value: object) -> tuple[float, float]:
+    """Return a place on the ground, x and y.
+
+    Raises:
+        ParameterValueError: it is not a list of two finite numbers.
+    """
+    values = _numbers_in(value) if isinstance(value, str) else value
+    if isinstance(values, (list, tuple, array)) and len(values) == 2:
+        x, y = values
+        if all(_is_finite(number) for number in (x, y)):
+            return float(x), float(y)
+    raise ParameterValueError(f"must be a list of two numbers, x and y, not {value!r}")
+
+
+def read_prefix(value: object) -> str:
+    """Return what stands before every name, maybe nothing.
+
+    Raises:
+        ParameterValueError: it is not a text.
+    """
+    if not isinstance(value, str):
+        raise ParameterValueError(f"must be a text, not {value!r}")
+    return value
+
+
 def read_flag(value: object) -> bool:
     """Return true or false.
 
@@ -91,6 +117,10 @@ def read_path(value: object) -> Path:
     if not isinstance(value, str) or not value:
         raise ParameterValueError(f"must be the path of a file, not {value!r}")
     return Path(value).expanduser()
+
+
+def _is_finite(value: object) -> TypeGuard[float]:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _numbers_in(text: str) -> list[float] | None:

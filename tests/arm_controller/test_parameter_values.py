@@ -11,7 +11,9 @@ from arm_controller.parameter_values import (
     read_joint_names,
     read_number,
     read_path,
+    read_place,
     read_pose,
+    read_prefix,
     read_topic,
 )
 
@@ -103,3 +105,20 @@ def test_a_topic_is_a_text():
 def test_refuses_what_is_no_topic(value):
     with pytest.raises(ParameterValueError, match="must be the name of a topic, not"):
         read_topic(value)
+
+
+@pytest.mark.parametrize("value", [[0.2, -1], (0.2, -1.0), array("d", [0.2, -1.0]), "[0.2, -1]"])
+def test_a_place_is_two_numbers(value):
+    assert read_place(value) == (0.2, -1.0)
+
+
+@pytest.mark.parametrize("value", [[1], [1, 2, 3], [1, True], [1, float("nan")], "here", 1.0, None])
+def test_refuses_what_is_no_place(value):
+    with pytest.raises(ParameterValueError, match="must be a list of two numbers, x and y"):
+        read_place(value)
+
+
+def test_a_prefix_is_a_text_that_may_be_empty():
+    assert (read_prefix(""), read_prefix("left_")) == ("", "left_")
+    with pytest.raises(ParameterValueError, match="must be a text, not 5"):
+        read_prefix(5)

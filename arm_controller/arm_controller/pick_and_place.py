@@ -1,0 +1,110 @@
+"""Picks an object up, holds it, and puts it back where it was."""
+
+import logging
+from dataclasses import dataclass
+from typing import Protocol
+
+from arm_controller.errors import PickError
+from arm_controller.mycobot import CLOSED, WIDE_OPEN
+from arm_controller.pick_plan import PickPlan
+from arm_controller.way import Way
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """How a movement of the gripper ended.
+
+    Attributes:
+        position: where the driven joint is, in rad.
+        reached: whether that is where it was sent.
+        stalled: whether something between the fingers keeps it from there.
+    """
+
+    position: float
+    reached: bool
+    stalled: bool
+
+
+class PickingRobot(Protocol):
+    """An arm with a gripper. A movement returns when it has ended."""
+
+    async def connect(self) -> None:
+        """Return once arm and gripper can be moved."""
+        ...
+
+    async def follow(self, way: Way) -> str | None:
+        """Move the arm; return None where it got there, else a phrase that says why not."""
+        ...
+
+    async def grip(self, position: float, max_effort: float) -> Grip | str:
+        """Move the gripper to a position (rad); a phrase says why there is no result."""
+        ...
+
+    async def pause(self, seconds: float) -> None:
+        """Return after some time."""
+        ...
+
+
+class PickAndPlace:
+    """Carries a plan out, and says each step.
+
+    What the fingers hold is known from where they stop: fingers that close all the way hold
+    nothing.
+    """
+
+    def __init__(self, robot: PickingRobot, plan: PickPlan) -> None:
+        self._robot = robot
+        self._plan = plan
+
+    async def run(self) -> None:
+        """Pick, hold and put back once; the arm goes home afterwards.
+
+        Raises:
+            PickError: a step failed, after which nothing else is moved; says which and why.
+        """
+        plan, task = self._plan, self._plan.task
+        await self._robot.connect()
+        await self._open()
+        await self._go("to the object", plan.to_object)
+        await self._go("around the object", plan.approach)
+        await self._close("Closing gripper")
+        await self._go(f"up by {task.lift:g} m", plan.up)
+        logger.info("Holding for %g s", task.hold_s)
+        await self._robot.pause(task.hold_s)
+        await self._close("Looking whether the object is still held")
+        await self._go("down again", plan.down)
+        await self._open()
+        await self._go("away", plan.away)
+        await self._go("to home position", plan.home)
+        logger.info("The object was picked up, held and put back")
+
+    async def _go(self, where: str, way: Way) -> None:
+        logger.info("Moving %s", where)
+        failure = await self._robot.follow(way)
+        if failure is not None:
+            raise PickError(f"the arm did not get {where}: {failure}")
+
+    async def _open(self) -> None:
+        logger.info("Opening gripper")
+        grip = await self._grip(WIDE_OPEN)
+        if not grip.reached:
+            raise PickError(f"the gripper did not open: it stands at {grip.position:.3f} rad")
+
+    async def _close(self, doing: str) -> None:
+        logger.info("%s", doing)
+        grip = await self._grip(CLOSED)
+        if grip.reached:
+            raise PickError("there is nothing between the fingers: they closed all the way")
+        if not grip.stalled:
+            raise PickError(
+                f"the grip was ended at {grip.position:.3f} rad: somebody else moves it"
+            )
+        logger.info("The object is held, at %.3f rad", grip.position)
+
+    async def _grip(self, position: float) -> Grip:
+        grip = await self._robot.grip(position, self._plan.task.max_effort)
+        if isinstance(grip, str):
+            raise PickError(f"the gripper did not move: {grip}")
+        return grip
