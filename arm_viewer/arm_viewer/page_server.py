@@ -2,6 +2,7 @@
 
 import errno
 import http
+import logging
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
@@ -119,7 +120,10 @@ def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
     ) -> serve:
         guarded.append(listener)
         gate = partial(_answer, process_request)
-        return serve(handler, sock=listener, process_request=gate, **options)
+        # Every request is worth a line to websockets, but not to the user.
+        logger = logging.getLogger(f"{__name__}.requests")
+        logger.setLevel(logging.WARNING)
+        return serve(handler, sock=listener, process_request=gate, logger=logger, **options)
 
     websockets.asyncio.server.serve = serve_guarded
     try:

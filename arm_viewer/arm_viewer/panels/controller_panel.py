@@ -1,0 +1,122 @@
+"""The controllers of every manager, with a button each to activate or deactivate it."""
+
+from html import escape
+
+from viser import GuiApi
+
+from arm_viewer.requests import Send, SwitchControllers
+from arm_viewer.snapshot import Controller, Snapshot
+
+BUTTONS = {"active": "Deactivate", "inactive": "Activate"}
+"""By state; in another one there is nothing to switch."""
+COLOURS = {"active": "#69db7c", "inactive": "#ffa94d"}
+OTHER_COLOUR = "#adb5bd"
+
+
+class ControllerPanel:
+    """A folder for each manager."""
+
+    def __init__(self, send: Send) -> None:
+        """Send there what is clicked."""
+        self._send = send
+        self._managers: dict[str, _Manager] = {}
+
+    def build(self, gui: GuiApi) -> None:
+        """Make what stands above the folders."""
+        self._gui = gui
+        self._place = gui.add_folder("Controllers")
+        with self._place:
+            self._nobody = gui.add_html(_note("No controller manager is there."))
+            self._refusal = gui.add_html("", visible=False)
+        self._shown_refusal = ""
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Follow what the managers say."""
+        self._show_refusal(snapshot.refusal)
+        by_manager: dict[str, list[Controller]] = {}
+        for controller in snapshot.controllers:
+            by_manager.setdefault(controller.manager, []).append(controller)
+        if bool(by_manager) == self._nobody.visible:
+            self._nobody.visible = not by_manager
+        for name in self._managers.keys() - by_manager.keys():
+            self._managers.pop(name).remove()
+        for name, controllers in by_manager.items():
+            if name not in self._managers:
+                with self._place:
+                    self._managers[name] = _Manager(self._gui, self._send, name)
+            self._managers[name].update(controllers)
+
+    def _show_refusal(self, refusal: str) -> None:
+        if refusal != self._shown_refusal:
+            self._shown_refusal = refusal
+            self._refusal.content = f'<div style="color:#ff8787">{_note(refusal)}</div>'
+            self._refusal.visible = bool(refusal)
+
+
+class _Manager:
+    """The rows of one manager."""
+
+    def __init__(self, gui: GuiApi, send: Send, name: str) -> None:
+        self._gui = gui
+        self._send = send
+        self._folder = gui.add_folder(name)
+        self._rows: dict[str, _Row] = {}
+
+    def update(self, controllers: list[Controller]) -> None:
+        names = {controller.name for controller in controllers}
+        for name in self._rows.keys() - names:
+            self._rows.pop(name).remove()
+        for controller in sorted(controllers, key=lambda c: c.name):
+            if controller.name not in self._rows:
+                with self._folder:
+                    self._rows[controller.name] = _Row(self._gui, self._send, controller)
+            self._rows[controller.name].update(controller)
+
+    def remove(self) -> None:
+        self._folder.remove()
+
+
+class _Row:
+    """Name, state and type of a controller over its button."""
+
+    def __init__(self, gui: GuiApi, send: Send, controller: Controller) -> None:
+        self._send = send
+        self._shown: Controller | None = None
+        self._text = gui.add_html("")
+        self._button = gui.add_button("", hint=f"{controller.name} of {controller.manager}")
+        self._button.on_click(lambda _: self._switch())
+
+    def update(self, controller: Controller) -> None:
+        if controller == self._shown:
+            return
+        self._shown = controller
+        self._text.content = _describe(controller)
+        self._button.visible = controller.state in BUTTONS
+        self._button.label = f"{BUTTONS.get(controller.state, '')} {controller.name}"
+        self._button.color = "gray" if controller.state == "active" else None
+
+    def remove(self) -> None:
+        self._text.remove()
+        self._button.remove()
+
+    def _switch(self) -> None:
+        controller = self._shown
+        if controller is not None and controller.state == "active":
+            self._send(SwitchControllers(controller.manager, deactivate=(controller.name,)))
+        elif controller is not None:
+            self._send(SwitchControllers(controller.manager, activate=(controller.name,)))
+
+
+def _describe(controller: Controller) -> str:
+    colour = COLOURS.get(controller.state, OTHER_COLOUR)
+    claimed = f" · {escape(', '.join(controller.claimed))}" if controller.claimed else ""
+    return (
+        '<div style="font-size:0.8rem;padding:0.5em 0.75em 0.25em;line-height:1.35">'
+        f"<b>{escape(controller.name)}</b> "
+        f'<span style="color:{colour};float:right">{escape(controller.state)}</span><br/>'
+        f'<span style="opacity:0.65">{escape(controller.type)}{claimed}</span></div>'
+    )
+
+
+def _note(text: str) -> str:
+    return f'<div style="font-size:0.8rem;padding:0.25em 0.75em">{escape(text)}</div>'

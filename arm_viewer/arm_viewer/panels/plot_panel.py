@@ -1,0 +1,106 @@
+"""The joints over the last seconds: position, velocity and effort, and the commands dashed."""
+
+import math
+
+import numpy as np
+from viser import GuiApi, GuiUplotHandle, uplot
+
+from arm_viewer.joint_history import JointHistory, Quantity
+from arm_viewer.snapshot import JointStates, Snapshot
+
+DEFAULT_TOPIC: str = "/joint_states"
+WINDOW_S = 10.0
+PERIOD_S = 0.1
+"""Between two pictures of the charts."""
+HEIGHT = 150
+UNITS = {
+    Quantity.POSITION: "rad, m",
+    Quantity.VELOCITY: "rad/s, m/s",
+    Quantity.EFFORT: "N m, N",
+}
+COLOURS = ("#4dabf7", "#ffa94d", "#69db7c", "#ff8787", "#b197fc", "#f783ac", "#ffd43b", "#66d9e8")
+_TEXT, _GRID = "#adb5bd", "#373a40"
+
+
+class PlotPanel:
+    """Charts of the joints of one topic, that of the first robot unless another is chosen."""
+
+    def __init__(self) -> None:
+        self._history = JointHistory(WINDOW_S)
+        self._charts: tuple[_Chart, ...] = ()
+        self._seen: JointStates | None = None
+        self._drawn_s = -math.inf
+
+    def build(self, gui: GuiApi) -> None:
+        """Make the charts."""
+        self._topic = gui.add_dropdown("Joints of", (DEFAULT_TOPIC,), visible=False)
+        self._still = gui.add_checkbox("Hold the charts still", False)
+        self._charts = tuple(_Chart(gui, quantity) for quantity in Quantity)
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Note what is new; draw now and then."""
+        self._offer(tuple(sorted(snapshot.joint_states)))
+        states = snapshot.joint_states.get(self._topic.value)
+        if states is not None and states is not self._seen:
+            self._seen = states
+            self._history.add(states.received_s, states.joints, snapshot.commands)
+        if snapshot.made_s - self._drawn_s >= PERIOD_S and not self._still.value:
+            self._drawn_s = snapshot.made_s
+            for chart in self._charts:
+                chart.draw(self._history, snapshot.made_s)
+
+    def _offer(self, topics: tuple[str, ...]) -> None:
+        if topics and topics != self._topic.options:
+            self._topic.options = topics
+            self._topic.visible = len(topics) > 1
+
+
+class _Chart:
+    """The chart of one quantity."""
+
+    def __init__(self, gui: GuiApi, quantity: Quantity) -> None:
+        self._quantity = quantity
+        self._lines: tuple[tuple[str, bool], ...] = ()
+        nothing = np.empty(0)
+        self._plot: GuiUplotHandle = gui.add_uplot(
+            data=(nothing, nothing),
+            series=(uplot.Series(), uplot.Series()),
+            title=f"{quantity.value} ({UNITS[quantity]})",
+            scales={"x": uplot.Scale(time=False, auto=False, range=(-WINDOW_S, 0.0))},
+            axes=(_axis(), _axis()),
+            height=HEIGHT,
+        )
+
+    def draw(self, history: JointHistory, now_s: float) -> None:
+        ages, readings, commands = history.table(self._quantity, now_s)
+        told = ~np.isnan(commands).all(axis=1)
+        lines = tuple((joint, False) for joint in history.joints)
+        lines += tuple((history.joints[index], True) for index in np.flatnonzero(told))
+        if not lines:
+            return
+        if lines != self._lines:
+            self._lines = lines
+            self._plot.series = (uplot.Series(label="s"), *map(_series, lines, _colours(lines)))
+        self._plot.data = (ages, *readings, *commands[told])
+
+
+def _axis() -> uplot.Axis:
+    return uplot.Axis(
+        stroke=_TEXT,
+        grid=uplot.Axis_Grid(stroke=_GRID, width=1),
+        ticks=uplot.Axis_Ticks(stroke=_GRID, width=1),
+        size=40,
+    )
+
+
+def _colours(lines: tuple[tuple[str, bool], ...]) -> list[str]:
+    """Return a colour for each line, the same for what a joint does and what it is told."""
+    joints = list(dict.fromkeys(joint for joint, _ in lines))
+    return [COLOURS[joints.index(joint) % len(COLOURS)] for joint, _ in lines]
+
+
+def _series(line: tuple[str, bool], colour: str) -> uplot.Series:
+    joint, is_command = line
+    if is_command:
+        return uplot.Series(label=f"{joint} cmd", stroke=colour, width=1, dash=(6, 4))
+    return uplot.Series(label=joint, stroke=colour, width=1.5)

@@ -1,0 +1,99 @@
+"""Which topics there are, who has them, and how often they are published."""
+
+import math
+from collections import Counter, deque
+from collections.abc import Sequence
+from importlib import import_module
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+
+from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.snapshot import Topic
+
+WINDOW_S = 3.0
+DEPTH = 100
+"""So many messages come between two collections at most: 3 kHz."""
+_QOS = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class TopicObserver:
+    """Keeps the topics that others have; subscribes to all of them while rates are wanted."""
+
+    def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
+        """Start to look; measure nothing yet."""
+        self._node = node
+        self._polled = polled
+        self._measured = False
+        self._meters: dict[str, _RateMeter] = {}
+        self.topics: tuple[Topic, ...] = ()
+
+    def measure(self, wanted: bool) -> None:
+        """Measure rates from now on, or no more."""
+        self._measured = wanted
+        if not wanted:
+            self._keep_meters(())
+
+    def discover(self, topics: TopicTypes) -> None:
+        """Count publishers and subscriptions of others; measure what is published."""
+        own_publishers = Counter(p.topic_name for p in self._node.publishers)
+        own_subscriptions = Counter(s.topic_name for s in self._node.subscriptions)
+        found: list[Topic] = []
+        for name, types in sorted(topics.items()):
+            publishers = self._node.count_publishers(name) - own_publishers[name]
+            subscriptions = self._node.count_subscribers(name) - own_subscriptions[name]
+            if (publishers > 0 or subscriptions > 0) and "/_" not in name:
+                meter = self._meters.get(name)
+                rate_hz = meter.rate_hz() if meter else math.nan
+                found.append(Topic(name, tuple(types), publishers, max(subscriptions, 0), rate_hz))
+        self.topics = tuple(found)
+        if self._measured:
+            self._keep_meters([t for t in found if t.publishers > 0])
+
+    def collect(self, now_s: float) -> None:
+        """Count what has arrived."""
+        for meter in self._meters.values():
+            meter.count(now_s)
+
+    def _keep_meters(self, topics: Sequence[Topic]) -> None:
+        for name in self._meters.keys() - {topic.name for topic in topics}:
+            self._node.destroy_subscription(self._meters.pop(name).subscription)
+        for topic in topics:
+            message_class = _message_class(topic.types)
+            if topic.name not in self._meters and message_class is not None:
+                subscription = self._polled.subscribe(message_class, topic.name, _QOS)
+                self._meters[topic.name] = _RateMeter(self._polled, subscription)
+
+
+class _RateMeter:
+    """Counts the messages of one topic, without reading them."""
+
+    def __init__(self, polled: PolledSubscriptions, subscription: Subscription) -> None:
+        self.subscription = subscription
+        self._polled = polled
+        self._counts: deque[tuple[float, int]] = deque()
+
+    def count(self, now_s: float) -> None:
+        count = sum(1 for _ in self._polled.take(self.subscription, DEPTH))
+        self._counts.append((now_s, count))
+        while self._counts[0][0] < now_s - WINDOW_S:
+            self._counts.popleft()
+
+    def rate_hz(self) -> float:
+        """Return the mean of the window; NaN before there are two counts."""
+        if len(self._counts) < 2:
+            return math.nan
+        # What the first count found came before the window.
+        total = sum(count for _, count in self._counts) - self._counts[0][1]
+        return total / (self._counts[-1][0] - self._counts[0][0])
+
+
+def _message_class(types: Sequence[str]) -> type | None:
+    """Return the class of the first type; None where its package is not installed here."""
+    package, _, name = types[0].partition("/msg/")
+    try:
+        return getattr(import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError):
+        return None
