@@ -98,6 +98,8 @@ def _set_physics(spec: mujoco.MjSpec, step_s: float) -> None:
     spec.option.timestep = step_s
     # The servos are stiff; this integrator is the cheapest that takes their damping implicitly.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # Sensors are read from a copy of the state, and only those that somebody listens to.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     # Every link keeps its frame, its looks and the inertia that it was given.
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = False

@@ -3,6 +3,7 @@
 import mujoco
 
 EVERYTHING = mujoco.mjtState.mjSTATE_INTEGRATION
+WITHOUT_SENSORS = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
 
 
 class StateProbe:
@@ -39,5 +40,11 @@ class StateProbe:
         if self._looked_at != self.number:
             self._looked_at = self.number
             mujoco.mj_copyState(model, data, self._data, EVERYTHING)
-            mujoco.mj_forward(model, self._data)
+            self._evaluate(model, self._data)
         return self._data
+
+    def _evaluate(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        flags = model.opt.disableflags
+        model.opt.disableflags = flags & ~WITHOUT_SENSORS
+        mujoco.mj_forward(model, data)
+        model.opt.disableflags = flags

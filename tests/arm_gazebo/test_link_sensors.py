@@ -36,13 +36,16 @@ def with_tags(urdf: str, *tags: str) -> str:
 class Lab:
     """A robot with sensors in a simulation, without anybody who drives it."""
 
-    def __init__(self, urdf: str, hold_joints: bool = True, seed: int = 0, **options) -> None:
+    def __init__(
+        self, urdf: str, hold_joints: bool = True, seed: int = 0, world="empty", **options
+    ) -> None:
         robot, hardware = parse_urdf(urdf), parse_hardware_info(urdf)
         sensors = parse_link_sensors(urdf, robot)
         timing = physics_timing(RATE_HZ)
         built = build_model(
             robot,
             hardware,
+            world=world,
             options=BuildOptions(step_s=timing.step_s, **options),
             sensors=sensors,
         )
@@ -208,6 +211,36 @@ def test_readings_are_of_the_state_after_the_step(parts):
     for _ in range(20):
         lab.run(0.01)
         assert lab.read()["angular_velocity"][1] == pytest.approx(lab.joint()[1], rel=1e-12)
+
+
+def test_the_upper_of_two_touching_links_is_pushed_up_and_the_lower_down(parts):
+    cube = parts.link("{}", 1.0, 0.1).replace("</link>", f"{BOX}</link>")
+    slide = parts.joint("{}", "base", "{}", "prismatic", "0 0 {}", "0 0 1")
+    urdf = parts.robot(
+        parts.link("base"),
+        *(cube.replace("{}", name) for name in ("lower", "upper")),
+        slide.format("a", "lower", 1.0),
+        slide.format("b", "upper", 1.15),
+        *(gazebo(name, "contact", name=name) for name in ("lower", "upper")),
+        parts.ros2_control(["a"]),
+    )
+    lab = Lab(urdf, self_collide=True)
+    lab.run(2.0)
+    assert lab.read("upper")["force"] == pytest.approx([0, 0, G], rel=0.05)
+    assert lab.read("lower")["force"] == pytest.approx([0, 0, -G], rel=0.05)
+
+
+def test_a_sensor_finds_itself_again_in_another_model(parts):
+    urdf = with_tags(parts.pendulum(), gazebo("bob", "imu"))
+    lab, other = Lab(urdf, hold_joints=False), Lab(urdf, hold_joints=False, world="objects")
+    lab.run(0.2)
+    before = lab.read()
+    simulation = lab.simulation
+    simulation.swap(simulation.prepare(other.simulation.built, simulation.built.robot_roots))
+    for vector, numbers in lab.read().items():
+        assert numbers == pytest.approx(before[vector], abs=1e-9)
+    lab.run(0.1)
+    assert lab.read()["angular_velocity"][1] == pytest.approx(lab.joint()[1])
 
 
 NOISY = (
