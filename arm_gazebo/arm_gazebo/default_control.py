@@ -58,9 +58,13 @@ def with_hardware(urdf: str, robot: Robot) -> str:
 
 
 def default_parameters(joints: Sequence[str]) -> Mapping[str, Any]:
-    """Return the content of a parameter file: a broadcaster, a position controller for joints."""
-    types = {name: {"type": type_name} for name, type_name in DEFAULT_CONTROLLERS.items()}
+    """Return the content of a parameter file: a broadcaster, a position controller for joints.
+
+    Without joints there is no such controller: there is nothing to control.
+    """
+    own = {COMMANDER: {"ros__parameters": {"joints": list(joints)}}} if joints else {}
+    types = {name: {"type": DEFAULT_CONTROLLERS[name]} for name in (BROADCASTER, *own)}
     return {
         "controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}},
-        COMMANDER: {"ros__parameters": {"joints": list(joints)}},
+        **own,
     }

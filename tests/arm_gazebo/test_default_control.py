@@ -74,3 +74,9 @@ def test_parameters_have_the_form_of_a_file():
     assert manager["position_controller"] == {
         "type": "position_controllers/JointGroupPositionController"
     }
+
+
+def test_a_robot_without_joints_gets_no_controller_for_them():
+    content = default_parameters(())
+    assert list(content) == ["controller_manager"]
+    assert "position_controller" not in content["controller_manager"]["ros__parameters"]
