@@ -47,6 +47,7 @@ class DrivenJoint:
         self.start_velocity = 0.0
         # Looked up in every tick, so copied out of their classes.
         self._speed = joint.velocity
+        self._jerkless = bounds.jerkless
         self._slack = bounds.slack
         self._bounds = bounds
         self.limit_effort(joint.effort, 1.0)
@@ -59,11 +60,10 @@ class DrivenJoint:
 
         Args:
             limit: what may be spent, N m or N.
-            share: of what the bounds on motion were computed with.
+            share: how much of its usual braking the joint can still have.
         """
         self.effort_limit = limit
         self._braking = share * self._bounds.braking
-        self._jerkless = share * self._bounds.jerkless
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
         """Change the mode; a set-point starts from the state of the joint if it had none."""

@@ -21,7 +21,7 @@ from arm_gazebo.drive_mode import SERVOED, DriveMode
 from arm_gazebo.driven_joint import DrivenJoint
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot_joint import RobotJoint
-from arm_gazebo.servo_tuning import FULL_EFFORT_ERROR, TIME_CONSTANT_S, ServoTuning
+from arm_gazebo.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, ServoTuning
 
 Array = NDArray[np.float64]
 
@@ -153,8 +153,8 @@ class Servo:
         driven = self._joints[index]
         own = driven.joint.effort
         limit = limit if 0.0 < limit < own else own
-        planned = min(own, self._tuning.stiffness[index] * FULL_EFFORT_ERROR)
-        driven.limit_effort(limit, min(1.0, limit / planned))
+        needed = self._tuning.braking_efforts[index]
+        driven.limit_effort(limit, min(1.0, EFFORT_SHARE * limit / needed))
         self._set_gains(index, driven.mode)
         self._awake_ticks = self._settle_ticks
 

@@ -76,6 +76,7 @@ class ServoTuning:
         limp_armature: the same of drives that do not; those need no stiffness.
         efforts: limits, N m or N; inf for none.
         braking: accelerations that all joints can have at once anywhere, rad/s2 or m/s2.
+        braking_efforts: what those ask for where they ask for most, without gravity, N m or N.
         jerkless: highest accelerations at all, rad/s2 or m/s2.
         gravity: largest efforts that gravity asks for, N m or N.
         followers: inertia that mimicking joints and their gears add to that of their leader, kg m2
@@ -90,6 +91,7 @@ class ServoTuning:
     limp_armature: Array
     efforts: Array
     braking: Array
+    braking_efforts: Array
     jerkless: Array
     gravity: Array
     followers: Array
@@ -134,13 +136,15 @@ def tune(
     jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], USUAL_ACCELERATION)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
     worst = np.abs(inertias).max(axis=0) + np.diag(armature + gears)
+    braking = _shared_accelerations(worst, spare, jerkless)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
         armature=armature,
         limp_armature=limp_armature,
         efforts=efforts,
-        braking=_shared_accelerations(worst, spare, jerkless),
+        braking=braking,
+        braking_efforts=worst @ braking,
         jerkless=jerkless,
         gravity=gravity,
         followers=largest - own.max(axis=0),
@@ -149,7 +153,10 @@ def tune(
 
 
 def tuned_again(
-    model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    joints: Sequence[RobotJoint],
+    tuning: ServoTuning,
 ) -> ServoTuning:
     """Return the tuning of the same joints in a model that has other things besides.
 
@@ -157,13 +164,14 @@ def tuned_again(
 
     Args:
         model: gets the rotors of limp drives, as by `tune`; it has those of the followers.
+        data: of the model; is written to.
         joints: the driven joints at their places in this model.
         tuning: of the joints in the model before.
     """
     coupling, dofs = _coupling(model, joints), [joint.dof_address for joint in joints]
     _gear(model, coupling, dofs, _rotor(tuning.efforts, model.opt.timestep))
     model.dof_armature[dofs] = tuning.limp_armature
-    mujoco.mj_setConst(model, mujoco.MjData(model))
+    mujoco.mj_setConst(model, data)
     return replace(tuning, coupling=coupling)
 
 
