@@ -6,7 +6,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_viewer"
-DATA_FOLDERS = []
+DATA_FOLDERS = ["launch"]
 
 
 def data_files() -> list[tuple[str, Sequence[str]]]:

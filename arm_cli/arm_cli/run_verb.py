@@ -5,6 +5,7 @@ import os
 import shlex
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from arm_cli.errors import NotFoundError, UsageError
 from arm_cli.word_completion import complete_with
@@ -36,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--prefix", default="", help="put before it, such as 'gdb -ex run --args'")
 
 
-def run(words: Sequence[str]) -> int:
+def run(words: Sequence[str]) -> NoReturn:
     """Become the executable; what follows its name is passed on to it.
 
     Raises:
@@ -49,15 +50,23 @@ def run(words: Sequence[str]) -> int:
     add_arguments(parser)
     options = parser.parse_args(words)
     command = find_command(options.package_name, options.executable_name)
-    full = [*shlex.split(options.prefix), *command, *options.argv]
+    become([*shlex.split(options.prefix), *command, *options.argv])
+
+
+def become(command: list[str]) -> NoReturn:
+    """Put a program with its arguments in this process's place, as `arm launch` would start it.
+
+    Raises:
+        UsageError: it cannot be started.
+    """
     interactive = sys.stdout.isatty()
     added = default_environment(os.environ, None, None, interactive)
-    environment = for_program(full[0], {**os.environ, **added})
+    environment = for_program(command[0], {**os.environ, **added})
     sys.stdout.flush()
     try:
-        os.execvpe(full[0], full, environment)
+        os.execvpe(command[0], command, environment)
     except OSError as error:
-        raise UsageError(f"cannot start {full[0]}: {error.strerror}") from error
+        raise UsageError(f"cannot start {command[0]}: {error.strerror}") from error
 
 
 def find_command(package: str, name: str) -> tuple[str, ...]:

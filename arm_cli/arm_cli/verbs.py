@@ -185,6 +185,7 @@ VERBS = (
     LIFECYCLE,
     TF,
     BAG,
+    Verb("view", "show the robots in the browser, and move them", "arm_cli.view_verb"),
     Verb("check", "tell what becomes of a URDF or xacro file", "arm_cli.check_verb"),
     Verb("doctor", "say why the arm does not move or is not seen", "arm_cli.doctor_verb"),
     Verb("graph", "draw the nodes and topics, as SVG or Mermaid", "arm_cli.graph_verb"),

@@ -1,15 +1,17 @@
-"""Any robot without physics: its frames and joint states, and RViz where there is one."""
+"""Any robot without physics: its frames, and the page in the browser whose sliders move it."""
 
 import shutil
 
 from launch_py import (
     DeclareLaunchArgument,
     ExecuteProcess,
+    IncludeLaunchDescription,
     LaunchDescription,
     Notified,
     SetLaunchConfiguration,
 )
-from launch_py.conditions import IfCondition
+from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
@@ -22,9 +24,11 @@ def describe(model: str, camera: str) -> str:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the state publisher, the joint state publisher and RViz."""
+    """Return the state publisher, what publishes joint states, the page and RViz."""
     share = FindPackageShare("arm_description")
     model = PathJoinSubstitution([share, "urdf", "arm.urdf.xacro"])
+    page = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"])
+    viewer = LaunchConfiguration("viewer")
     description = ParameterValue(LaunchConfiguration("robot_description"), value_type=str)
     return LaunchDescription(
         [
@@ -34,6 +38,12 @@ def generate_launch_description() -> LaunchDescription:
                 default_value="front",
                 description="the arm's camera",
                 choices=["front", "side", "none"],
+            ),
+            DeclareLaunchArgument(
+                "viewer",
+                default_value="true",
+                description="open the page in the browser; false: joint_state_publisher instead",
+                choices=["true", "false"],
             ),
             DeclareLaunchArgument(
                 "use_rviz",
@@ -61,6 +71,12 @@ def generate_launch_description() -> LaunchDescription:
                 executable="joint_state_publisher",
                 parameters=[{"robot_description": description}],
                 ready=Notified(),
+                condition=UnlessCondition(viewer),
+            ),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(page),
+                launch_arguments={"publish_joint_states": "true"},
+                condition=IfCondition(viewer),
             ),
             ExecuteProcess(
                 cmd=["rviz2", "-d", LaunchConfiguration("rviz_config_file")],

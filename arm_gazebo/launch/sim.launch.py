@@ -4,6 +4,7 @@ from launch_py import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
     ExecuteProcess,
+    IncludeLaunchDescription,
     LaunchDescription,
     LogInfo,
     Notified,
@@ -13,6 +14,7 @@ from launch_py.actions import OpaqueFunction
 from launch_py.conditions import IfCondition
 from launch_py.errors import UsageError
 from launch_py.launch_context import LaunchContext
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 
@@ -63,6 +65,7 @@ NODE_ARGUMENTS = {
     ),
     "use_sim_time": ("true", "the state publisher's clock is the simulation's", ["true", "false"]),
     "use_robot_state_pub": ("true", "publish where the links are", ["true", "false"]),
+    "viewer": ("false", "open the page in the browser, to see and move it", ["true", "false"]),
     "use_rviz": ("false", "start RViz; it comes with a ROS 2 installation", ["true", "false"]),
 }
 
@@ -195,6 +198,14 @@ def generate_launch_description() -> LaunchDescription:
                 description="what RViz shows",
             ),
             OpaqueFunction(function=simulate),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(
+                    PathJoinSubstitution(
+                        [FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"]
+                    )
+                ),
+                condition=IfCondition(LaunchConfiguration("viewer")),
+            ),
             ExecuteProcess(
                 cmd=[
                     *("rviz2", "-d", LaunchConfiguration("rviz_config_file")),

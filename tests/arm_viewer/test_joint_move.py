@@ -1,0 +1,111 @@
+"""Which controllers take what so that joints move."""
+
+from types import MappingProxyType
+
+import pytest
+
+from arm_description.urdf import parse_urdf
+from arm_viewer.joint_drive import DriveKind, joint_drives
+from arm_viewer.joint_move import SPEED_USED, plan_moves
+from arm_viewer.requests import MoveJoints
+from arm_viewer.snapshot import Controller, Description, JointReading, JointStates, Snapshot
+
+ROBOT = """<robot name='r'><link name='base'/><link name='a'/><link name='b'/>
+  <joint name='j0' type='revolute'><parent link='base'/><child link='a'/>
+    <limit lower='-2' upper='2' effort='1' velocity='0.5'/></joint>
+  <joint name='j1' type='revolute'><parent link='a'/><child link='b'/>
+    <limit lower='-2' upper='2' effort='1' velocity='2'/></joint></robot>"""
+POSITIONS = "position_controllers/JointGroupPositionController"
+TRAJECTORIES = "joint_trajectory_controller/JointTrajectoryController"
+
+
+def controller(kind=POSITIONS, state="active", namespace="", joints=("j1", "j0"), **more):
+    fields = {
+        "manager": f"{namespace}/controller_manager",
+        "name": "arm",
+        "type": kind,
+        "state": state,
+        "claimed": ("j0/position", "j1/position"),
+        "joints": joints,
+    }
+    return Controller(**{**fields, **more})
+
+
+def snapshot(*controllers, namespace="", at=(0.1, 0.2), commands=()):
+    description = Description(f"{namespace}/robot_description", namespace, parse_urdf(ROBOT))
+    readings = {f"j{i}": JointReading(q, 0.0, 0.0) for i, q in enumerate(at)}
+    return Snapshot(
+        descriptions=MappingProxyType({description.topic: description}),
+        joint_states=MappingProxyType(
+            {f"{namespace}/joint_states": JointStates(MappingProxyType(readings), 0.0)}
+        ),
+        controllers=tuple(controllers),
+        commands=MappingProxyType(dict(commands)),
+    )
+
+
+def test_positions_are_in_the_order_of_the_controller_s_parameter():
+    (move,) = plan_moves(snapshot(controller()), MoveJoints("", {"j0": 1.0}))
+    assert move.drive.topic == "/arm/commands"
+    assert move.drive.joints == ("j1", "j0")
+    assert move.positions == (0.2, 1.0)
+
+
+def test_without_the_parameter_the_claimed_interfaces_say_the_order():
+    (drive,) = joint_drives([controller(joints=())], "")
+    assert drive.joints == ("j0", "j1")
+
+
+def test_a_joint_that_sags_stays_where_it_was_told_to_be():
+    told = {"j1/position": 0.21}
+    (move,) = plan_moves(snapshot(controller(), commands=told), MoveJoints("", {"j0": 1.0}))
+    assert move.positions == (0.21, 1.0)
+
+
+def test_a_joint_that_is_elsewhere_than_it_was_told_stays_where_it_is():
+    told = {"j1/position": 1.5}
+    (move,) = plan_moves(snapshot(controller(), commands=told), MoveJoints("", {"j0": 1.0}))
+    assert move.positions == (0.2, 1.0)
+
+
+def test_a_trajectory_takes_the_time_that_the_slowest_joint_needs():
+    (move,) = plan_moves(snapshot(controller(TRAJECTORIES)), MoveJoints("", {"j0": 1.1, "j1": 1.2}))
+    assert move.drive.kind is DriveKind.TRAJECTORY
+    assert move.drive.topic == "/arm/joint_trajectory"
+    assert move.duration_s == pytest.approx(1.0 / (SPEED_USED * 0.5))
+
+
+def test_each_robot_has_its_own_namespace():
+    here, there = controller(namespace="/left"), controller(namespace="/right")
+    shown = snapshot(here, there, namespace="/left")
+    (move,) = plan_moves(shown, MoveJoints("/left", {"j0": 1.0}))
+    assert move.drive.topic == "/left/arm/commands"
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        controller(state="inactive"),
+        controller("effort_controllers/JointGroupEffortController"),
+        controller(claimed=()),
+        controller(claimed=("j0/position", "j0/velocity")),
+        controller(joints=("j0", "j9"), claimed=("j0/position", "j9/position")),
+    ],
+)
+def test_nothing_is_sent_where_no_active_controller_takes_positions_of_known_joints(other):
+    assert plan_moves(snapshot(other), MoveJoints("", {"j0": 1.0})) == ()
+
+
+def test_a_controller_of_other_joints_is_left_alone():
+    assert plan_moves(snapshot(controller()), MoveJoints("", {"j7": 1.0})) == ()
+
+
+def test_single_joints_of_ros_1():
+    one = controller(
+        "position_controllers/JointPositionController",
+        name="j0p_controller",
+        claimed=("j0/position",),
+        joints=(),
+    )
+    (move,) = plan_moves(snapshot(one), MoveJoints("", {"j0": 1.0}))
+    assert (move.drive.topic, move.positions) == ("/j0p_controller/command", (1.0,))
