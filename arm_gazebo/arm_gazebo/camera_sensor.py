@@ -4,9 +4,13 @@ import logging
 import math
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arm_gazebo.sensor_tags import TYPES, SensorTags, sensor_elements, sensor_type
+
+if TYPE_CHECKING:
+    from arm_description.robot import Pose
+    from arm_gazebo.camera_frames import CameraFrames
 
 logger = logging.getLogger(__name__)
 
@@ -22,7 +26,7 @@ CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
 NEARER_SHARE = 0.1
 """Share of the near clip from which on a depth camera draws: what is nearer than the clip hides
 what is behind it, and is told from it."""
-OPTICAL_RPY = (-math.pi / 2, 0.0, -math.pi / 2)
+SAME_FRAME = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +52,8 @@ class CameraSensor:
         points_topics: topics of the cloud of points.
         xyz: position of the camera in its link, in m.
         rpy: orientation of the camera in its link, in rad.
+        optics_in_frame: (3, 4) row by row, pose of z forward, x right, y down in `optical_frame`,
+            which Gazebo's users may call one that looks along x; points are in that frame.
     """
 
     name: str
@@ -67,6 +73,7 @@ class CameraSensor:
     points_topics: tuple[str, ...] = ()
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    optics_in_frame: tuple[float, ...] = SAME_FRAME
 
     @property
     def focal_length(self) -> float:
@@ -165,17 +172,24 @@ def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
 
 
 def _read_camera(tags: SensorTags, root: Any, taken: Mapping[str, str]) -> CameraSensor:
+    # Only here: the camera process knows sensors, too, and shall start quickly.
+    from arm_description.robot import Pose
+    from arm_gazebo.camera_frames import CameraFrames
+
     near = tags.number("clip/near", DEFAULT_CLIP[0], lambda v: v > 0, "above 0")
     far_default = max(DEFAULT_CLIP[1], 2 * near)
     if tags.type == "camera":
         tags.choice("image/format", FORMATS)
     noisy = _noise_type(tags) != "none"
     topics = _Topics.of(tags, taken)
-    pose = tags.pose()
+    numbers = tags.pose()
+    pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
+    frames = CameraFrames(root, tags.reference)
+    frame = tags.frame(frames.optical())
     return CameraSensor(
         name=tags.name,
         link=tags.reference,
-        optical_frame=tags.frame(_optical_child(root, tags.reference)),
+        optical_frame=frame,
         width=_pixels(tags, "image/width", DEFAULT_SIZE[0]),
         height=_pixels(tags, "image/height", DEFAULT_SIZE[1]),
         hfov=tags.number("horizontal_fov", DEFAULT_HFOV, lambda v: 0 < v < math.pi, "in (0, pi)"),
@@ -189,8 +203,9 @@ def _read_camera(tags: SensorTags, root: Any, taken: Mapping[str, str]) -> Camer
         info_topics=topics.info_topics,
         depth_topics=topics.depth_topics,
         points_topics=topics.points_topics,
-        xyz=(pose[0], pose[1], pose[2]),
-        rpy=(pose[3], pose[4], pose[5]),
+        xyz=pose.xyz,
+        rpy=pose.rpy,
+        optics_in_frame=_optics_in(frames, frame, pose) if topics.points_topics else SAME_FRAME,
     )
 
 
@@ -228,19 +243,7 @@ def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, str]) 
         taken[topic] = camera.name
 
 
-def _optical_child(root: Any, link: str) -> str:
-    """Return the frame fixed to the link with the optical orientation; the link if none is."""
-    for joint in root.findall("joint"):
-        parent, child, origin = (joint.find(tag) for tag in ("parent", "child", "origin"))
-        if joint.get("type") != "fixed" or parent is None or child is None or origin is None:
-            continue
-        try:
-            rpy = [float(word) for word in str(origin.get("rpy", "")).split()]
-        except ValueError:
-            continue
-        near_optical = len(rpy) == 3 and all(
-            abs(a - b) < 0.01 for a, b in zip(rpy, OPTICAL_RPY, strict=True)
-        )
-        if parent.get("link") == link and near_optical:
-            return str(child.get("link"))
-    return link
+def _optics_in(frames: "CameraFrames", frame: str, camera: "Pose") -> tuple[float, ...]:
+    """Return the camera's optical axes in a frame; one that is not known is taken for optical."""
+    pose = frames.optics_in(frame, camera)
+    return SAME_FRAME if pose is None else tuple(pose[:3].ravel().tolist())

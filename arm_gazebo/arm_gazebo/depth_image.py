@@ -24,10 +24,14 @@ class PointGrid:
     """Makes points of distances. One thread."""
 
     def __init__(self, sensor: CameraSensor) -> None:
-        columns = np.arange(sensor.width, dtype=np.float32) + 0.5 - sensor.width / 2
-        rows = np.arange(sensor.height, dtype=np.float32) + 0.5 - sensor.height / 2
-        self._x = (columns / sensor.focal_length).astype(np.float32)
-        self._y = (rows / sensor.focal_length).astype(np.float32)[:, np.newaxis]
+        columns = np.arange(sensor.width) + 0.5 - sensor.width / 2
+        rows = np.arange(sensor.height) + 0.5 - sensor.height / 2
+        rays = np.ones((sensor.height, sensor.width, 3))
+        rays[..., 0] = columns / sensor.focal_length
+        rays[..., 1] = (rows / sensor.focal_length)[:, np.newaxis]
+        optics = np.reshape(sensor.optics_in_frame, (3, 4))
+        self._rays = (rays @ optics[:, :3].T).astype(np.float32)
+        self._origin = optics[:, 3].astype(np.float32)
 
     def fill(
         self,
@@ -38,15 +42,13 @@ class PointGrid:
         """Write the points of a view.
 
         Args:
-            points: (height, width, 4), overwritten: x right, y down, z forward in m, all NaN where
-                the depth is no number, and the colour as PCL packs it into the bits of a float.
+            points: (height, width, 4), overwritten: x, y, z in the camera's frame in m, all NaN
+                where the depth is no number, and the colour as PCL packs it into a float's bits.
             depth: (height, width) in m.
             picture: (height, width, 3) RGB; None for points without colour.
         """
-        z = np.where(np.isfinite(depth), depth, np.float32(np.nan))
-        points[..., 0] = self._x * z
-        points[..., 1] = self._y * z
-        points[..., 2] = z
+        known = np.where(np.isfinite(depth), depth, np.float32(np.nan))
+        points[..., :3] = self._rays * known[..., np.newaxis] + self._origin
         colours = points.view(np.uint8).reshape(*depth.shape, 4 * CHANNELS)[..., 12:]
         colours[:] = 0
         if picture is not None:

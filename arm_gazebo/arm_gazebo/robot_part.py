@@ -17,6 +17,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.camera_mount import add_cameras
 from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.collision_policy import CollisionLayer, leave_out_neighbours
+from arm_gazebo.contact_sensor import ContactSensor
 from arm_gazebo.errors import ModelError
 from arm_gazebo.footing import Footing
 from arm_gazebo.gazebo_tags import GazeboTags
@@ -94,6 +95,9 @@ class RobotPart:
         add_cameras(spec, self._bodies, entry.cameras)
         for sensor in entry.sensors:
             sensor.add_to(spec, self._bodies)
+            if isinstance(sensor, ContactSensor) and not robot.link(sensor.link).collisions:
+                nothing = f"link '{sensor.link}' has no collision shape: nothing can touch it"
+                report.warn(f"contact sensor '{sensor.name}'", nothing)
         self._start = initial_positions(robot, entry.hardware, self._follow, report)
 
     def place(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:

@@ -3,6 +3,7 @@
 import logging
 import math
 
+import numpy as np
 import pytest
 
 from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
@@ -98,6 +99,34 @@ def test_the_optical_frame_has_several_names(tag):
 
 def test_the_optical_frame_is_found_by_its_orientation():
     assert camera(extra=OPTICAL_JOINT).optical_frame == "eye"
+
+
+def test_the_optical_frame_may_be_a_link_further():
+    between = (
+        '<joint name="a" type="fixed"><parent link="camera_link"/><child link="base_link"/></joint>'
+    )
+    further = OPTICAL_JOINT.replace('parent link="camera_link"', 'parent link="base_link"')
+    assert camera(extra=between + further).optical_frame == "eye"
+
+
+RGBD = '<sensor name="camera" type="rgbd_camera">{}<pose>1 2 3 0 0 0</pose></sensor>'
+
+
+@pytest.mark.parametrize(
+    ("frame", "axes", "origin"),
+    [
+        # The camera looks along x of its link, and along z of its optical frame.
+        ("camera_link", [[0, 0, 1], [-1, 0, 0], [0, -1, 0]], [1, 2, 3]),
+        ("eye", [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [-2, -3, 1]),
+        ("elsewhere", [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0]),
+    ],
+)
+def test_points_know_how_their_frame_looks(frame, axes, origin):
+    urdf = robot(RGBD.format(f"<gz_frame_id>{frame}</gz_frame_id>"), extra=OPTICAL_JOINT)
+    (found,) = parse_cameras(urdf)
+    optics = np.reshape(found.optics_in_frame, (3, 4))
+    np.testing.assert_allclose(optics[:, :3], axes, atol=1e-5)
+    np.testing.assert_allclose(optics[:, 3], origin, atol=1e-4)
 
 
 def test_noise_of_type_none_is_none():

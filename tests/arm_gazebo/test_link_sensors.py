@@ -226,8 +226,8 @@ def test_the_upper_of_two_touching_links_is_pushed_up_and_the_lower_down(parts):
     )
     lab = Lab(urdf, self_collide=True)
     lab.run(2.0)
-    assert lab.read("upper")["force"] == pytest.approx([0, 0, G], rel=0.05)
-    assert lab.read("lower")["force"] == pytest.approx([0, 0, -G], rel=0.05)
+    assert lab.read("upper")["force"] == pytest.approx([0, 0, G], abs=0.5)
+    assert lab.read("lower")["force"] == pytest.approx([0, 0, -G], abs=0.5)
 
 
 def test_a_sensor_finds_itself_again_in_another_model(parts):

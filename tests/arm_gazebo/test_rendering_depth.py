@@ -5,7 +5,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import mujoco
@@ -132,6 +132,17 @@ def test_every_pixel_agrees_with_a_ray_of_its_own(measure, scene, backend):
         along = mujoco.mj_ray(model, data, data.cam_xpos[0], ray, None, 1, -1, hit)
         expected = along if 0 < along <= EYE.far else np.inf
         assert depth[row, column] == pytest.approx(expected, abs=1e-3), (row, column)
+
+
+def test_points_are_in_the_frame_of_their_header(measure):
+    depth = measure("raycast")
+    points = np.empty((EYE.height, EYE.width, 4), np.float32)
+    forward_is_x = (0.0, 0.0, 1.0, 0.5, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0)
+    PointGrid(replace(EYE, optics_in_frame=forward_is_x)).fill(points, depth, None)
+    x, y, z = points[110, 80, :3]
+    assert x == pytest.approx(0.5 + depth[110, 80], abs=1e-5)
+    assert y == pytest.approx(0.0, abs=0.02)
+    assert z == pytest.approx(-1.0, abs=1e-3)
 
 
 def test_points_lie_where_things_are_and_have_their_colours(measure):

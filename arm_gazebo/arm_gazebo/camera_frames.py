@@ -1,0 +1,87 @@
+"""The frames that stand still relative to a camera's link: which is its optical one, and where."""
+
+import math
+from collections import deque
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.robot import Pose
+from arm_description.transforms import rotation_from_rpy
+
+Matrix = NDArray[np.float64]
+
+OPTICAL_RPY = (-math.pi / 2, 0.0, -math.pi / 2)
+"""From a link that looks along x, z up, to a frame that looks along z, y down (REP 103)."""
+OPTICAL = rotation_from_rpy(OPTICAL_RPY)
+LIKENESS = 0.01
+
+
+class CameraFrames:
+    """A link of a URDF, and all that hangs on it by fixed joints.
+
+    Args:
+        root: the document.
+        link: carries the camera.
+    """
+
+    def __init__(self, root: Any, link: str) -> None:
+        self._link = link
+        self._poses: dict[str, Matrix] = {link: np.eye(4)}
+        fixed = [joint for joint in root.findall("joint") if joint.get("type") == "fixed"]
+        beyond = deque([link])
+        while beyond:
+            parent = beyond.popleft()
+            for joint in fixed:
+                child, origin = _child_of(joint, parent), _origin(joint)
+                if child and origin is not None and child not in self._poses:
+                    self._poses[child] = self._poses[parent] @ origin.matrix()
+                    beyond.append(child)
+
+    def optical(self) -> str:
+        """Return the nearest frame with the optical orientation; the link if there is none."""
+        for name, pose in self._poses.items():
+            if np.abs(pose[:3, :3] - OPTICAL).max() < LIKENESS:
+                return name
+        return self._link
+
+    def optics_in(self, frame: str, camera: Pose) -> Matrix | None:
+        """Return the (4, 4) pose of a camera's optical axes in a frame; None for a strange one.
+
+        Args:
+            frame: the link, or what is fixed to it.
+            camera: pose of the camera in its link.
+        """
+        pose = self._poses.get(frame)
+        if pose is None:
+            return None
+        optics = camera.matrix()
+        optics[:3, :3] = optics[:3, :3] @ OPTICAL
+        return np.linalg.inv(pose) @ optics
+
+
+def _child_of(joint: Any, parent: str) -> str:
+    """Return the child of a joint of this parent; empty for another's joint."""
+    above, below = joint.find("parent"), joint.find("child")
+    if above is None or below is None or above.get("link") != parent:
+        return ""
+    return str(below.get("link", ""))
+
+
+def _origin(joint: Any) -> Pose | None:
+    """Return where a joint is in its parent; None where that is nonsense."""
+    origin = joint.find("origin")
+    if origin is None:
+        return Pose()
+    try:
+        numbers = [
+            [float(word) for word in str(origin.get(name) or "0 0 0").split()]
+            for name in ("xyz", "rpy")
+        ]
+    except ValueError:
+        return None
+    if any(len(three) != 3 or not all(map(math.isfinite, three)) for three in numbers):
+        return None
+    (x, y, z), (roll, pitch, yaw) = numbers
+    return Pose((x, y, z), (roll, pitch, yaw))
