@@ -115,8 +115,9 @@ class Simulation:
         transfer = StateTransfer(self.model, built.model, roots)
         transfer.carry_drives(self.model, built.model)
         joints = tuple(built.joints[joint.name] for joint in self.servo.joints)
-        tuning = tuned_again(built.model, joints, self._tuning)
         data = mujoco.MjData(built.model)
+        tuning = tuned_again(built.model, data, joints, self._tuning)
+        mujoco.mj_resetData(built.model, data)
         data.qpos[:] = built.qpos
         mujoco.mj_forward(built.model, data)
         gate = ContactGate(built.model, data, self.timing.period_s)

@@ -77,6 +77,11 @@ class StateTransfer:
         ):
             after[here] = before[there]
 
+    def carry_positions(self, source: NDArray[np.float64], target: NDArray[np.float64]) -> None:
+        """Copy generalised positions of the first model, (nq,), to those of the second one."""
+        there, here = self._positions
+        target[here] = source[there]
+
     def carry_drives(self, source: mujoco.MjModel, target: mujoco.MjModel) -> None:
         """Copy what is set on a model while it runs: rotors, gains and limits of its drives."""
         there, here = self._velocities

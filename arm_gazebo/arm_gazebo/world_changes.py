@@ -150,9 +150,7 @@ def _found_again(joint: RobotJoint, model: mujoco.MjModel) -> RobotJoint:
 
 def _start(base: BuiltModel, model: mujoco.MjModel) -> NDArray[np.float64]:
     """Return where everything starts: the robots as before, what is new at its pose."""
-    before, after = mujoco.MjData(base.model), mujoco.MjData(model)
-    before.qpos[:] = base.qpos
-    StateTransfer(base.model, model, base.robot_roots).carry(before, after)
-    qpos = after.qpos.copy()
+    qpos = model.qpos0.copy()
+    StateTransfer(base.model, model, base.robot_roots).carry_positions(base.qpos, qpos)
     qpos.setflags(write=False)
     return qpos

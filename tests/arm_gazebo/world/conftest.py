@@ -1,0 +1,87 @@
+"""Things to spawn, and a running arm whose world is kept."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from arm_gazebo.spawn_model import ModelSource
+from arm_gazebo.world_keeper import SpawnRequest, WorldKeeper
+
+URDF = """<robot name="crate"><link name="base">
+  <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>
+  </inertial>
+  <visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>
+  <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>{more}</robot>"""
+LID = """<link name="lid"><inertial><mass value="0.1"/>
+  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="hinge" type="revolute"><parent link="base"/><child link="lid"/>
+  <limit lower="-1.5" upper="1.5" effort="1" velocity="1"/></joint>"""
+CRATE = URDF.format(more="")
+CHEST = URDF.format(more=LID)
+POST = URDF.format(more="<gazebo><static>true</static></gazebo>")
+BALL = """<sdf version="1.9"><model name="ball"><link name="body"><collision name="c"><geometry>
+  <sphere><radius>0.05</radius></sphere></geometry></collision><visual name="v"><geometry><sphere>
+  <radius>0.05</radius></sphere></geometry></visual></link></model></sdf>"""
+PUCK = """<mujoco><worldbody><body pos="0 0 5" euler="0 0 90"><freejoint/>
+  <geom type="cylinder" size="0.05 0.02" mass="0.1"/></body></worldbody></mujoco>"""
+
+
+def at(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+    """Return a pose (4, 4) without a turn."""
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+class Things:
+    """Texts of things, and poses."""
+
+    crate = CRATE
+    chest = CHEST
+    post = POST
+    ball = BALL
+    puck = PUCK
+    at = staticmethod(at)
+
+
+class KeptWorld:
+    """An arm in a world, and the keeper of that world; the loop is called straight away."""
+
+    def __init__(self, bench, arm: str, world: str, rate_hz: float = 100.0, **options) -> None:
+        self.arm = bench(arm, rate_hz, world, **options)
+        self.keeper = WorldKeeper(
+            self.arm.simulation,
+            lambda function: function(),
+            [self.arm.hardware],
+            [],
+            ModelSource(self.arm.simulation.timing.step_s),
+        )
+
+    def spawn(self, name: str, text: str, pose: np.ndarray, frame: str = "", **more) -> str:
+        return self.keeper.spawn(SpawnRequest(name, "", text, pose, frame, **more))
+
+    def names(self) -> list[str]:
+        return [entity.name for entity in self.keeper.entities]
+
+    def where(self, entity: str) -> np.ndarray:
+        """Return where an entity is now, shape (3,)."""
+        root = self.keeper.entities.find(entity).roots[0]
+        return self.keeper.motions().motion(root).pose[:3, 3]
+
+
+@pytest.fixture
+def things() -> type[Things]:
+    return Things
+
+
+@pytest.fixture
+def kept(bench, parts) -> Callable[..., KeptWorld]:
+    """Return a maker of kept worlds."""
+
+    def make(
+        world: str = "pick_and_place_demo", rate_hz: float = 100.0, robot: str = "", **options
+    ) -> KeptWorld:
+        return KeptWorld(bench, robot or parts.arm(), world, rate_hz, **options)
+
+    return make
