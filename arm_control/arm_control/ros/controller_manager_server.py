@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from controller_manager_msgs.msg import ControllerManagerActivity
-from rclpy.executors import Executor
+from rclpy.executors import Executor, MultiThreadedExecutor
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
@@ -23,13 +23,16 @@ from arm_control.ros.executor_thread import ExecutorThread
 from arm_control.ros.manager_services import ManagerServices
 from arm_control.ros.node_arguments import controller_arguments
 
+SERVICE_THREADS = 2
+"""One for what waits for the control loop, one for what only looks."""
+
 logger = logging.getLogger(__name__)
 
 
 class ControllerManagerServer:
     """Serves a manager on its node, from its making until `shutdown`.
 
-    The services run on a thread of their own, because they wait for the control loop; the nodes
+    The services run on threads of their own, because they wait for the control loop; the nodes
     of controllers and components run on the executor given. In the end: `shutdown`, join the
     loop, `destroy_nodes`.
     """
@@ -75,7 +78,9 @@ class ControllerManagerServer:
         refusals = Refusals()
         self._services = ManagerServices(node, self._plane, manager, self._snapshot, refusals)
         node.health.watch(ManagerDiagnostics(manager, self._snapshot, loop, refusals))
-        self._thread = ExecutorThread("controller manager services")
+        self._thread = ExecutorThread(
+            "controller manager services", MultiThreadedExecutor(SERVICE_THREADS)
+        )
         self._thread.start(node)
 
     def start_controllers(self, names: Sequence[str]) -> None:

@@ -3,7 +3,12 @@
 import logging
 import threading
 
-from rclpy.executors import ExternalShutdownException, ShutdownException, SingleThreadedExecutor
+from rclpy.executors import (
+    Executor,
+    ExternalShutdownException,
+    ShutdownException,
+    SingleThreadedExecutor,
+)
 from rclpy.node import Node
 
 logger = logging.getLogger(__name__)
@@ -17,13 +22,20 @@ class ExecutorThread:
     rclpy's executors sleep on while a future that a coroutine awaits is completed elsewhere.
     """
 
-    def __init__(self, name: str) -> None:
-        self._executor = SingleThreadedExecutor()
+    def __init__(self, name: str, executor: Executor | None = None) -> None:
+        """Prepare the thread.
+
+        Args:
+            name: of the thread.
+            executor: one with several threads serves on while a callback blocks, what is in other
+                callback groups; by default one callback runs after another.
+        """
+        self._executor = executor or SingleThreadedExecutor()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
 
     @property
-    def executor(self) -> SingleThreadedExecutor:
+    def executor(self) -> Executor:
         """The executor; for coroutines that wait for other threads, see `executor_bridge`."""
         return self._executor
 

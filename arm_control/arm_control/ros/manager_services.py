@@ -17,6 +17,7 @@ from controller_manager_msgs.srv import (
     SwitchController,
     UnloadController,
 )
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from arm_control.controller_manager import ControllerManager
@@ -47,7 +48,11 @@ CHAINABLE_INTERFACE = "controller_interface::ChainableControllerInterface"
 
 
 class ManagerServices:
-    """Creates the services on a node and answers them; they may block its executor."""
+    """Creates the services on a node and answers them.
+
+    What changes something may block a thread of the node's executor until the control loop has
+    done its part, one after another; the lists are answered meanwhile.
+    """
 
     def __init__(
         self,
@@ -62,6 +67,7 @@ class ManagerServices:
         self._manager = manager
         self._snapshot = snapshot
         self._refusals = refusals
+        looking, changing = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
         for type_, name, answer in (
             (ListControllers, "list_controllers", self._list_controllers),
             (ListControllerTypes, "list_controller_types", self._list_controller_types),
@@ -79,7 +85,13 @@ class ManagerServices:
             (ListHardwareComponents, "list_hardware_components", self._list_components),
             (SetHardwareComponentState, "set_hardware_component_state", self._set_component_state),
         ):
-            node.create_service(type_, f"~/{name}", answer, qos_profile=SERVICE_QOS)
+            node.create_service(
+                type_,
+                f"~/{name}",
+                answer,
+                qos_profile=SERVICE_QOS,
+                callback_group=looking if name.startswith("list_") else changing,
+            )
 
     def _by_name(self, action: Callable[[str], None]) -> Callable[[Any, Any], Any]:
         """Return the answer of a service that takes a name and says whether it worked."""

@@ -243,6 +243,13 @@ class Control:
                 return future.result()
         pytest.fail(f"no answer from {self._prefix}/{service}")
 
+    def ask(self, service: str, **fields: Any) -> Any:
+        """Call one of its services, and do not wait; return the future of the answer."""
+        if not self._services:
+            self._connect()
+        client = self._services[service]
+        return client.call_async(client.srv_type.Request(**fields))
+
     def _connect(self) -> None:
         import controller_manager_msgs.srv
 

@@ -253,6 +253,24 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
     assert control.states() == {"position_controller": "inactive"}
 
 
+def test_lists_are_answered_while_a_change_waits_for_a_loop_that_is_stuck(
+    control: Any, manager: Any
+) -> None:
+    control.load("position_controller")
+    manager.tell("block")
+    try:
+        configured = control.ask("configure_controller", name="position_controller")
+        states = control.states()
+        (component,) = control.call("list_hardware_components").component
+        waited = not configured.done()
+    finally:
+        manager.tell("unblock")
+    assert waited
+    assert states == {"position_controller": "unconfigured"}
+    assert component.state.label == "active"
+    control.wait_for_states(position_controller="inactive")
+
+
 def test_reload_unloads_everything_active_controllers_only_by_force(control: Any) -> None:
     def reload(force: bool) -> bool:
         return control.call("reload_controller_libraries", force_kill=force).ok
