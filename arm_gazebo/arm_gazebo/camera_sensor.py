@@ -143,7 +143,11 @@ def _camera_tags(root: Any) -> Iterator[SensorTags]:
 
 @dataclass(frozen=True, slots=True)
 class _Topics:
-    """Where what a camera shows goes, by its type, as Gazebo's bridge names it."""
+    """Where what a camera shows goes, by its type.
+
+    Below `<topic>` as Gazebo names it, or where a tag of its own says, which takes the place of
+    what one would tell Gazebo's bridge.
+    """
 
     image_topics: tuple[str, ...] = ()
     info_topics: tuple[str, ...] = ()
@@ -155,14 +159,14 @@ class _Topics:
         topics, infos = tags.own_topics(), tags.topics("camera_info_topic")
         if tags.type == "rgbd_camera":
             return cls(
-                image_topics=_below(topics, "image"),
+                image_topics=tags.topics("image_topic") or _below(topics, "image"),
                 info_topics=infos or _below(topics, "camera_info"),
-                depth_topics=_below(topics, "depth_image"),
-                points_topics=_below(topics, "points"),
+                depth_topics=tags.topics("depth_image_topic") or _below(topics, "depth_image"),
+                points_topics=tags.topics("points_topic") or _below(topics, "points"),
             )
         infos = infos or _default_info_topics(topics, taken)
         if tags.type == "depth_camera":
-            points = _below(topics, "points")
+            points = tags.topics("points_topic") or _below(topics, "points")
             return cls(info_topics=infos, depth_topics=topics, points_topics=points)
         return cls(image_topics=topics, info_topics=infos)
 

@@ -174,6 +174,13 @@ def test_an_rgbd_camera_has_gazebos_topics_below_its_own():
     )
 
 
+def test_each_topic_of_an_rgbd_camera_may_have_a_name_of_its_own():
+    names = ("image_topic", "depth_image_topic", "points_topic", "camera_info_topic")
+    tags = "".join(f"<{name}>/d435/{name}</{name}>" for name in names)
+    (found,) = parse_cameras(robot(sensor(tags).replace('"camera">', '"rgbd_camera">')))
+    assert found.topics == tuple(f"/d435/{name}" for name in names)
+
+
 def test_noise_type_may_be_an_attribute():
     noise = '<camera><noise type="gaussian"><stddev>0.1</stddev></noise></camera>'
     assert camera(noise).noise_stddev == 0.1

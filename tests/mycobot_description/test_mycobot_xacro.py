@@ -15,6 +15,7 @@ from arm_description import (
     parse_urdf,
     resolve_uri,
 )
+from arm_gazebo.camera_sensor import parse_cameras
 
 MODEL = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 ARM_JOINTS = (
@@ -107,6 +108,7 @@ def test_the_base_and_the_flange_can_have_other_names():
         ("use_gripper", "maybe", "true, false"),
         ("add_world", "2", "true, false"),
         ("use_gazebo", "perhaps", "true, false"),
+        ("use_camera", "soon", "true, false"),
     ],
 )
 def test_a_value_that_is_no_choice_is_refused_with_the_choices(argument, value, choices):
@@ -164,6 +166,34 @@ def test_five_joints_follow_the_driven_one_within_their_limits(prefix):
         assert mimic.joint == driven.name
         for end in (driven.limit.lower, driven.limit.upper):
             assert limit.lower <= mimic.multiplier * end <= limit.upper, name
+
+
+CAMERA_AT = {
+    "torso_link": (0.22, -0.3, 0.0),
+    "camera_head_link": (0.22, -0.29, 0.5),
+    "camera_head_depth_optical_frame": (0.22, -0.29, 0.5),
+    "camera_head_infra2_frame": (0.27, -0.29, 0.5),
+    "camera_head_color_optical_frame": (0.205, -0.29, 0.5),
+}
+"""Where the camera's frames are in the world, from the original."""
+
+
+@pytest.mark.parametrize("prefix", ["", "left_"])
+def test_the_camera_stands_where_the_original_does_and_looks_at_the_table(prefix):
+    text = expand(prefix=prefix, use_camera="true")
+    poses = forward_kinematics(parse_urdf(text), {})
+    for link, place in CAMERA_AT.items():
+        assert poses[prefix + link][:3, 3] == pytest.approx(place, abs=1e-6), link
+    (camera,) = parse_cameras(text)
+    assert camera.optical_frame == f"{prefix}camera_head_depth_optical_frame"
+    tilt = np.radians(25)
+    forward = poses[camera.optical_frame][:3, 2]
+    assert forward == pytest.approx([0, np.cos(tilt), -np.sin(tilt)], abs=1e-6)
+    assert camera.points_topics == (f"{prefix}camera_head/depth/color/points",)
+
+
+def test_there_is_no_camera_unless_it_is_wanted():
+    assert parse_cameras(expand()) == ()
 
 
 @pytest.mark.parametrize("use_gripper", ["true", "false"])

@@ -10,10 +10,16 @@ from launch_py import (
     Notified,
     SetLaunchConfiguration,
 )
-from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.conditions import IfCondition
 from launch_py.packages import Packages
 from launch_py.ros import FindPackageShare, Node, ParameterValue
-from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
+from launch_py.substitutions import (
+    AndSubstitution,
+    Call,
+    LaunchConfiguration,
+    NotSubstitution,
+    PathJoinSubstitution,
+)
 
 SLIDERS = "joint_state_publisher_gui"
 SWITCH = ["true", "false"]
@@ -27,6 +33,7 @@ XACRO_ARGUMENTS = {
     "gripper_type": ("adaptive_gripper", "which gripper", ["adaptive_gripper"]),
     "use_gazebo": ("false", "the simulation is the hardware, not a mock", SWITCH),
     "use_gripper": ("true", "with the gripper", SWITCH),
+    "use_camera": ("false", "with a depth camera on a stand", SWITCH),
 }
 
 
@@ -57,6 +64,7 @@ def arguments() -> list[DeclareLaunchArgument]:
             None,
         ),
         "jsp_gui": (gui, f"sliders; {SLIDERS} comes with a ROS 2 installation", SWITCH),
+        "use_jsp": ("true", "publish joint states where no sliders do", SWITCH),
         "use_rviz": (rviz, "start RViz; it comes with a ROS 2 installation", SWITCH),
         "use_sim_time": ("false", "the nodes' clock is a simulation's", SWITCH),
     }
@@ -98,7 +106,9 @@ def generate_launch_description() -> LaunchDescription:
                 executable="joint_state_publisher",
                 parameters=[description],
                 ready=Notified(),
-                condition=UnlessCondition(gui),
+                condition=IfCondition(
+                    AndSubstitution(LaunchConfiguration("use_jsp"), NotSubstitution(gui))
+                ),
             ),
             Node(package=SLIDERS, executable=SLIDERS, condition=IfCondition(gui)),
             ExecuteProcess(

@@ -20,7 +20,7 @@ from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 SLIDERS = "joint_state_publisher_gui"
 SWITCH = ["true", "false"]
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-XACRO_ARGUMENTS = ("prefix", "use_gripper", "use_gazebo")
+XACRO_ARGUMENTS = ("prefix", "use_gripper", "use_camera", "use_gazebo")
 ARM_CONTROLLERS = "joint_state_broadcaster,arm_controller"
 GRIPPER_CONTROLLER = "gripper_action_controller"
 
@@ -28,6 +28,7 @@ ARGUMENTS = {
     "robot_name": ("mycobot_280", "which robot of mycobot_description", None),
     "prefix": ("", "put before the name of every link and joint", None),
     "use_gripper": ("true", "with the gripper", SWITCH),
+    "use_camera": ("false", "with a depth camera on a stand, /camera_head/...", SWITCH),
     "load_controllers": ("true", "start the controllers with the simulation", SWITCH),
     "use_robot_state_pub": ("true", "publish where the links are", SWITCH),
     "jsp_gui": ("false", "sliders, where no controllers publish joint states", SWITCH),
