@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.names import listing
@@ -29,6 +30,7 @@ from arm_gazebo.sdf_model import read_model
 from arm_gazebo.sdf_world import sdf_file_in
 
 FORMATS = ("urdf", "sdf", "mjcf")
+TRIAL_STEPS = 5
 LARGEST_CHARACTERS = 20_000_000
 FILE_MISSING = "opening file"
 """What MuJoCo says of a file that an MJCF names and that it cannot read."""
@@ -169,7 +171,7 @@ def _checked(source: str, read: Callable[[], SpawnModel]) -> SpawnModel:
     """Return what is read if it can be simulated by itself; raise a RefusedError otherwise."""
     try:
         model = read()
-        model.spec.copy().compile()
+        _try(source, model.spec.copy().compile())
     except RefusedError:
         raise
     except MeshError as error:
@@ -180,6 +182,19 @@ def _checked(source: str, read: Callable[[], SpawnModel]) -> SpawnModel:
         where = "" if source in reason else f"{source}: "
         raise RefusedError(refusal, f"{where}{reason}") from error
     return model
+
+
+def _try(source: str, model: mujoco.MjModel) -> None:
+    """Refuse what MuJoCo compiles but cannot simulate: numbers that are none, or beyond reason."""
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, TRIAL_STEPS)
+    numbers = (model.body_mass, model.body_inertia, model.geom_rbound, data.xpos, data.geom_xpos)
+    # MuJoCo starts over by itself where a number is no longer finite.
+    started_over = data.time < (TRIAL_STEPS - 0.5) * model.opt.timestep
+    if started_over or not all(np.isfinite(values).all() for values in numbers):
+        raise RefusedError(
+            Refusal.UNREADABLE, f"{source}: it has numbers with which it cannot be simulated"
+        )
 
 
 def _only_body(spec: mujoco.MjSpec, kind: str) -> str:

@@ -1,0 +1,165 @@
+import re
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from arm_gazebo.refusal import Refusal, RefusedError
+from arm_gazebo.spawn_model import ModelSource
+
+SOURCE = ModelSource(0.002)
+NASTY = st.sampled_from(
+    [
+        *("", " ", "0", "-0", "-1", "1e308", "1e-320", "1e400", "nan", "inf", "1 2", "0 0 0"),
+        *("a" * 3000, "ä", "world", "base", "link", "freejoint", "../..", "/dev/zero", "&lt;"),
+        *("<", ">", "/", '"', "<!--", "<![CDATA[", "&e;", "mesh", "plane", "hfield", "sdf"),
+    ]
+)
+WORDS = re.compile(r"""(?<=")[^"<>]*(?=")|(?<=<)/?[\w:]+|(?<=>)[^<>]+(?=<)|[<>/="]""")
+
+
+def refused(text: str) -> tuple[Refusal, str]:
+    with pytest.raises(RefusedError) as caught:
+        SOURCE.read("", text)
+    return caught.value.refusal, str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "format_", "root"),
+    [("crate", "urdf", "base"), ("ball", "sdf", "ball"), ("puck", "mjcf", "thing")],
+)
+def test_each_format_is_known_by_its_root_element(things, name, format_, root):
+    model = SOURCE.read("", getattr(things, name))
+    assert (model.format, model.root) == (format_, root)
+    assert model.spec.copy().compile().nq == 7
+
+
+def test_joints_of_a_urdf_move(things):
+    model = SOURCE.read("", things.chest).spec.copy().compile()
+    assert model.joint("hinge").range == pytest.approx([-1.5, 1.5])
+
+
+def test_a_urdf_with_a_world_link_stands_still():
+    text = (
+        "<robot name='r'><link name='world'/><link name='post'/><joint name='j' type='fixed'>"
+        "<parent link='world'/><child link='post'/></joint></robot>"
+    )
+    model = SOURCE.read("", text)
+    assert model.root == "post"
+    assert model.spec.copy().compile().nq == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "refusal", "words"),
+    [
+        ("", Refusal.NO_RESOURCE, "neither uri nor resource_string"),
+        ("no xml", Refusal.UNREADABLE, "resource_string"),
+        ("<a/>", Refusal.UNSUPPORTED_FORMAT, "<a> is none of"),
+        ("<robot/>", Refusal.UNREADABLE, "needs the attribute 'name'"),
+        ("<sdf/>", Refusal.UNREADABLE, "LoadWorld"),
+        ("<sdf><world name='w'/></sdf>", Refusal.UNREADABLE, "LoadWorld"),
+        ("<mujoco/>", Refusal.UNREADABLE, "one body"),
+        ("<mujoco><worldbody><body/><body/></worldbody></mujoco>", Refusal.UNREADABLE, "thing_2"),
+        (
+            "<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>",
+            Refusal.UNREADABLE,
+            "mass and inertia",
+        ),
+        (
+            "<mujoco><asset><mesh file='/etc/passwd'/></asset></mujoco>",
+            Refusal.MISSING_ASSETS,
+            "a text has no folder",
+        ),
+    ],
+)
+def test_what_cannot_be_spawned_is_refused_with_the_reason(text, refusal, words):
+    kind, message = refused(text)
+    assert kind is refusal
+    assert words in message
+
+
+@pytest.mark.parametrize("mass", ["inf", "1e308"])
+def test_numbers_that_cannot_be_simulated_are_refused(things, mass):
+    kind, message = refused(things.puck.replace('mass="0.1"', f'mass="{mass}"'))
+    assert kind is Refusal.UNREADABLE
+    assert "cannot be simulated" in message or "mass" in message
+
+
+def test_a_missing_mesh_is_a_refusal(things):
+    text = things.crate.replace('<box size="0.1 0.1 0.1"/>', '<mesh filename="model://no/x.stl"/>')
+    kind, message = refused(text)
+    assert kind is Refusal.MISSING_ASSETS
+    assert "model://no/x.stl" in message
+
+
+def test_entities_of_xml_are_not_expanded():
+    kind, _ = refused("<!DOCTYPE r [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><robot name='&e;'/>")
+    assert kind is Refusal.UNREADABLE
+
+
+@pytest.mark.parametrize(
+    ("uri", "refusal"),
+    [
+        ("/no/such/file.urdf", Refusal.NO_RESOURCE),
+        ("package://nowhere/x.urdf", Refusal.NO_RESOURCE),
+        ("http://example.org/x.sdf", Refusal.NO_RESOURCE),
+        ("/dev/null", Refusal.NO_RESOURCE),
+        ("/", Refusal.NO_RESOURCE),
+        ("\x00", Refusal.NO_RESOURCE),
+    ],
+)
+def test_files_that_are_none_are_refused(uri, refusal):
+    with pytest.raises(RefusedError) as caught:
+        SOURCE.read(uri, "")
+    assert caught.value.refusal is refusal
+
+
+def test_a_folder_of_an_sdf_model_will_do(things, tmp_path, monkeypatch):
+    folder = tmp_path / "my_ball"
+    folder.mkdir()
+    (folder / "model.sdf").write_text(things.ball)
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path))
+    assert SOURCE.read("model://my_ball", "").root == "ball"
+
+
+def test_an_mjcf_file_brings_its_meshes(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "pyramid.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    )
+    file = tmp_path / "thing.xml"
+    file.write_text(
+        "<mujoco><asset><mesh name='p' file='meshes/pyramid.obj'/></asset><worldbody>"
+        "<body name='b'><geom type='mesh' mesh='p'/></body></worldbody></mujoco>"
+    )
+    model = SOURCE.read(str(file), "")
+    world = mujoco.MjSpec()
+    world.worldbody.add_frame().attach_body(model.spec.copy().body("b"), "one::", "")
+    assert world.compile().nmesh == 1
+
+
+@pytest.mark.parametrize("name", ["../x.obj", "/x.obj"])
+def test_an_mjcf_file_reads_nothing_from_elsewhere(tmp_path, name):
+    file = tmp_path / "thing.xml"
+    file.write_text(f"<mujoco><asset><mesh file='{name}'/></asset></mujoco>")
+    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+        SOURCE.read(str(file), "")
+
+
+@settings(max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_spoilt_texts_are_refused_or_can_be_simulated(things, data):
+    text = data.draw(st.sampled_from([things.chest, things.ball, things.puck]))
+    for _ in range(data.draw(st.integers(1, 3))):
+        places = list(WORDS.finditer(text))
+        place = places[data.draw(st.integers(0, len(places) - 1))]
+        text = text[: place.start()] + data.draw(NASTY) + text[place.end() :]
+    message = ""
+    mass = np.zeros(1)
+    try:
+        mass = SOURCE.read("", text).spec.copy().compile().body_mass
+    except RefusedError as error:
+        message = str(error)
+    assert message.strip() or np.isfinite(mass).all()
