@@ -70,11 +70,13 @@ def publish(seconds: float) -> None:
 
 def record(seconds: float, compression: str) -> harness.Row:
     """Record the robot; compare what is in the bag with what was published."""
-    from launch_py.child_environment import dds_profile
+    from arm_gazebo.camera_environment import camera_environment
 
     with harness.fresh_domain(), tempfile.TemporaryDirectory() as folder:
         environment = harness.client_environment()
-        environment["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(dds_profile(environment))
+        # As a camera process of the suite: with the default shared memory of 512 KiB its own
+        # pictures overwrite what it sends beside them.
+        environment = camera_environment(environment)
         bag = Path(folder) / "bag"
         arm = [sys.executable, "-m", "arm_cli", "bag"]
         recorder = subprocess.Popen(

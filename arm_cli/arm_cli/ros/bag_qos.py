@@ -15,8 +15,8 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from arm_cli.bag.offered_qos import INFINITE_NS, OfferedQos
 from arm_cli.ros.qos import matching_profile
 
-RECORDING_DEPTH = 500
-"""A second of a fast topic."""
+RECORDING_DEPTH = 5000
+"""Ten seconds of a fast topic: so long the recorder may be held up. Room is taken as needed."""
 PLAYING_DEPTH = 10
 """As rosbag2's, where the recorded offer does not name more."""
 

@@ -3,40 +3,37 @@
 import sys
 import time
 from collections import Counter
-from typing import Any
 
-from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 from arm_cli.bag.bag_topic import BagMessage, BagTopic
 from arm_cli.bag.recording import Recording
 from arm_cli.bag.topic_selection import TopicSelection
 from arm_cli.bag.type_definition import find_definition
+from arm_cli.bag.writer_numbers import WriterNumbers
 from arm_cli.errors import NotFoundError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.names import this_domain
 from arm_cli.ros.bag_qos import RECORDING_DEPTH, offered_qos, recording_profile
 from arm_cli.ros.graph import Graph
-from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_cli.ros.session import PATIENCE_S, Session
+from arm_node.polled_subscriptions import PolledSubscriptions
 from launch_py.near_names import describe_known
 
 TAKE_PERIOD_S = 0.01
 SPIN_PERIOD_S = 0.1
-"""So often signals and losses are looked for."""
+"""So often signals are looked for."""
 ADAPT_PERIOD_S = 1.0
 """So often it is looked whether new publishers want another subscription."""
 DROPS_SAID_PERIOD_S = 5.0
-MATCHING_S = 1.0
-"""So long a new subscription and its publishers may take to find each other."""
 
 
 class BagRecorder:
     """Records the selected topics until a signal comes; see `run`.
 
     Attributes:
-        lost: messages that the middleware lost on the way, by topic.
+        lost: messages that were sent between others, but did not come, by topic.
     """
 
     def __init__(
@@ -66,6 +63,7 @@ class BagRecorder:
         self._polled = PolledSubscriptions(session.node)
         self._index = InterfaceIndex()
         self._subscriptions: dict[str, tuple[Subscription, QoSProfile, type]] = {}
+        self._numbers: dict[str, WriterNumbers] = {}
         self._skipped: set[str] = set()
         self._missing_said = False
         self._dropped_said = 0
@@ -140,28 +138,18 @@ class BagRecorder:
         _say(f"Subscribed to topic '{name}'")
 
     def _open(self, name: str, message_class: type, profile: QoSProfile) -> None:
-        opened_s = time.monotonic()
-        latched = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
-
-        def count_lost(event: Any) -> None:
-            # To a latched topic's new subscription Fast DDS reports what was published before it.
-            if not latched or time.monotonic() - opened_s > MATCHING_S:
-                self.lost[name] += event.total_count_change
-
-        subscription = self._polled.subscribe(
-            message_class,
-            name,
-            profile,
-            event_callbacks=SubscriptionEventCallbacks(
-                message_lost=count_lost, use_default_callbacks=False
-            ),
-        )
+        subscription = self._polled.subscribe(message_class, name, profile)
         self._subscriptions[name] = (subscription, profile, message_class)
+        self._numbers[name] = WriterNumbers(lambda: len(self._graph.publishers(name)))
 
     def _take_all(self) -> None:
         put = self._recording.put
         for name, (subscription, _, _) in self._subscriptions.items():
+            missing_before = self._numbers[name].missing_before
             for data, info in self._polled.take(subscription, RECORDING_DEPTH):
+                missing = missing_before(info["publication_sequence_number"])
+                if missing:
+                    self.lost[name] += missing
                 if self._use_sim_time:
                     received_ns = published_ns = self._session.clock_ns()
                 else:
