@@ -30,7 +30,7 @@ class PointGrid:
         rays[..., 0] = columns / sensor.focal_length
         rays[..., 1] = (rows / sensor.focal_length)[:, np.newaxis]
         optics = np.reshape(sensor.optics_in_frame, (3, 4))
-        self._rays = (rays @ optics[:, :3].T).astype(np.float32)
+        self._rays = np.moveaxis(rays @ optics[:, :3].T, -1, 0).astype(np.float32, order="C")
         self._origin = optics[:, 3].astype(np.float32)
 
     def fill(
@@ -48,7 +48,10 @@ class PointGrid:
             picture: (height, width, 3) RGB; None for points without colour.
         """
         known = np.where(np.isfinite(depth), depth, np.float32(np.nan))
-        points[..., :3] = self._rays * known[..., np.newaxis] + self._origin
+        # Axis by axis: over the three numbers of a point NumPy takes twenty times as long.
+        for axis, (rays, origin) in enumerate(zip(self._rays, self._origin, strict=True)):
+            np.multiply(rays, known, out=points[..., axis])
+            points[..., axis] += origin
         colours = points.view(np.uint8).reshape(*depth.shape, 4 * CHANNELS)[..., 12:]
         colours[:] = 0
         if picture is not None:
