@@ -32,7 +32,8 @@ class PagePort:
         return Finding.warning(
             NAME,
             f"port {self.port} is taken by another program",
-            f"ss -tlpn 'sport = :{self.port}' shows which; end it, or give the page another port",
+            f"ss -tlpn 'sport = :{self.port}' shows which; end it, or give the page another port: "
+            "arm view --port 8081, arm launch viewer:=true viewer_port:=8081",
         )
 
     def _is_free(self) -> bool:

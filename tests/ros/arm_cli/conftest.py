@@ -13,7 +13,7 @@ import pytest
 
 from launch_py.supervision.shared_memory import SharedMemoryLedger
 
-TIMEOUT_S = 60.0
+TIMEOUT_S = 120.0
 
 
 class CommandLine:
