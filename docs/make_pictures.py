@@ -1,9 +1,9 @@
-"""Makes the README's pictures: the arm, and what its front camera publishes.
+"""Makes the README's pictures: two robots, and what the arm's front camera publishes.
 
     python docs/make_pictures.py
 
-The first is drawn from the model that is simulated; the second is taken off /videocamera of a
-running `arm launch`, with the gripper lowered into the view.
+The robots are drawn from the models that are simulated; the last picture is taken off /videocamera
+of a running `arm launch`, with the gripper lowered into the view.
 """
 
 import os
@@ -28,32 +28,61 @@ from std_msgs.msg import Float64MultiArray
 from arm_control.hardware_info import parse_hardware_info
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
+from arm_gazebo.build_options import Base, BuildOptions
 from arm_gazebo.model_builder import build_model
 
 IMAGES = Path(__file__).with_name("images")
+WIDTH, HEIGHT = 960, 720
 REACHING = {"j0_pos": "0.4", "j1_pos": "0.5", "j2_pos": "0.5", "j3_pos": "1.0"}
 INTO_THE_VIEW = [0.0, 1.0, 0.6, 0.6]
 
 
-def draw_arm(path: Path, width: int = 960, height: int = 720) -> None:
+def draw_arm(path: Path) -> None:
     """Draw the arm, reaching forward, in the empty world."""
     arm = get_package_share_directory("arm_description") + "/urdf/arm.urdf.xacro"
-    text = expand_xacro(arm, {**REACHING, "camera": "front"})
-    built = build_model(parse_urdf(text), parse_hardware_info(text))
+    draw(expand_xacro(arm, {**REACHING, "camera": "front"}), path, (0.04, -0.07, 0.15), 0.62)
+
+
+def draw_rosmaster(path: Path) -> None:
+    """Draw the ROSMASTER X3, standing on its wheels."""
+    share = get_package_share_directory("yahboom_rosmaster_description")
+    text = expand_xacro(f"{share}/urdf/robots/rosmaster_x3.urdf.xacro", {"use_gazebo": "true"})
+    draw(text, path, (-0.02, 0.0, 0.1), 0.65, base="free")
+
+
+def draw(
+    text: str,
+    path: Path,
+    look_at: tuple[float, float, float],
+    distance: float,
+    base: Base = "fixed",
+) -> None:
+    """Draw a robot in the empty world, from the front and its left.
+
+    Args:
+        text: its URDF.
+        path: of the picture.
+        look_at: the middle of the picture, in m.
+        distance: from there, in m.
+        base: as of sim.launch.py.
+    """
+    built = build_model(
+        parse_urdf(text), parse_hardware_info(text), options=BuildOptions(base=base)
+    )
     model, data = built.model, mujoco.MjData(built.model)
-    model.vis.global_.offwidth, model.vis.global_.offheight = width * 2, height * 2
+    model.vis.global_.offwidth, model.vis.global_.offheight = WIDTH * 2, HEIGHT * 2
     # The cameras render without shadows, which cost most of a software frame; a picture has time.
     model.vis.quality.shadowsize = 8192
     model.vis.headlight.diffuse[:] = 0.5
     data.qpos[:] = built.qpos
     mujoco.mj_forward(model, data)
     view = mujoco.MjvCamera()
-    view.lookat[:] = 0.04, -0.07, 0.15
-    view.distance, view.azimuth, view.elevation = 0.62, 215.0, -16.0
-    with mujoco.Renderer(model, height * 2, width * 2) as renderer:
+    view.lookat[:] = look_at
+    view.distance, view.azimuth, view.elevation = distance, 215.0, -16.0
+    with mujoco.Renderer(model, HEIGHT * 2, WIDTH * 2) as renderer:
         renderer.update_scene(data, view)
         picture = renderer.render()
-    picture = cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)
+    picture = cv2.resize(picture, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
     cv2.imwrite(str(path), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
 
 
@@ -90,9 +119,10 @@ def take_camera_picture(path: Path) -> None:
 
 
 def main() -> None:
-    """Make both pictures."""
+    """Make the pictures."""
     IMAGES.mkdir(exist_ok=True)
     draw_arm(IMAGES / "arm.png")
+    draw_rosmaster(IMAGES / "rosmaster_x3.png")
     take_camera_picture(IMAGES / "camera.png")
 
 

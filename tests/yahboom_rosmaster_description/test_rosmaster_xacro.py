@@ -95,6 +95,13 @@ def test_four_wheels_turn_about_their_axles_without_end(prefix):
         assert collision.origin.matrix()[:3, 2] == pytest.approx([0, -1, 0], abs=1e-4)
 
 
+def test_a_wheel_turns_forwards_with_its_joint():
+    turned = forward_kinematics(rosmaster(), {"back_left_wheel_joint": 0.5})
+
+    assert turned["back_left_wheel_link"][:3, 0] == pytest.approx([cos(0.5), 0.0, -sin(0.5)])
+    assert turned["back_right_wheel_link"][:3, :3] == pytest.approx(np.eye(3))
+
+
 def test_the_masses_are_the_originals_and_lie_in_the_links():
     robot = rosmaster()
 
