@@ -21,6 +21,16 @@ COURSE_EXECUTABLES: dict[tuple[str, str], tuple[str, str, tuple[str, ...]]] = {
     ),
     ("arm_control", "publisher_terminal"): ("arm_controller", "publisher_terminal", ()),
     ("arm_control", "publisher_defined"): ("arm_controller", "publisher_defined", ()),
+    ("mycobot_system_tests", "arm_gripper_loop_controller"): (
+        "arm_controller",
+        "arm_gripper_loop_controller",
+        (),
+    ),
+    ("mycobot_system_tests", "arm_gripper_loop_controller.py"): (
+        "arm_controller",
+        "arm_gripper_loop_controller",
+        (),
+    ),
     ("gz_ros2_control_demos", "example_gripper"): ("arm_controller", "example_gripper", ()),
     ("gz_ros2_control_demos", "example_diff_drive"): ("arm_controller", "example_diff_drive", ()),
 }

@@ -36,6 +36,14 @@ def test_the_course_project_s_names_work():
     )
 
 
+@pytest.mark.parametrize("ending", ["", ".py"])
+def test_the_loop_of_arm_and_gripper_is_found_by_its_course_s_name(ending):
+    name = "arm_gripper_loop_controller"
+    assert find_command("mycobot_system_tests", name + ending) == find_command(
+        "arm_controller", name
+    )
+
+
 @pytest.mark.parametrize("name", ["example_gripper", "example_diff_drive"])
 def test_the_demos_names_work(name):
     assert find_command("gz_ros2_control_demos", name) == find_command("arm_controller", name)

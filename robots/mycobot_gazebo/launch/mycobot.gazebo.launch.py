@@ -35,6 +35,9 @@ ARGUMENTS = {
     "use_gazebo": ("true", "the simulation is the robot's hardware", SWITCH),
     "use_sim_time": ("true", "the nodes' clock is the simulation's", SWITCH),
     "world_file": ("pick_and_place_demo", "a shipped world, or a MuJoCo XML or SDF file", None),
+    "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible", None),
+    "headless": ("true", "false opens a window on the simulation", SWITCH),
+    "viewer": ("false", "open the page in the browser, to see and move it", SWITCH),
     "x": ("0.0", "where base_link is in the world, in m", None),
     "y": ("0.0", "likewise", None),
     "z": ("0.025", "likewise; the underside of the base is 0.025 m lower", None),
@@ -107,7 +110,10 @@ def panel() -> ReadyPanel:
             ("/gripper_action_controller/gripper_cmd", "control_msgs/action/GripperCommand"),
             ("/joint_states", "sensor_msgs/msg/JointState"),
         ],
-        commands=[("to and fro", "arm_gripper_loop_controller")],
+        commands=[
+            ("to and fro", "arm_gripper_loop_controller"),
+            ("pick the cylinder up", "mycobot_pick_and_place"),
+        ],
         condition=IfCondition(LaunchConfiguration("load_controllers")),
     )
 

@@ -1,0 +1,32 @@
+"""The myCobot picks the red cylinder up and puts it back; the simulation stays."""
+
+from launch_py import DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
+from launch_py.ros import FindPackageShare, Node
+from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the simulation with its own arguments, and the node that picks."""
+    simulation = PathJoinSubstitution(
+        [FindPackageShare("mycobot_gazebo"), "launch", "mycobot.gazebo.launch.py"]
+    )
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                "hold_time", default_value="5.0", description="how long it is held up, in s"
+            ),
+            IncludeLaunchDescription(PythonLaunchDescriptionSource(simulation)),
+            Node(
+                package="arm_controller",
+                executable="mycobot_pick_and_place",
+                parameters=[
+                    {
+                        "use_sim_time": True,
+                        "prefix": LaunchConfiguration("prefix"),
+                        "hold_time": LaunchConfiguration("hold_time"),
+                    }
+                ],
+            ),
+        ]
+    )
