@@ -5,6 +5,7 @@ ArmCliError
 |-- NotFoundError       no such topic, node, service, type, file, ...
 |-- MessageError        values do not fit a message's fields
 |-- BagError            a recording cannot be written or read
+|-- RefusedError        a simulation answers that it cannot do what is asked for
 `-- UnansweredError     somebody who should answer does not
 """
 
@@ -33,6 +34,10 @@ class MessageError(ArmCliError):
 
 class BagError(ArmCliError):
     """A recording cannot be written or read."""
+
+
+class RefusedError(ArmCliError):
+    """A simulation answers that it cannot do what is asked for; the message is its own."""
 
 
 class UnansweredError(ArmCliError):

@@ -131,6 +131,20 @@ CONTROL = VerbFamily(
     ),
 )
 
+SIM = VerbFamily(
+    "sim",
+    "look into a simulation, and change it while it runs",
+    (
+        Verb("info", "show what a simulation holds, and its time", "arm_cli.sim.info"),
+        Verb("spawn", "put a thing into the world", "arm_cli.sim.spawn"),
+        Verb("delete", "take things out of the world", "arm_cli.sim.delete"),
+        Verb("pause", "let simulated time stand still", "arm_cli.sim.pause"),
+        Verb("play", "let simulated time go on", "arm_cli.sim.play"),
+        Verb("step", "advance a paused simulation", "arm_cli.sim.step"),
+        Verb("reset", "put everything back to where it started", "arm_cli.sim.reset"),
+    ),
+)
+
 LIFECYCLE = VerbFamily(
     "lifecycle",
     "show and steer managed nodes",
@@ -182,6 +196,7 @@ VERBS = (
     ACTION,
     INTERFACE,
     CONTROL,
+    SIM,
     LIFECYCLE,
     TF,
     BAG,

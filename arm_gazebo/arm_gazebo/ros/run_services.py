@@ -63,12 +63,14 @@ class RunServices:
         run: RunControl,
         loader: WorldLoader,
         world: NamedWorld,
+        about: str,
     ) -> None:
         self._executor = executor
         self._keeper = keeper
         self._run = run
         self._loader = loader
         self._world: NamedWorld | None = world
+        self._about = about
         services: tuple[ServiceRow, ...] = (
             (GetSimulatorFeatures, "get_simulator_features", self._features),
             (GetSimulationState, "get_simulation_state", self._state),
@@ -86,7 +88,7 @@ class RunServices:
         response.features = SimulatorFeatures(
             features=[int(feature) for feature in FEATURES],
             spawn_formats=list(FORMATS),
-            custom_info="time never goes back; a step is one control period",
+            custom_info=self._about,
         )
         return response
 

@@ -9,6 +9,7 @@ from rclpy.node import Node
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
 from arm_control.ros.executor_thread import ExecutorThread
+from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.robot_part import RobotInWorld
 from arm_gazebo.ros.entity_services import EntityServices
@@ -69,6 +70,7 @@ class SimulationServer:
             run,
             WorldLoader(entries),
             named_world(find_world(world)),
+            _about(simulation.timing),
         )
         WorldMarkerPublisher(self._node, keeper)
         self._thread.start(self._node)
@@ -92,3 +94,11 @@ class SimulationServer:
             ) from error
         except LoopStoppedError as error:
             raise RefusedError(Refusal.FAILED, str(error)) from error
+
+
+def _about(timing: PhysicsTiming) -> str:
+    """Return what the features do not tell."""
+    return (
+        f"a step is one control period of {timing.period_s:g} s, {timing.steps} physics steps of "
+        f"{timing.step_s:g} s; time never goes back"
+    )

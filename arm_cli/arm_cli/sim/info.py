@@ -1,0 +1,100 @@
+"""`arm sim info`: what a simulation holds, and how fast its time goes."""
+
+import argparse
+from typing import Any
+
+from arm_cli.output import add_json_argument, print_json
+from arm_cli.sim.simulation import (
+    STATE_NAMES,
+    SimulationClient,
+    add_namespace_argument,
+    ask_simulation,
+)
+
+MEASURED_S = 1.0
+SENSOR_TYPES = (
+    "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/PointCloud2",
+    "sensor_msgs/msg/Imu",
+    "geometry_msgs/msg/WrenchStamped",
+)
+CATEGORIES = {0: "object", 1: "robot", 2: "human", 4: "moving", 5: "static"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_json_argument(parser)
+    add_namespace_argument(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print what the simulation holds.
+
+    Raises:
+        UnansweredError: no simulation answers.
+    """
+    with ask_simulation(options) as simulation:
+        report = _report(simulation)
+    if options.json:
+        print_json(report)
+        return
+    print(f"state: {report['state']}")
+    print(f"world: {report['world'] or 'none'}")
+    print(f"time: {report['time_s']:.3f} s, real-time factor {report['real_time_factor']:.2f}")
+    print(f"steps: {report['about']}")
+    print("entities:")
+    for entity in report["entities"]:
+        x, y, z = entity["position"]
+        print(f"  {entity['name']} [{entity['category']}] at {x:.3f} {y:.3f} {z:.3f}")
+    print("cameras and sensors:" if report["sensors"] else "cameras and sensors: none")
+    for topic, type_ in report["sensors"].items():
+        print(f"  {topic} [{type_}]")
+
+
+def _report(simulation: SimulationClient) -> dict[str, Any]:
+    from arm_cli.ros.graph import Graph
+    from arm_cli.ros.simulation_listener import ClockListener
+
+    clock = ClockListener(simulation.session)
+    state = simulation.ask("GetSimulationState", "get_simulation_state").state.state
+    about = simulation.ask("GetSimulatorFeatures", "get_simulator_features").features.custom_info
+    found = simulation.ask("GetEntitiesStates", "get_entities_states")
+    entities = [
+        _entity(simulation, name, where)
+        for name, where in zip(found.entities, found.states, strict=True)
+    ]
+    simulation.session.spin_for(MEASURED_S)
+    graph = Graph(simulation.session)
+    graph.settle()
+    return {
+        "state": STATE_NAMES[state],
+        "world": _world(simulation),
+        "time_s": clock.now_s,
+        "real_time_factor": clock.simulated_s / clock.wall_s if clock.wall_s else 0.0,
+        "about": about,
+        "entities": entities,
+        "sensors": {
+            topic: types[0] for topic, types in graph.topics().items() if types[0] in SENSOR_TYPES
+        },
+    }
+
+
+def _world(simulation: SimulationClient) -> str:
+    from arm_cli.errors import RefusedError
+
+    try:
+        return str(simulation.ask("GetCurrentWorld", "get_current_world").world.name)
+    except RefusedError:
+        return ""
+
+
+def _entity(simulation: SimulationClient, name: str, state: Any) -> dict[str, Any]:
+    info = simulation.ask("GetEntityInfo", "get_entity_info", entity=name).info
+    p, q = state.pose.position, state.pose.orientation
+    return {
+        "name": name,
+        "category": CATEGORIES.get(info.category.category, str(info.category.category)),
+        "description": info.description,
+        "position": [p.x, p.y, p.z],
+        "orientation": [q.x, q.y, q.z, q.w],
+    }
