@@ -10,6 +10,7 @@ from launch_py.launch_description_sources import read_launch_file
 from launch_py.packages import Packages
 from launch_py.plan import GeneratedFile, ProcessStep
 
+SLIDERS = "joint_state_publisher_gui"
 FILE = ("yahboom_rosmaster_description", "robot_state_publisher.launch.py")
 
 
@@ -29,6 +30,26 @@ def test_without_sliders_somebody_else_publishes_the_wheels():
     started = processes(jsp_gui="false", use_rviz="false")
 
     assert set(started) == {"robot_state_publisher", "joint_state_publisher"}
+
+
+def test_the_page_has_the_sliders_by_itself():
+    started = processes(use_rviz="false")
+
+    assert set(started) == {"robot_state_publisher", "arm_viewer_node"}
+    assert parameters(started["arm_viewer_node"])["publish_joint_states"] is True
+
+
+def test_the_sliders_of_a_ros_2_installation_come_first(tmp_path, monkeypatch):
+    marker = tmp_path / "share/ament_index/resource_index/packages" / SLIDERS
+    program = tmp_path / "lib" / SLIDERS / SLIDERS
+    for file in (marker, program):
+        file.parent.mkdir(parents=True)
+        file.touch(0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path), prepend=os.pathsep)
+
+    started = processes(use_rviz="false")
+
+    assert set(started) == {"robot_state_publisher", SLIDERS}
 
 
 @pytest.mark.parametrize("prefix", ["", "left_"])

@@ -1,4 +1,4 @@
-"""The ROSMASTER X3 without physics: its frames and joint states, and RViz where there is one."""
+"""The ROSMASTER X3 without physics: its frames, sliders for its wheels, and RViz."""
 
 import os
 import shutil
@@ -6,11 +6,13 @@ import shutil
 from launch_py import (
     DeclareLaunchArgument,
     ExecuteProcess,
+    IncludeLaunchDescription,
     LaunchDescription,
     Notified,
     SetLaunchConfiguration,
 )
 from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.packages import Packages
 from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
@@ -34,7 +36,6 @@ def describe(model: str, *values: str) -> str:
 def arguments() -> list[DeclareLaunchArgument]:
     """Return the declarations."""
     share = FindPackageShare("yahboom_rosmaster_description")
-    gui = "true" if SLIDERS in Packages(os.environ).names() else "false"
     rviz = "true" if shutil.which("rviz2") else "false"
     table = {
         "robot_name": ("rosmaster_x3", "which robot of this package", None),
@@ -51,7 +52,11 @@ def arguments() -> list[DeclareLaunchArgument]:
             "what RViz shows",
             None,
         ),
-        "jsp_gui": (gui, f"sliders; {SLIDERS} comes with a ROS 2 installation", SWITCH),
+        "jsp_gui": (
+            "true",
+            f"sliders for the wheels: {SLIDERS} of a ROS 2 installation, or else the page",
+            SWITCH,
+        ),
         "use_rviz": (rviz, "start RViz; it comes with a ROS 2 installation", SWITCH),
         "use_sim_time": ("false", "the nodes' clock is a simulation's", SWITCH),
     }
@@ -59,6 +64,18 @@ def arguments() -> list[DeclareLaunchArgument]:
         DeclareLaunchArgument(name, default_value=default, description=text, choices=choices)
         for name, (default, text, choices) in table.items()
     ]
+
+
+def sliders(wanted: IfCondition) -> Node | IncludeLaunchDescription:
+    """Return what publishes joint states by sliders."""
+    if SLIDERS in Packages(os.environ).names():
+        return Node(package=SLIDERS, executable=SLIDERS, condition=wanted)
+    page = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"])
+    return IncludeLaunchDescription(
+        PythonLaunchDescriptionSource(page),
+        launch_arguments={"publish_joint_states": "true"},
+        condition=wanted,
+    )
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -91,7 +108,7 @@ def generate_launch_description() -> LaunchDescription:
                 ready=Notified(),
                 condition=UnlessCondition(gui),
             ),
-            Node(package=SLIDERS, executable=SLIDERS, condition=IfCondition(gui)),
+            sliders(IfCondition(gui)),
             ExecuteProcess(
                 cmd=[
                     *("rviz2", "-d", LaunchConfiguration("rviz_config_file")),
