@@ -1,5 +1,11 @@
-"""The page: its parts, where they stand, and the thread that keeps them up to date."""
+"""The page: its parts, where they stand, and what keeps them up to date.
 
+All that changes the page happens in viser's event loop: viser wakes the senders of its messages by
+asyncio's events, which other threads must not set (a message from elsewhere sometimes ends in
+"deque mutated during iteration").
+"""
+
+import asyncio
 import logging
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,27 +36,25 @@ Places = Mapping[str, tuple[Panel, ...]]
 
 @contextmanager
 def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send) -> Iterator[None]:
-    """Fill the page, and keep it up to date in a thread of its own until the end.
+    """Fill the page, and keep it up to date until the end.
 
     Args:
         server: serves the page.
         latest: gives the newest snapshot.
         send: takes what the user wants.
     """
-    panels = _build(server, send)
+    loop = server.get_event_loop()
+    panels = asyncio.run_coroutine_threadsafe(_build(server, send), loop).result()
     ended = threading.Event()
-    thread = threading.Thread(
-        target=_update, args=(server, panels, latest, ended), name="page", daemon=True
-    )
-    thread.start()
+    updates = asyncio.run_coroutine_threadsafe(_update(server, panels, latest, ended), loop)
     try:
         yield
     finally:
         ended.set()
-        thread.join()
+        updates.result()
 
 
-def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
+async def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
     apply_look(server)
     gui = server.gui
     frames = Frames(server.scene)
@@ -85,18 +89,19 @@ def _placed(
     return tuple(panel for panels in places.values() for panel in panels)
 
 
-def _update(
+async def _update(
     server: ViserServer,
     panels: Sequence[Panel],
     latest: Callable[[], Snapshot],
     ended: threading.Event,
 ) -> None:
-    while not ended.wait(TICK_S):
+    while not ended.is_set():
+        await asyncio.sleep(TICK_S)
         snapshot = latest()
         for panel in panels:
             try:
                 with server.atomic():
                     panel.update(snapshot)
             except Exception:
-                # The thread's last frame: one part that fails must not stop the others.
+                # The page's last frame: one part that fails must not stop the others.
                 logging.getLogger(__name__).exception("%s failed", type(panel).__name__)

@@ -8,7 +8,7 @@ from arm_viewer.snapshot import Snapshot
 
 
 class Panel(Protocol):
-    """A part of the page, used by the page's thread alone.
+    """A part of the page, used in viser's event loop alone.
 
     Callbacks of its elements run in viser's threads: they do nothing but send a request, or note
     a plain value that the next `update` looks at.

@@ -14,7 +14,7 @@ NO_MOTION = 1e-6
 
 
 class Frames:
-    """Keeps every frame where the transforms say; use it in the page's thread.
+    """Keeps every frame where the transforms say; use it in viser's event loop.
 
     The frames stand beside each other, not below their parents: a parent that comes late or changes
     leaves what hangs below a frame alone. A frame without a transform is not shown.

@@ -25,7 +25,7 @@ _SOLIDS = {
 
 
 class Markers:
-    """Keeps the markers where they are said to be; use it in the page's thread."""
+    """Keeps the markers where they are said to be; use it in viser's event loop."""
 
     def __init__(self, scene: SceneApi, frames: Frames) -> None:
         """Draw into this scene, in these frames."""

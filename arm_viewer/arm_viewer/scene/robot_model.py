@@ -25,7 +25,7 @@ SEEN_THROUGH = 0.4
 
 
 class RobotModel:
-    """Draws a robot layer by layer, each when it is first asked for; the page's thread's own."""
+    """Draws a robot layer by layer, each when it is first asked for, in viser's event loop."""
 
     def __init__(
         self, scene: SceneApi, frames: Frames, name: str, robot: Robot, places: Mapping[str, str]
