@@ -24,8 +24,8 @@ logger = logging.getLogger(__name__)
 SAVE_EVERY_S = 0.1
 """How often the state is kept, to go back to if the physics fails."""
 
-WIDE_AWAKE = -(1 + mujoco.mjMINAWAKE)
-"""MuJoCo's mark of what moves, and may fall asleep once it has lain still for a while."""
+TOUCH_N = 1e-9
+"""A force that moves nothing, and wakes what sleeps."""
 
 
 class Simulation:
@@ -154,8 +154,10 @@ class Simulation:
         data.qpos[where.qposadr[0] :][:7] = position
         data.qvel[where.dofadr[0] :][:6] = velocity
         # It may have carried others, and all that sleeps feels nothing of it.
-        data.tree_asleep[:] = WIDE_AWAKE
+        forces = data.xfrc_applied.copy()
+        data.xfrc_applied[:] = TOUCH_N
         mujoco.mj_forward(self.model, data)
+        data.xfrc_applied[:] = forces
         self._saved_qpos[:] = data.qpos
         self.probe.expire()
 

@@ -4,6 +4,7 @@ import mujoco
 
 EVERYTHING = mujoco.mjtState.mjSTATE_INTEGRATION
 WITHOUT_SENSORS = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+WITH_SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
 
 class StateProbe:
@@ -44,7 +45,9 @@ class StateProbe:
         return self._data
 
     def _evaluate(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        flags = model.opt.disableflags
-        model.opt.disableflags = flags & ~WITHOUT_SENSORS
+        without, having = model.opt.disableflags, model.opt.enableflags
+        model.opt.disableflags = without & ~WITHOUT_SENSORS
+        # What sleeps is not computed anew, and may have been elsewhere at the last look.
+        model.opt.enableflags = having & ~WITH_SLEEP
         mujoco.mj_forward(model, data)
-        model.opt.disableflags = flags
+        model.opt.disableflags, model.opt.enableflags = without, having

@@ -230,6 +230,48 @@ def test_the_upper_of_two_touching_links_is_pushed_up_and_the_lower_down(parts):
     assert lab.read("lower")["force"] == pytest.approx([0, 0, -G], abs=0.5)
 
 
+SLEEPER = """
+<mujoco>
+  <option><flag sleep="enable"/></option>
+  <worldbody>
+    <geom type="plane" size="0 0 1"/>
+    <body name="thing" pos="2 0 0.05" sleep="init">
+      <freejoint name="thing"/><geom type="box" size="0.04 0.04 0.05" mass="1"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_what_is_put_into_the_air_at_rest_falls(box, tmp_path):
+    world = tmp_path / "sleeper.xml"
+    world.write_text(SLEEPER)
+    simulation = Lab(box, base="free", world=world).simulation
+    for _ in range(100):
+        simulation.advance()
+    simulation.place("thing", np.array([2, 0, 0.5, 1, 0, 0, 0]), np.zeros(6))
+    for _ in range(10):
+        simulation.advance()
+    # Half of g times t squared, less what the steps leave out.
+    fallen = 0.5 - simulation.data.body("thing").xpos[2]
+    assert fallen == pytest.approx(G * 0.1**2 / 2, abs=2e-3)
+
+
+def test_what_slept_is_felt_where_it_is_put(box, tmp_path):
+    world = tmp_path / "sleeper.xml"
+    world.write_text(SLEEPER)
+    lab = Lab(box, base="free", world=world)
+    lab.run(1.0)
+    alone = lab.read()["contacts"][0]
+    assert alone >= 3
+    lab.simulation.place("thing", np.array([0, 0, 0.16, 1, 0, 0, 0]), np.zeros(6))
+    lab.run(1.0)
+    reading = lab.read()
+    assert reading["contacts"][0] > alone
+    # The floor bears both, and the thing pushes down.
+    assert reading["force"][2] == pytest.approx(3 * G, abs=0.5)
+
+
 def test_a_sensor_finds_itself_again_in_another_model(parts):
     urdf = with_tags(parts.pendulum(), gazebo("bob", "imu"))
     lab, other = Lab(urdf, hold_joints=False), Lab(urdf, hold_joints=False, world="objects")
