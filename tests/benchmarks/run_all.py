@@ -21,6 +21,7 @@ SCRIPTS = (
     "as_fast_as_possible.py",
     "camera_rate.py",
     "load_time.py",
+    "world_changes.py",
     "bag_recording.py",
     "page.py",
 )

@@ -1,0 +1,127 @@
+"""What a world costs: one with many things, one with many that move, and one that changes."""
+
+import argparse
+import os
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+
+import harness
+import mujoco
+import numpy as np
+
+from arm_control.hardware_info import parse_hardware_info
+from arm_description.urdf import parse_urdf
+from arm_description.xacro_expansion import expand_xacro
+from arm_gazebo.build_options import BuildOptions
+from arm_gazebo.model_builder import build_model
+from arm_gazebo.physics_timing import physics_timing
+from arm_gazebo.simulation import Simulation
+from arm_gazebo.spawn_model import ModelSource
+from arm_gazebo.world_changes import Spawned, WorldChanges, changed_model
+
+ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
+CRATE = """<robot name="crate"><link name="base">
+  <inertial><mass value="0.2"/>
+  <inertia ixx="0.0003" iyy="0.0003" izz="0.0003" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link></robot>"""
+THINGS = 50
+TICKS = 500
+CHANGES = 20
+
+
+def simulation(world: str) -> Simulation:
+    """Return the arm in a world, at 100 Hz."""
+    text = expand_xacro(ARM, {"camera": "none"})
+    timing = physics_timing(100)
+    options = BuildOptions(step_s=timing.step_s)
+    built = build_model(parse_urdf(text), parse_hardware_info(text), (), world, options)
+    return Simulation(built, timing)
+
+
+def timed_ms(action: Callable[[], object]) -> float:
+    """Return how long an action takes."""
+    start_s = time.perf_counter()
+    action()
+    return (time.perf_counter() - start_s) * 1e3
+
+
+def step_us(running: Simulation) -> float:
+    """Return what a physics step costs, the median of many ticks."""
+    steps = running.timing.steps
+    return median(timed_ms(running.advance) for _ in range(TICKS)) / steps * 1e3
+
+
+def crates(running: Simulation, count: int) -> WorldChanges:
+    """Return changes that put stacks of five crates beside the arm."""
+    model = ModelSource(running.timing.step_s).read("", CRATE)
+    changes = WorldChanges()
+    for number in range(count):
+        pose = np.eye(4)
+        pose[:3, 3] = 1.0 + 0.3 * (number // 5), 1.0, 0.06 + 0.11 * (number % 5)
+        changes = changes.with_spawned(Spawned(f"crate_{number}", model, pose))
+    return changes
+
+
+def swap(running: Simulation, changes: WorldChanges) -> tuple[float, float]:
+    """Go on with changes; return the ms for the new model, and those on the loop's thread."""
+    start_s = time.perf_counter()
+    base = running.built
+    following = running.prepare(changed_model(base, changes), base.robot_roots)
+    built_ms = (time.perf_counter() - start_s) * 1e3
+    return built_ms, timed_ms(lambda: running.swap(following))
+
+
+def moving_rows() -> list[harness.Row]:
+    """Return the figures of many free things, awake and asleep."""
+    running = simulation("empty")
+    swap(running, crates(running, THINGS))
+    awake = []
+    for _ in range(TICKS):
+        running.data.tree_asleep[:] = -(1 + mujoco.mjMINAWAKE)
+        awake.append(timed_ms(running.advance))
+    awake_us = median(awake) / running.timing.steps * 1e3
+    asleep_us = step_us(running)
+    step_s = running.timing.step_s
+    return [
+        harness.Row(
+            f"{THINGS} crates in stacks of five: physics step, kept awake; steps a second",
+            f"{awake_us:.0f} us; {1e6 / awake_us:.0f} ({step_s * 1e6 / awake_us:.0f} x)",
+            "",
+        ),
+        harness.Row(
+            "the same once they lie still", f"{asleep_us:.1f} us; {1e6 / asleep_us:.0f}", ""
+        ),
+    ]
+
+
+def change_row(world: str) -> harness.Row:
+    """Return what one thing more costs in a world."""
+    times = []
+    for _ in range(CHANGES):
+        running = simulation(world)
+        times.append(swap(running, crates(running, 1)))
+    built_ms, swap_ms = (median(column) for column in zip(*times, strict=True))
+    return harness.Row(
+        f"{world}: a thing more: new model beside the loop; swap on it",
+        f"{built_ms:.1f} ms; {swap_ms:.2f} ms",
+        "swap under 10 ms",
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+    rows = [
+        harness.Row(f"{world} and arm: physics step", f"{step_us(simulation(world)):.1f} us", "")
+        for world in ("empty", "house")
+    ]
+    changes = [change_row(world) for world in ("empty", "house")]
+    harness.print_table("Worlds with many things, and changes", [*rows, *moving_rows(), *changes])
+
+
+if __name__ == "__main__":
+    main()
