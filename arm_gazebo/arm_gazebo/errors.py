@@ -10,7 +10,8 @@ GazeboError
 ├── ModelError      a robot that cannot be made into a model
 │   └── MeshError   a mesh file that cannot be used
 ├── TimingError     a control rate or a physics step that cannot be
-└── SettingsError   a parameter of the simulation node that makes no sense
+├── SettingsError   a parameter of the simulation node that makes no sense
+└── RefusedError    a request about the running world that cannot be met; see `refusal`
 """
 
 
