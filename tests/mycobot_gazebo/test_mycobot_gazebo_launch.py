@@ -81,13 +81,15 @@ def test_the_simulation_s_own_choices_are_passed_on():
     assert {"arm_viewer_node"} == set(processes(viewer="true")) - set(processes())
 
 
-def test_the_pick_goes_by_the_simulation_s_clock_and_the_robot_s_names():
+@pytest.mark.parametrize("given", [{}, {"prefix": "left_"}])
+def test_the_pick_goes_by_the_simulation_s_clock_and_the_robot_s_names(given):
     file = Packages(os.environ).launch_file("mycobot_gazebo", "pick_and_place.launch.py")
     description = read_launch_file(file)
-    steps = expand_description(description, {"prefix": "left_"}, dict(os.environ), file).steps
+    steps = expand_description(description, given, dict(os.environ), file).steps
     [node] = [s for s in steps if isinstance(s, ProcessStep) and s.name == "mycobot_pick_and_place"]
     [written] = [
         yaml.safe_load(word.text) for word in node.command if isinstance(word, GeneratedFile)
     ]
     [parameters_of_node] = [entry["ros__parameters"] for entry in written.values()]
-    assert parameters_of_node == {"use_sim_time": True, "prefix": "left_", "hold_time": 5.0}
+    prefix = given.get("prefix", "")
+    assert parameters_of_node == {"use_sim_time": True, "prefix": prefix, "hold_time": 5.0}

@@ -14,6 +14,11 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             DeclareLaunchArgument(
+                "prefix",
+                default_value="",
+                description="put before the name of every link and joint",
+            ),
+            DeclareLaunchArgument(
                 "hold_time", default_value="5.0", description="how long it is held up, in s"
             ),
             IncludeLaunchDescription(PythonLaunchDescriptionSource(simulation)),
