@@ -13,6 +13,7 @@ from arm_control.forward_command_controller import (
     ForwardCommandController,
     ForwardCommandParameters,
 )
+from arm_control.registry import controller_class, controller_types, is_chainable
 from arm_control.testing import fake_hardware
 
 PERIOD_S = 0.01
@@ -305,3 +306,10 @@ def test_parameters_that_make_no_sense_are_refused(values, sentence):
 def test_frames_have_the_prefix_or_the_namespace(values, namespace, expected):
     parameters = DiffDriveController.build_parameters({**WHEELS, **SIZES, **values})
     assert parameters.frame("odom", namespace) == expected
+
+
+def test_it_is_found_by_ros2_control_s_name_for_it():
+    type_name = "diff_drive_controller/DiffDriveController"
+    assert type_name in controller_types()
+    assert controller_class(type_name) is DiffDriveController
+    assert is_chainable(type_name)
