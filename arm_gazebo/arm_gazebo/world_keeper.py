@@ -249,15 +249,15 @@ class WorldKeeper:
         self._take_model()
 
     def _swap(self, built: BuiltModel, roots: frozenset[str]) -> None:
-        following = self._simulation.prepare(built, roots)
         prepared: list[PreparedModel] = []
         try:
+            following = self._simulation.prepare(built, roots)
             for feed in self._feeds:
                 prepared.append(feed.prepare(built.model))
-        except GazeboError as error:
+        except (GazeboError, MemoryError, ValueError, mujoco.FatalError) as error:
             for model in prepared:
                 model.discard()
-            raise RefusedError(Refusal.FAILED, str(error)) from error
+            raise RefusedError(Refusal.FAILED, f"the world cannot be like that: {error}") from error
 
         def swap() -> mujoco.MjData:
             before = self._simulation.data

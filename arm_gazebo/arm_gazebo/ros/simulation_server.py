@@ -88,7 +88,9 @@ class SimulationServer:
         try:
             return call.result(LOOP_TIMEOUT_S)
         except FutureTimeoutError as error:
-            call.cancel()
+            if not call.cancel():
+                # It is under way, or was done just now.
+                return call.result()
             raise RefusedError(
                 Refusal.FAILED, f"the simulation did not get to it within {LOOP_TIMEOUT_S:g} s"
             ) from error
