@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any, Protocol
 
 import numpy as np
@@ -115,8 +116,8 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
             return "the controller is not active"
         if self.is_chained:
             return "another controller commands this one"
-        if not twist.is_finite:
-            return f"its speeds must be numbers, not {twist.linear} and {twist.angular}"
+        if not all(map(isfinite, self._geometry.wheel_speeds(twist))):
+            return f"no wheel can turn at its speeds, {twist.linear} m/s and {twist.angular} rad/s"
         stamp_s = now_s if stamp_s is None else min(stamp_s, now_s)
         timeout_s = self.parameters.cmd_vel_timeout
         if timeout_s and now_s - stamp_s > timeout_s:

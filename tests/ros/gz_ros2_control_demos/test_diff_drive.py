@@ -11,7 +11,8 @@ pytestmark = pytest.mark.ros
 
 DRIVE = "/diff_drive_base_controller"
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos")
-EXAMPLE_TIMEOUT_S = 60.0
+EXAMPLE_TIMEOUT_S = 90.0
+"""Its start takes half a minute where 50 others want the processor."""
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +29,11 @@ def heading(rotation) -> float:
 
 def stamp(message) -> tuple[int, int]:
     return message.header.stamp.sec, message.header.stamp.nanosec
+
+
+def goes_as_the_example_says(twist) -> bool:
+    speeds = (twist.linear.x, twist.angular.z)
+    return speeds == pytest.approx((0.1, 0.1), rel=0.05)
 
 
 def test_it_drives_on_a_circle_and_tells_where_it_is(robot, client):
@@ -82,12 +88,9 @@ def test_the_example_drives_it_until_it_is_stopped(robot, client):
     driver = subprocess.Popen([*EXAMPLE, "example_diff_drive"], stdin=subprocess.DEVNULL)
     try:
         odometry.wait_until(
-            lambda m: (
-                bool(m)
-                and m[-1].twist.twist.linear.x == pytest.approx(0.1, rel=0.05)
-                and m[-1].twist.twist.angular.z == pytest.approx(0.1, rel=0.05)
-            ),
+            lambda m: any(goes_as_the_example_says(message.twist.twist) for message in m),
             "the robot goes as the example says",
+            EXAMPLE_TIMEOUT_S,
         )
     finally:
         driver.send_signal(signal.SIGINT)

@@ -8,7 +8,7 @@ import pytest
 pytestmark = pytest.mark.ros
 
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos", "example_gripper")
-EXAMPLE_TIMEOUT_S = 60.0
+EXAMPLE_TIMEOUT_S = 90.0
 
 
 def fingers(message) -> list[float]:
