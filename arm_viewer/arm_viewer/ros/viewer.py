@@ -5,6 +5,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.context import Context
 from rclpy.node import Node
 
 from arm_node.polled_subscriptions import PolledSubscriptions
@@ -33,8 +34,8 @@ DEFAULT_PORT = 8080
 class Viewer(Node):
     """Everything of ROS happens in the executor's thread; `latest` and `send` suit any thread."""
 
-    def __init__(self) -> None:
-        super().__init__("arm_viewer")
+    def __init__(self, context: Context | None = None) -> None:
+        super().__init__("arm_viewer", context=context)
         self.port: int = self._parameter("port", DEFAULT_PORT, "of the page, on 127.0.0.1")
         displays: bool = self._parameter(
             "publish_joint_states", False, "by the sliders, for a robot that is not there"

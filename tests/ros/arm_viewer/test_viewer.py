@@ -1,0 +1,183 @@
+"""What the page's node makes of topics, and what it publishes; without a page.
+
+The node is spun by the test itself, so that nothing happens behind its back.
+"""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.ros
+
+TIMEOUT_S = 60.0
+URDF = """<robot name='r'><link name='base'/><link name='arm'/><link name='finger'/>
+  <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
+    <limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
+  <joint name='grip' type='revolute'><parent link='arm'/><child link='finger'/>
+    <limit lower='-3' upper='3' effort='1' velocity='1'/><mimic joint='turn' multiplier='2'/>
+  </joint></robot>"""
+
+
+class SpunViewer:
+    """The node, and the ways to wait with it."""
+
+    def __init__(self) -> None:
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.signals import SignalHandlerOptions
+
+        from arm_viewer.ros.viewer import Viewer
+
+        self.context = Context()
+        rclpy.init(
+            args=["--ros-args", "-p", "publish_joint_states:=true"],
+            context=self.context,
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+        self.node = Viewer(self.context)
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor.add_node(self.node)
+
+    def seen(self, find: Callable, meanwhile: Callable[[], None] = lambda: None):
+        """Spin until `find(snapshot)` finds something, and return it."""
+        return self.until(lambda: find(self.node.latest()), meanwhile)
+
+    def until(self, find: Callable, meanwhile: Callable[[], None] = lambda: None):
+        """Spin until `find()` finds something, and return it; publish `meanwhile`, again and again.
+
+        A message that is sent right after the match may be lost.
+        """
+        deadline = time.monotonic() + TIMEOUT_S
+        while not (found := find()):
+            if time.monotonic() > deadline:
+                pytest.fail(f"not within {TIMEOUT_S} s; the snapshot is {self.node.latest()}")
+            meanwhile()
+            self._executor.spin_once(timeout_sec=0.05)
+        return found
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+
+@pytest.fixture(scope="module")
+def viewer():
+    spun = SpunViewer()
+    yield spun
+    spun.close()
+
+
+@pytest.fixture
+def latched():
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def test_robots_are_found_in_every_namespace(client, viewer, latched):
+    from std_msgs.msg import String
+
+    for namespace, text in (("left", URDF), ("right", "<robot name='r'/>")):
+        publisher = client.node.create_publisher(String, f"/{namespace}/robot_description", latched)
+        publisher.publish(String(data=text))
+    left = viewer.seen(lambda s: s.descriptions.get("/left/robot_description"))
+    assert left.namespace == "/left"
+    assert [joint.name for joint in left.robot.joints] == ["turn", "grip"]
+    right = viewer.seen(lambda s: s.descriptions.get("/right/robot_description"))
+    assert right.robot is None
+    assert "no links" in right.problem
+
+
+def test_transforms_are_kept_and_those_that_are_none_left_out(client, viewer):
+    from geometry_msgs.msg import TransformStamped
+    from tf2_msgs.msg import TFMessage
+
+    good, broken = TransformStamped(), TransformStamped()
+    good.header.frame_id, good.child_frame_id = "base", "arm"
+    good.transform.translation.z = 0.5
+    broken.header.frame_id, broken.child_frame_id = "base", "finger"
+    broken.transform.translation.x = float("nan")
+    publisher = client.node.create_publisher(TFMessage, "/tf", 10)
+    message = TFMessage(transforms=[broken, good])
+    arm = viewer.seen(lambda s: s.transforms.get("arm"), lambda: publisher.publish(message))
+    assert (arm.parent, arm.position) == ("base", (0.0, 0.0, 0.5))
+    assert "finger" not in viewer.node.latest().transforms
+
+
+def test_joint_states_need_not_say_everything(client, viewer):
+    from sensor_msgs.msg import JointState
+
+    publisher = client.node.create_publisher(JointState, "/other/joint_states", 10)
+    message = JointState(name=["a", "b"], position=[1.0, 2.0], velocity=[3.0])
+    states = viewer.seen(
+        lambda s: s.joint_states.get("/other/joint_states"), lambda: publisher.publish(message)
+    )
+    assert states.joints["b"].position == 2.0
+    assert np.isnan(states.joints["a"].velocity)
+
+
+def test_images_are_subscribed_to_only_while_they_are_wanted(client, viewer):
+    from sensor_msgs.msg import Image
+
+    from arm_viewer.requests import ShowPictures
+
+    publisher = client.node.create_publisher(Image, "/camera/image", 10)
+    viewer.seen(lambda s: "/camera/image" in s.image_topics)
+    assert publisher.get_subscription_count() == 0
+    viewer.node.send(ShowPictures(frozenset({"/camera/image"})))
+    message = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes(range(6)))
+    picture = viewer.seen(
+        lambda s: s.pictures.get("/camera/image"), lambda: publisher.publish(message)
+    )
+    assert (picture.width, picture.height, picture.encoding) == (2, 1, "rgb8")
+    assert picture.data.tolist() == list(range(6))
+    viewer.node.send(ShowPictures(frozenset()))
+    viewer.until(lambda: publisher.get_subscription_count() == 0)
+    viewer.seen(lambda s: not s.pictures)
+
+
+def test_markers_come_and_go(client, viewer, latched):
+    from geometry_msgs.msg import Vector3
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    from arm_viewer.snapshot import MarkerShape
+
+    def box(number, action=Marker.ADD):
+        marker = Marker(ns="crate", id=number, type=Marker.CUBE, action=action)
+        marker.header.frame_id = "world"
+        marker.pose.orientation.w = 2.0
+        marker.scale = Vector3(x=1.0, y=2.0, z=3.0)
+        return marker
+
+    publisher = client.node.create_publisher(MarkerArray, "/world_markers", latched)
+    publisher.publish(MarkerArray(markers=[box(1), box(2), Marker(ns="text", type=9)]))
+    markers = viewer.seen(lambda s: s.markers)
+    assert markers.keys() == {"/world_markers/crate/1", "/world_markers/crate/2"}
+    marker = markers["/world_markers/crate/1"]
+    assert (marker.look.shape, marker.look.scale) == (MarkerShape.BOX, (1.0, 2.0, 3.0))
+    assert marker.rotation == (0.0, 0.0, 0.0, 1.0)
+    publisher.publish(MarkerArray(markers=[box(1, Marker.DELETE)]))
+    viewer.seen(lambda s: s.markers.keys() == {"/world_markers/crate/2"})
+
+
+def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, latched):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import String
+
+    from arm_viewer.requests import MoveJoints
+
+    states = client.subscribe(JointState, "/joint_states")
+    publisher = client.node.create_publisher(String, "/robot_description", latched)
+    publisher.publish(String(data=URDF))
+    viewer.until(lambda: list(states.messages))
+    assert viewer.node.latest().displayed == {""}
+    viewer.node.send(MoveJoints("", {"turn": 0.25}))
+    viewer.until(lambda: states.messages[-1].position.tolist() == [0.25, 0.5])
+    shown = viewer.seen(
+        lambda s: (t := s.joint_states.get("/joint_states")) and t.joints["turn"].position == 0.25
+    )
+    assert shown
