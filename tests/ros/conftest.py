@@ -18,7 +18,7 @@ import psutil
 import pytest
 
 START_TIMEOUT_S = 60.0
-WAIT_TIMEOUT_S = 30.0
+WAIT_TIMEOUT_S = 60.0
 
 
 class Launched:

@@ -92,12 +92,14 @@ def test_an_empty_command_changes_nothing(control: Any, positions: Any, publish:
 
 
 def test_what_was_sent_while_it_was_inactive_is_not_replayed(
-    control: Any, positions: Any, publish: Any
+    control: Any, positions: Any, publish: Any, get_parameter: Any
 ) -> None:
     publish(0.1, 0.1, 0.1, 0.1)
     wait_for(positions, 0.1, 0.1, 0.1, 0.1)
     control.switch([], ["position_controller"])
     publish(0.8, 0.8, 0.8, 0.8)
+    # What its node answers was asked after the command came: that is no news any more.
+    assert get_parameter("/position_controller", "joints") == ["j0", "j1", "j2", "j3"]
     control.switch(["position_controller"])
     positions.clear()
     messages = positions.wait_for(5)
