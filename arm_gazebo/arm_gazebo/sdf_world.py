@@ -47,6 +47,9 @@ class _WorldReader:
         self._report = report
         self._spec = mujoco.MjSpec()
         self._spec.compiler.degree = False
+        # As in the shipped worlds: what friction holds does not creep.
+        self._spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        self._spec.option.impratio = 10.0
         self._meshes = MeshLibrary(self._spec, [world.source.parent.resolve()])
         self._names: set[str] = set()
 

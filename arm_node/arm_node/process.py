@@ -86,12 +86,17 @@ class NodeProcess:
 
     def _spin(self) -> None:
         from rclpy.executors import ExternalShutdownException, ShutdownException
+        from rclpy.impl.implementation_singleton import rclpy_implementation
 
         while not self._spin_ended.is_set():
             try:
                 self.executor.spin()
             except (ExternalShutdownException, ShutdownException):
                 return
+            except rclpy_implementation.InvalidHandle as error:
+                # A callback that ends during the shutdown wakes the executor by what is gone.
+                if not self._spin_ended.is_set():
+                    self._report_failed_callback(error)
             except Exception as error:
                 # A callback raised. One bad message must not end the process: say it, go on.
                 self._report_failed_callback(error)

@@ -244,3 +244,10 @@ def test_robot_is_put_into_an_sdf_world(parts, write):
     built = parts.build(parts.pendulum(), path)
     assert built.model.body("shelf").dofnum[0] == 6
     assert built.model.body("bob").dofnum[0] == 1
+
+
+@pytest.mark.parametrize("shipped", ["empty", "pick_and_place_demo", "house"])
+def test_friction_holds_as_in_the_shipped_worlds(world, shipped):
+    here, there = world(GROUND)[0].opt, load_world(shipped).compile().opt
+    assert (here.cone, here.impratio) == (mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0)
+    assert (there.cone, there.impratio) == (here.cone, here.impratio)
