@@ -109,9 +109,10 @@ class _Row:
 
 def _describe(controller: Controller) -> str:
     colour = COLOURS.get(controller.state, OTHER_COLOUR)
-    claimed = f" · {escape(', '.join(controller.claimed))}" if controller.claimed else ""
+    claimed = f"<br/>{escape(', '.join(controller.claimed))}" if controller.claimed else ""
     return (
-        '<div style="font-size:0.8rem;padding:0.5em 0.75em 0.25em;line-height:1.35">'
+        '<div style="font-size:0.8rem;padding:0.5em 0.75em 0.25em;line-height:1.35;'
+        'overflow-wrap:anywhere">'
         f"<b>{escape(controller.name)}</b> "
         f'<span style="color:{colour};float:right">{escape(controller.state)}</span><br/>'
         f'<span style="opacity:0.65">{escape(controller.type)}{claimed}</span></div>'

@@ -6,7 +6,7 @@ from arm_viewer.drawing.node_graph import NodeTopics, node_graph
 from arm_viewer.drawing.svg import to_svg
 from arm_viewer.snapshot import Snapshot
 
-WIDTH, HEIGHT = 860.0, 560.0
+WIDTH, HEIGHT = 600.0, 520.0
 
 
 class GraphPanel:
@@ -19,7 +19,7 @@ class GraphPanel:
         """Make the switch and the hidden window."""
         self._shown = gui.add_checkbox("Node graph", False, hint="what rqt_graph shows")
         self._window = gui.add_panel(visible=False)
-        self._window.float(x=40.0, y=60.0, width=WIDTH, height=HEIGHT)
+        self._window.float(x=16.0, y=16.0, width=WIDTH, height=HEIGHT)
         with self._window.add_tab("Nodes and topics"):
             self._picture = gui.add_html("")
 

@@ -34,7 +34,9 @@ class PlotPanel:
     def build(self, gui: GuiApi) -> None:
         """Make the charts."""
         self._topic = gui.add_dropdown("Joints of", (DEFAULT_TOPIC,), visible=False)
-        self._still = gui.add_checkbox("Hold the charts still", False)
+        self._still = gui.add_checkbox(
+            "Hold still", False, hint="charts do not go on, to be looked at"
+        )
         self._charts = tuple(_Chart(gui, quantity) for quantity in Quantity)
 
     def update(self, snapshot: Snapshot) -> None:
