@@ -23,12 +23,20 @@ def describe(model: str, camera: str) -> str:
     return expand_xacro(model, {"camera": camera})
 
 
+def page() -> IncludeLaunchDescription:
+    """Return the page, whose sliders stand for the robot."""
+    file = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"])
+    return IncludeLaunchDescription(
+        PythonLaunchDescriptionSource(file),
+        launch_arguments={"publish_joint_states": "true"},
+        condition=IfCondition(LaunchConfiguration("viewer")),
+    )
+
+
 def generate_launch_description() -> LaunchDescription:
     """Return the state publisher, what publishes joint states, the page and RViz."""
     share = FindPackageShare("arm_description")
     model = PathJoinSubstitution([share, "urdf", "arm.urdf.xacro"])
-    page = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"])
-    viewer = LaunchConfiguration("viewer")
     description = ParameterValue(LaunchConfiguration("robot_description"), value_type=str)
     return LaunchDescription(
         [
@@ -71,13 +79,9 @@ def generate_launch_description() -> LaunchDescription:
                 executable="joint_state_publisher",
                 parameters=[{"robot_description": description}],
                 ready=Notified(),
-                condition=UnlessCondition(viewer),
+                condition=UnlessCondition(LaunchConfiguration("viewer")),
             ),
-            IncludeLaunchDescription(
-                PythonLaunchDescriptionSource(page),
-                launch_arguments={"publish_joint_states": "true"},
-                condition=IfCondition(viewer),
-            ),
+            page(),
             ExecuteProcess(
                 cmd=["rviz2", "-d", LaunchConfiguration("rviz_config_file")],
                 name="rviz2",
