@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 
 import pytest
 
@@ -107,6 +108,34 @@ def test_lists_as_json(run_until):
     run_until("arm topic list --json", has_tf)
     state = json.loads(run_until("arm topic echo /joint_states --json --once", json.loads))
     assert state["name"] == ["j0", "j1", "j2", "j3"]
+
+
+MANAGED_NODE = """\
+import rclpy
+from rclpy.lifecycle import LifecycleNode
+
+rclpy.init()
+rclpy.spin(LifecycleNode("managed"))
+"""
+
+
+def test_a_managed_node_is_taken_through_its_transitions(start, run_until, tmp_path):
+    program = tmp_path / "managed.py"
+    program.write_text(MANAGED_NODE)
+    node = start(f"{sys.executable} {program}")
+    run_until("arm lifecycle nodes --no-daemon", lambda text: text == "/managed\n")
+    # Whether or not an answer is lost on a busy machine, it arrives there.
+    both = "arm lifecycle set /managed configure; arm lifecycle get /managed"
+    run_until(both, lambda text: text.endswith("inactive [2]\n"))
+    sentence = "no transition 'configur' of /managed as it is now; there is activate, "
+    run_until("arm lifecycle set /managed configur", lambda text: sentence in text, code=1)
+    node.kill()
+
+
+def test_json_is_json_where_fast_dds_complains(run_until, run):
+    complaining = "env FASTRTPS_DEFAULT_PROFILES_FILE=/no/such/profile.xml arm topic list --json"
+    run_until(complaining, lambda text: "/clock" in [entry["name"] for entry in json.loads(text)])
+    assert "XMLPARSER" in run(f"{complaining} 2>&1 >/dev/null")
 
 
 @pytest.mark.parametrize(
