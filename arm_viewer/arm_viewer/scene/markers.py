@@ -17,6 +17,8 @@ from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape, Transform
 
 ROOT = "/world"
 ORIGIN = FramePose()
+GROUND_M, GROUND_THICKNESS_M = 5.0, 0.05
+"""A box so long and wide, and so thin, is taken for the ground."""
 _SOLIDS = {
     MarkerShape.BOX: Box((1.0, 1.0, 1.0)),
     MarkerShape.BALL: Sphere(0.5),
@@ -77,7 +79,16 @@ class Markers:
             )
 
 
+def _is_ground(look: MarkerLook) -> bool:
+    """Return whether it is the ground, for which the page has its grid."""
+    length, width, height = look.scale
+    is_wide = min(length, width) >= GROUND_M
+    return look.shape is MarkerShape.BOX and is_wide and height < GROUND_THICKNESS_M
+
+
 def _parts(name: str, look: MarkerLook) -> tuple[MeshData, ...]:
+    if _is_ground(look):
+        return ()
     try:
         if look.shape is MarkerShape.TRIANGLES:
             # Cut to whole triangles: what is left over draws nothing.

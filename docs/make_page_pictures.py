@@ -1,0 +1,94 @@
+"""Makes the README's pictures of the page: the arm beside its camera, and what is inside its links.
+
+    python docs/make_page_pictures.py
+
+Needs Chromium (`apt install chromium`) and the Python package playwright; nothing is downloaded.
+"""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+os.environ.setdefault("ROS_DOMAIN_ID", "62")
+
+from playwright.sync_api import Page, sync_playwright
+
+IMAGES = Path(__file__).with_name("images")
+SIZE = {"width": 1280, "height": 800}
+PORT = 18082
+TIMEOUT_MS = 240_000
+SETTLING_MS = 10_000
+"""Of the arm, the plots and the camera; a processor that draws the 3D view is slow."""
+POSE = "data: [0.6, 0.5, 0.7, 0.9]"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
+FEW_FRAMES = """
+const frame = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 1500);
+"""
+"""Every frame is drawn by the processor, which has the simulation to do as well."""
+
+
+@contextlib.contextmanager
+def running(*words: str) -> Iterator[None]:
+    """Run `arm WORDS` for a while."""
+    process = subprocess.Popen([sys.executable, "-m", "arm_cli", *words])
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.wait(60)
+
+
+def open_page(page: Page) -> None:
+    """Open the page once it is served, and wait until it has the robot's sliders."""
+    url = f"http://127.0.0.1:{PORT}"
+    while True:
+        with contextlib.suppress(OSError), urllib.request.urlopen(url, timeout=5):
+            break
+        page.wait_for_timeout(500)
+    page.add_init_script(FEW_FRAMES)
+    page.goto(url)
+    page.get_by_text("j3", exact=True).first.wait_for(state="attached")
+    warning = page.locator(".mantine-Notification-closeButton")
+    warning.wait_for(state="attached")
+    warning.dispatch_event("click")
+
+
+def take(page: Page, name: str, *ticked: str) -> None:
+    """Tick some boxes, and save what the page shows then."""
+    for label in ticked:
+        page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
+    page.wait_for_timeout(SETTLING_MS)
+    page.screenshot(path=str(IMAGES / name))
+
+
+def main() -> None:
+    """Make the pictures."""
+    browser_path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser_path is None:
+        raise SystemExit(f"none of {', '.join(BROWSERS)} is installed: apt install chromium")
+    arguments = ("viewer:=true", f"viewer_port:={PORT}", "world:=objects", "camera:=side")
+    with running("launch", *arguments), sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=browser_path, args=SOFTWARE_GL, timeout=TIMEOUT_MS
+        )
+        page = browser.new_page(viewport=SIZE)
+        page.set_default_timeout(TIMEOUT_MS)
+        open_page(page)
+        topic = "/position_controller/commands"
+        command = ("topic", "pub", "--once", topic, "std_msgs/msg/Float64MultiArray", POSE)
+        with running(*command):
+            take(page, "page.png")
+        take(page, "page_inside.png", "Collision", "Frames", "Inertia")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
