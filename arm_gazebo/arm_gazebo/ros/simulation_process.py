@@ -6,7 +6,9 @@ the controllers are shut down on the loop, the loop is joined, and only then are
 
 import logging
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
+from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -25,7 +27,6 @@ from arm_gazebo.robot_part import RobotInWorld
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
-from arm_gazebo.ros.simulation_server import SimulationServer
 from arm_gazebo.sensor_feed import SensorFeed
 from arm_gazebo.simulated_hardware import SimulatedHardware
 from arm_gazebo.simulation import Simulation
@@ -34,6 +35,9 @@ from arm_gazebo.window_feed import WindowFeed
 from arm_node.discovery import answers_held_back
 from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess
+
+if TYPE_CHECKING:
+    from arm_gazebo.ros.simulation_server import SimulationServer
 
 NODE_NAME = "arm_gazebo"
 SUPERVISION_PERIOD_S = 0.5
@@ -90,12 +94,29 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             feed.start(built.model)
         hardware = [component for robot in robots for component in robot.hardware]
         _supervise(node, pacer, simulation, hardware, feeds)
-        server = SimulationServer(
-            simulation, loop, entries, hardware, feeds, settings.world, process.stop
+        starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
+        server = starter.submit(
+            _serve, simulation, loop, entries, hardware, feeds, settings.world, process.stop
         )
-        nodes.callback(server.destroy_node)
-        ending.callback(server.shutdown)
+        server.add_done_callback(lambda made: _check(made, process))
+        nodes.callback(lambda: server.exception() or server.result().destroy_node())
+        ending.callback(lambda: server.exception() or server.result().shutdown())
         yield
+
+
+def _serve(*arguments: Any) -> "SimulationServer":
+    """Serve simulation_interfaces; its messages take time to load, and the robot waits for none."""
+    from arm_gazebo.ros.simulation_server import SimulationServer
+
+    return SimulationServer(*arguments)
+
+
+def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
+    """End the process where its services could not be made."""
+    error = server.exception()
+    if error is not None:
+        logger.error("the services of the simulation failed", exc_info=error)
+        process.stop(EXIT_FAILED)
 
 
 @contextmanager

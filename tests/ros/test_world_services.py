@@ -1,0 +1,275 @@
+"""Things come, move and go in a running simulation, and the arm does not notice."""
+
+import signal
+import subprocess
+import sys
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+pytestmark = pytest.mark.ros
+
+CRATE = """<robot name="crate"><link name="base">
+  <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>
+  </inertial><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+  <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
+WALL = """<sdf version="1.9"><model name="wall"><static>true</static><link name="l">
+  <visual name="v"><geometry><box><size>6 6 6</size></box></geometry>
+  <material><diffuse>1 0 0 1</diffuse></material></visual></link></model></sdf>"""
+FIRST_ANSWER_S = 2.0
+SPAWNED = "joint_state_broadcaster,position_controller"
+CONTROLLERS = {
+    "controller_manager": {
+        "ros__parameters": {
+            "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
+            "position_controller": {"type": "position_controllers/JointGroupPositionController"},
+        }
+    },
+    "position_controller": {"ros__parameters": {"joints": ["j0", "j1", "j2", "j3"]}},
+}
+START_TIMEOUT_S = 120.0
+OK = 1
+NO_STATE = 255
+
+
+class Simulator:
+    """The services of a simulation, each asked for once before it counts.
+
+    An answer is lost where the server has not found the client yet. So every service is first
+    asked what it refuses, again and again, until an answer comes.
+    """
+
+    def __init__(self, client) -> None:
+        import simulation_interfaces.srv as services
+
+        self._client = client
+        self._types = services
+        self._clients = {}
+
+    def __call__(self, service: str, **fields):
+        """Return the answer of a service; its name is that of its type."""
+        type_ = getattr(self._types, service)
+        if service not in self._clients:
+            self._clients[service] = self._matched(service, type_)
+        return self._answer(service, type_.Request(**fields), 30.0)
+
+    def _matched(self, service, type_):
+        name = "".join(f"_{c.lower()}" if c.isupper() else c for c in service)[1:]
+        made = self._client.node.create_client(type_, f"/{name}")
+        self._clients[service] = made
+        self._client.wait_until(made.service_is_ready, f"service /{name}", START_TIMEOUT_S)
+        refused = type_.Request()
+        if service == "SetSimulationState":
+            refused.state.state = NO_STATE
+        if service == "StepSimulation":
+            refused.steps = 0
+        self._client.wait_until(
+            lambda: self._answer(service, refused, FIRST_ANSWER_S), f"an answer of {name}"
+        )
+        return made
+
+    def _answer(self, service, request, timeout_s: float) -> Any:
+        done = threading.Event()
+        future = self._clients[service].call_async(request)
+        future.add_done_callback(lambda _: done.set())
+        if done.wait(timeout_s):
+            return future.result()
+        self._clients[service].remove_pending_request(future)
+        return None
+
+    def spawn(self, name: str, text: str, x: float, y: float, z: float) -> None:
+        from geometry_msgs.msg import Point, Pose, PoseStamped
+        from simulation_interfaces.msg import Resource
+
+        answer = self(
+            "SpawnEntity",
+            name=name,
+            entity_resource=Resource(resource_string=text),
+            initial_pose=PoseStamped(pose=Pose(position=Point(x=x, y=y, z=z))),
+        )
+        assert (answer.result.result, answer.entity_name) == (OK, name), answer
+
+    def move(self, name: str, x: float, y: float, z: float) -> None:
+        from geometry_msgs.msg import Point, Pose
+        from simulation_interfaces.msg import EntityState
+
+        state = EntityState(pose=Pose(position=Point(x=x, y=y, z=z)))
+        answer = self("SetEntityState", entity=name, state=state, set_pose=True)
+        assert answer.result.result == OK, answer
+
+    def delete(self, name: str) -> None:
+        answer = self("DeleteEntity", entity=name)
+        assert answer.result.result == OK, answer
+
+    def go_to(self, state: int) -> None:
+        from simulation_interfaces.msg import SimulationState
+
+        answer = self("SetSimulationState", state=SimulationState(state=state))
+        assert answer.result.result == OK, answer
+
+    def where(self, name: str) -> tuple[float, np.ndarray]:
+        """Return the time and the place of an entity."""
+        answer = self("GetEntityState", entity=name)
+        assert answer.result.result == OK, answer
+        stamp, p = answer.state.header.stamp, answer.state.pose.position
+        return stamp.sec + stamp.nanosec * 1e-9, np.array([p.x, p.y, p.z])
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory):
+    """Run the simulation of the arm with its camera, its forearm held up."""
+    from arm_description.resources import resolve_uri
+    from arm_description.xacro_expansion import expand_xacro
+
+    folder = tmp_path_factory.mktemp("arm")
+    xacro = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
+    pose = {"j1_pos": "0.5", "j2_pos": "0.5"}
+    settings = {"robot_description": expand_xacro(xacro, pose), "spawn": SPAWNED}
+    parameters = folder / "parameters.yaml"
+    parameters.write_text(
+        yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}, **CONTROLLERS})
+    )
+    process = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node", "--ros-args"),
+            *("--params-file", str(parameters)),
+        ]
+    )
+    yield
+    process.send_signal(signal.SIGINT)
+    try:
+        assert process.wait(60.0) == 0
+    finally:
+        process.kill()
+
+
+@pytest.fixture
+def simulator(arm, client) -> Simulator:
+    return Simulator(client)
+
+
+def test_the_arm_holds_while_things_come_move_and_go(simulator, client):
+    from sensor_msgs.msg import JointState
+
+    states = client.subscribe(JointState, "/joint_states")
+    states.wait_for(10, START_TIMEOUT_S)
+    start_s = stamp_s(states.messages[-1])
+    for number in range(5):
+        simulator.spawn(f"crate_{number}", CRATE, 3.0, 3.0, 0.1 + 0.25 * number)
+    simulator.move("crate_2", 2.0, -3.0, 0.5)
+    for number in range(5):
+        simulator.delete(f"crate_{number}")
+    states.wait_until(lambda m: stamp_s(m[-1]) > start_s + 1.0, "a second more")
+    held = np.array([message.position for message in states.messages])
+    assert np.abs(held - [0.0, 0.5, 0.5, 0.0]).max() < 0.005
+    assert np.all(np.diff([stamp_s(message) for message in states.messages]) > 0)
+
+
+def test_what_is_spawned_is_seen_by_the_camera(simulator, client):
+    from sensor_msgs.msg import Image
+
+    def red(message: Image) -> float:
+        pixels = np.frombuffer(message.data, np.uint8).reshape(-1, 3).astype(int)
+        return float(np.mean((pixels[:, 0] > 80) & (pixels[:, 1:].max(axis=1) < 60)))
+
+    pictures = client.subscribe(Image, "/videocamera")
+    pictures.wait_until(lambda m: bool(m) and red(m[-1]) < 0.01, "no wall", START_TIMEOUT_S)
+    # The camera looks along -y.
+    simulator.spawn("wall", WALL, 0.0, -6.0, 0.0)
+    pictures.wait_until(lambda m: red(m[-1]) > 0.1, "the red wall")
+    simulator.delete("wall")
+    pictures.wait_until(lambda m: red(m[-1]) < 0.01, "no wall any more")
+
+
+def test_markers_show_the_world(simulator, client):
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    arrays = client.subscribe(MarkerArray, "/world_markers", latched)
+
+    def of(owner: str, messages: list) -> list[Marker]:
+        return [marker for marker in messages[-1].markers if marker.ns == owner]
+
+    arrays.wait_until(lambda m: bool(m) and of("world", m), "the floor")
+    assert arrays.messages[-1].markers[0].header.frame_id == "world"
+    simulator.spawn("crate", CRATE, 3.0, 3.0, 0.1)
+    arrays.wait_until(
+        lambda m: [(k.id, k.type, k.scale.x) for k in of("crate", m)] == [(0, Marker.CUBE, 0.2)],
+        "the crate",
+    )
+    simulator.move("crate", 2.0, -3.0, 0.1)
+    arrays.wait_until(
+        lambda m: any(abs(k.pose.position.y + 3.0) < 0.05 for k in of("crate", m)),
+        "the crate at its new place",
+    )
+    simulator.delete("crate")
+    arrays.wait_until(
+        lambda m: [k.action for k in of("crate", m)] == [Marker.DELETE], "the crate's end"
+    )
+
+
+def test_time_stands_still_and_goes_on_by_steps(simulator, client):
+    from simulation_interfaces.msg import SimulationState
+
+    simulator.spawn("crate", CRATE, 3.0, 3.0, 2.0)
+    simulator.go_to(SimulationState.STATE_PAUSED)
+    simulator.move("crate", 3.0, 3.0, 5.0)
+    before_s, place = simulator.where("crate")
+    assert place == pytest.approx([3.0, 3.0, 5.0])
+    answer = simulator("StepSimulation", steps=20)
+    assert answer.result.result == OK, answer
+    after_s, fallen = simulator.where("crate")
+    assert after_s - before_s == pytest.approx(0.2, abs=1e-6)
+    assert fallen[2] == pytest.approx(5.0 - 0.5 * 9.81 * 0.2**2, abs=0.02)
+    simulator.go_to(SimulationState.STATE_PLAYING)
+    client.wait_until(lambda: simulator.where("crate")[0] > after_s, "time going on")
+    simulator.delete("crate")
+
+
+def test_the_arm_goes_on_in_another_world(simulator, client):
+    from sensor_msgs.msg import JointState
+    from simulation_interfaces.msg import Resource, SimulationState
+
+    answer = simulator("LoadWorld", world_resource=Resource(uri="shapes"))
+    assert (answer.result.result, answer.world.name) == (OK, "shapes"), answer
+    assert "cone" in simulator("GetEntities").entities
+    simulator.go_to(SimulationState.STATE_PLAYING)
+    states = client.subscribe(JointState, "/joint_states")
+    states.wait_for(20)
+    held = np.array([message.position for message in states.messages])
+    assert np.abs(held - [0.0, 0.5, 0.5, 0.0]).max() < 0.005
+
+
+def test_nonsense_is_refused_with_a_sentence(simulator):
+    from simulation_interfaces.msg import EntityFilters, EntityState, Resource
+
+    for service, fields in (
+        ("SpawnEntity", {"name": "a", "entity_resource": Resource(resource_string="<a")}),
+        ("SpawnEntity", {"name": "a b", "entity_resource": Resource(resource_string=CRATE)}),
+        ("DeleteEntity", {"entity": "arm"}),
+        ("GetEntityState", {"entity": "nobody"}),
+        ("GetEntities", {"filters": EntityFilters(filter="(")}),
+        ("SetEntityState", {"entity": "cone", "state": nowhere(), "set_pose": True}),
+        ("SetEntityState", {"entity": "cone", "state": EntityState(), "set_acceleration": True}),
+        ("LoadWorld", {"world_resource": Resource(uri="nowhere")}),
+    ):
+        answer = simulator(service, **fields)
+        assert answer.result.result != OK, (service, fields)
+        assert len(answer.result.error_message.split()) > 2, (service, answer)
+
+
+def nowhere():
+    """Return a state whose pose is no number."""
+    from simulation_interfaces.msg import EntityState
+
+    state = EntityState()
+    state.pose.position.x = float("nan")
+    return state
+
+
+def stamp_s(message) -> float:
+    return message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
