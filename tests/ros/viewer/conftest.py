@@ -1,0 +1,147 @@
+"""A browser that nobody sees, on a page of a simulation.
+
+Where no Chromium is installed the tests of this folder are not collected, and the report's head
+says so; `.ci/run` installs it.
+"""
+
+import re
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+TIMEOUT_S = 120.0
+VIEWPORT = {"width": 1280, "height": 800}
+
+BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
+collect_ignore = [] if BROWSER else ["test_page.py"]
+
+ARGUMENTS = ("--disable-gpu", "--no-sandbox")
+CAMERA_PIXELS = """() => {
+  const image = document.querySelector("img[src]");
+  if (!image || image.naturalWidth < 100) return [];
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
+  return Array.from(pixels.filter((_, index) => index % 61 === 0));
+}"""
+COUNTED_DRAWING = (Path(__file__).parent / "counted_drawing.js").read_text()
+
+
+def pytest_report_header() -> str:
+    return f"browser tests: {BROWSER or 'left out, as there is no Chromium (apt install chromium)'}"
+
+
+class Visitor:
+    """Somebody who looks at the page, and clicks.
+
+    Attributes:
+        page: playwright's, for whatever else is to be done with it.
+        requests: the addresses of all that the page fetched.
+        errors: what the page's scripts failed at.
+    """
+
+    def __init__(self, page) -> None:
+        self.page = page
+        self.requests: list[str] = []
+        self.errors: list[str] = []
+        page.on("request", lambda request: self.requests.append(request.url))
+        page.on("websocket", lambda socket: self.requests.append(socket.url))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def visit(self, url: str) -> None:
+        """Open the page, and wait until it has its tabs."""
+        self.page.goto(url)
+        self.page.get_by_role("tab", name="Robot").wait_for(state="attached")
+
+    def open_tab(self, name: str) -> None:
+        """Bring a tab to the front."""
+        self.page.get_by_role("tab", name=name, exact=True).click()
+
+    def tick(self, label: str) -> None:
+        """Change a box to tick."""
+        self.page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
+
+    def button(self, label: str):
+        """Return a button."""
+        return self.page.get_by_role("button", name=label, exact=True)
+
+    def slider(self, label: str):
+        """Return the handle of a slider."""
+        return self.page.locator(f"xpath=//label[text()='{label}']/following::*[@role='slider'][1]")
+
+    def slider_value(self, label: str) -> float:
+        """Return what a slider shows."""
+        return float(self.slider(label).get_attribute("aria-valuenow"))
+
+    def drawn(self) -> dict[str, int]:
+        """Return how many things were drawn so far in the 3D view, by their kind."""
+        return self.page.evaluate("window.drawn")
+
+    def camera_pixels(self) -> np.ndarray:
+        """Return some of the pixels of the first camera's image, as soon as there is one."""
+        read: list[int] = []
+
+        def complete() -> bool:
+            read[:] = self.page.evaluate(CAMERA_PIXELS)
+            return bool(read)
+
+        self.wait_until(complete, "an image of a camera")
+        return np.array(read)
+
+    def wait_until(self, condition: Callable[[], object], what: str) -> None:
+        """Wait for what is to be seen on the page."""
+        deadline = time.monotonic() + TIMEOUT_S
+        while not condition():
+            if time.monotonic() > deadline:
+                pytest.fail(f"not within {TIMEOUT_S} s: {what}")
+            self.page.wait_for_timeout(100)
+
+
+@pytest.fixture(scope="module")
+def simulation(launch_for_file):
+    """Return a running simulation with a camera that sees the arm."""
+    launched = launch_for_file("camera:=side")
+    launched.wait_until_ready()
+    return launched
+
+
+@pytest.fixture(scope="module")
+def page_url(launch_for_file) -> str:
+    """Return the address of a page, in a process of its own."""
+    launched = launch_for_file("arm_viewer", "viewer.launch.py", "viewer_port:=0")
+    line = launched.wait_for_line("the page is at http://")
+    found = re.search(r"http://127\.0\.0\.1:[1-9]\d*", line)
+    assert found is not None, line
+    return found[0]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Return a browser; nothing is downloaded for it."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(
+            executable_path=BROWSER, args=ARGUMENTS, timeout=TIMEOUT_S * 1000
+        )
+        yield running
+        running.close()
+
+
+@pytest.fixture(scope="module")
+def visitor(browser, simulation, page_url) -> Iterator[Visitor]:
+    """Return a visitor of the page of the simulation."""
+    page = browser.new_page(viewport=VIEWPORT)
+    page.set_default_timeout(TIMEOUT_S * 1000)
+    page.add_init_script(COUNTED_DRAWING)
+    arrived = Visitor(page)
+    arrived.visit(page_url)
+    yield arrived
+    page.close()

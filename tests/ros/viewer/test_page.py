@@ -1,0 +1,144 @@
+"""The page in a real browser, beside a simulation: one of each for the file."""
+
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+
+OPEN_WEBSOCKET = """(url) => new Promise((say) => {
+  const socket = new WebSocket(url);
+  socket.onopen = () => say("accepted");
+  socket.onerror = () => say("refused");
+})"""
+
+
+@pytest.fixture
+def positions(client):
+    """Return the joints' newest positions on /joint_states, by a function."""
+    from sensor_msgs.msg import JointState
+
+    states = client.subscribe(JointState, "/joint_states")
+
+    def newest() -> dict[str, float]:
+        message = states.wait_for()[-1]
+        return dict(zip(message.name, message.position, strict=True))
+
+    return newest
+
+
+@pytest.fixture
+def command(client):
+    """Send positions to the controller, by a function; a message may be lost, so send it again."""
+    from std_msgs.msg import Float64MultiArray
+
+    publisher = client.publisher(Float64MultiArray, "/position_controller/commands")
+
+    def send(values) -> None:
+        publisher.publish(Float64MultiArray(data=values))
+
+    return send
+
+
+def test_the_page_loads_and_fetches_nothing_from_outside(visitor, page_url):
+    visitor.slider("j3").wait_for(state="attached")
+    visitor.wait_until(lambda: visitor.drawn()["triangles"] > 0, "the robot is drawn")
+    outside = {
+        url
+        for url in visitor.requests
+        if urlsplit(url).scheme in ("http", "https", "ws", "wss")
+        and urlsplit(url).netloc != urlsplit(page_url).netloc
+    }
+    assert visitor.requests
+    assert outside == set()
+    assert visitor.errors == []
+
+
+def test_a_slider_moves_the_simulated_arm(visitor, positions):
+    assert positions()["j0"] < 1.0
+    visitor.slider("j0").press("End")
+    visitor.wait_until(lambda: positions()["j0"] > 2.4, "j0 goes to its limit")
+    assert abs(positions()["j1"]) < 0.1
+
+
+def test_a_slider_follows_when_somebody_else_moves_the_arm(visitor, command):
+    def followed() -> bool:
+        command([-1.0, 0.5, 0.0, 0.0])
+        return visitor.slider_value("j0") < -0.9 and visitor.slider_value("j1") > 0.4
+
+    visitor.wait_until(followed, "the sliders of j0 and j1 follow")
+
+
+def test_the_camera_panel_shows_the_arm_move(visitor, command):
+    before = visitor.camera_pixels()
+
+    def moved() -> bool:
+        command([1.0, -0.5, 0.5, 0.5])
+        return np.count_nonzero(np.abs(visitor.camera_pixels() - before) > 40) > 20
+
+    visitor.wait_until(moved, "the image shows another pose")
+
+
+def test_the_collision_switch_shows_wire_frames(visitor):
+    assert visitor.drawn()["instances"] == 0
+    visitor.tick("Collision")
+    visitor.wait_until(lambda: visitor.drawn()["instances"] > 0, "wire frames are drawn")
+    visitor.tick("Collision")
+
+    def none_more() -> bool:
+        before = visitor.drawn()
+        visitor.wait_until(lambda: visitor.drawn()["triangles"] > before["triangles"], "a frame")
+        return visitor.drawn()["instances"] == before["instances"]
+
+    visitor.wait_until(none_more, "no wire frames are drawn")
+
+
+def test_controllers_are_deactivated_and_activated(visitor, client):
+    from controller_manager_msgs.msg import ControllerManagerActivity
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    activity = client.subscribe(ControllerManagerActivity, "/controller_manager/activity", latched)
+
+    def state() -> str:
+        controllers = activity.wait_for()[-1].controllers
+        return next(c.state.label for c in controllers if c.name == "position_controller")
+
+    assert state() == "active"
+    visitor.open_tab("Control")
+    visitor.button("Deactivate position_controller").click()
+    visitor.wait_until(lambda: state() == "inactive", "the manager deactivates the controller")
+    visitor.button("Activate position_controller").click()
+    visitor.wait_until(lambda: state() == "active", "the manager activates the controller")
+    visitor.button("Deactivate position_controller").wait_for()
+    visitor.open_tab("Robot")
+
+
+def test_a_page_of_another_origin_is_refused(visitor, browser, page_url):
+    address = page_url.replace("http:", "ws:")
+    assert visitor.page.evaluate(OPEN_WEBSOCKET, address) == "accepted"
+    foreign = browser.new_page()
+    foreign.route("http://localhost:1/", lambda route: route.fulfill(body="<p>hello</p>"))
+    foreign.goto("http://localhost:1/")
+    assert foreign.evaluate(OPEN_WEBSOCKET, address) == "refused"
+    foreign.close()
+
+
+def test_the_page_goes_on_when_the_simulation_returns(visitor, simulation, launch_for_file, client):
+    from sensor_msgs.msg import JointState
+
+    banner = visitor.page.get_by_role("alert")
+    banner.wait_for(state="hidden")
+    assert simulation.stop() == 0, simulation.output
+    banner.get_by_text("The simulation went away").wait_for()
+    launch_for_file("camera:=none").wait_until_ready()
+    banner.wait_for(state="hidden")
+    states = client.subscribe(JointState, "/joint_states")
+
+    def moved() -> bool:
+        # A slider returns to its joint that does not follow: then it can be pulled again.
+        visitor.slider("j0").press("Home")
+        return states.wait_for()[-1].position[0] < -2.4
+
+    visitor.wait_until(moved, "a slider moves the arm again")
