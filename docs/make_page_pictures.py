@@ -25,7 +25,7 @@ PORT = 18082
 TIMEOUT_MS = 240_000
 SETTLING_MS = 10_000
 """Of the arm, the plots and the camera; a processor that draws the 3D view is slow."""
-POSE = "data: [0.6, 0.5, 0.7, 0.9]"
+POSE = "data: [-0.9, 0.5, 0.7, 0.9]"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
 FEW_FRAMES = """

@@ -16,7 +16,7 @@ from launch_py.errors import LaunchFileError
 from launch_py.names import join_names
 from launch_py.substitution import Text
 
-DEFAULT_TIMEOUT_S = 30.0
+DEFAULT_TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

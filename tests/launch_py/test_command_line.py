@@ -153,7 +153,7 @@ def test_print_shows_the_plan_without_starting(write_launch_file, capsys, monkey
         f"sim\n  command      {sys.executable} -c ",
         "  folder       /tmp",
         "  environment  A=1",
-        "  ready        LogLine, within 30 s",
+        "  ready        LogLine, within 60 s",
         "  starts after sim ready",
         "  restart      always",
         "-r __node:=n --params-file <generated.yaml>",

@@ -17,7 +17,7 @@ from typing import Any
 import psutil
 import pytest
 
-START_TIMEOUT_S = 60.0
+START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
 
 

@@ -51,9 +51,9 @@ class _Camera:
     """The image of one topic."""
 
     def __init__(self, gui: GuiApi, topic: str, shown: bool) -> None:
-        self._folder = gui.add_folder(None)
+        self._folder = gui.add_folder(topic)
         with self._folder:
-            self._switch = gui.add_checkbox(topic, shown)
+            self._switch = gui.add_checkbox("Show", shown)
             self._image: GuiImageHandle = gui.add_image(NOTHING, format="jpeg", visible=False)
             self._problem = gui.add_markdown("", visible=False)
         self._picture: Picture | None = None

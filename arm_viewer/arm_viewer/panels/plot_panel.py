@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from viser import GuiApi, GuiUplotHandle, uplot
 
 from arm_viewer.joint_history import JointHistory, Quantity
@@ -75,15 +76,35 @@ class _Chart:
 
     def draw(self, history: JointHistory, now_s: float) -> None:
         ages, readings, commands = history.table(self._quantity, now_s)
-        told = ~np.isnan(commands).all(axis=1)
-        lines = tuple((joint, False) for joint in history.joints)
+        read, told = (~np.isnan(values).all(axis=1) for values in (readings, commands))
+        lines = tuple((history.joints[index], False) for index in np.flatnonzero(read))
         lines += tuple((history.joints[index], True) for index in np.flatnonzero(told))
         if not lines:
             return
         if lines != self._lines:
             self._lines = lines
             self._plot.series = (uplot.Series(label="s"), *map(_series, lines, _colours(lines)))
-        self._plot.data = (ages, *readings, *commands[told])
+        # Until a joint is told something, its dashed line lies on what it did.
+        did = unbroken(ages, readings)
+        commands = unbroken(ages, np.where(np.isnan(commands), did, commands))
+        self._plot.data = (ages, *did[read], *commands[told])
+
+
+def unbroken(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return rows whose NaN are on the straight line between their neighbours.
+
+    One NaN, and the browser's chart finds no scale and draws nothing at all.
+
+    Args:
+        ages: ascending (m,).
+        rows: (n, m); those that are nothing but NaN stay so.
+    """
+    filled = rows.copy()
+    for row in filled:
+        said = ~np.isnan(row)
+        if said.any():
+            row[~said] = np.interp(ages[~said], ages[said], row[said])
+    return filled
 
 
 def _axis() -> uplot.Axis:

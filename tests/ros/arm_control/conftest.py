@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).parents[3]
-TIMEOUT_S = 30.0
+TIMEOUT_S = 60.0
 
 PARAMETERS = {
     "controller_manager": {

@@ -25,7 +25,7 @@ FOLLOWERS = {
     "gripper_base_to_gripper_right2": -1.0,
     "gripper_right3_to_gripper_right1": 1.0,
 }
-TIMEOUT_S = 30.0
+TIMEOUT_S = 60.0
 
 
 def waited(future: Any) -> Any:
