@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -24,6 +25,8 @@ _held_lock: list[int] = []
 
 def pytest_configure(config: pytest.Config) -> None:
     """Give the whole session a ROS domain of its own, before anything imports rclpy."""
+    # A session under nohup ignores SIGHUP, and would hand that on to the programs under test.
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     if "ROS_DOMAIN_ID" not in os.environ:
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")

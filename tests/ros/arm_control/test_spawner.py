@@ -154,13 +154,13 @@ def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client: Any, s
     assert (slow.state, slow.configurations) == ("inactive", 1)
 
 
-def test_a_manager_that_does_not_answer_at_all_is_given_up(
+def test_a_manager_that_loads_nothing_is_given_up(
     control: Any, manager: Any, spawn: Any
 ) -> None:
     manager.tell("block")
     spawner = spawn("position_controller", "--service-call-timeout", "0.3")
     try:
-        said = "/controller_manager/list_controllers did not answer 3 times within 0.3 s each"
+        said = "/controller_manager/load_controller did not answer 3 times within 0.3 s each"
         assert said in spawner.fail()
     finally:
         manager.tell("unblock")
