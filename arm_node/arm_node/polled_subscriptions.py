@@ -9,23 +9,34 @@ from collections.abc import Iterator
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 
 class PolledSubscriptions(CallbackGroup):
-    """Makes subscriptions of a node that its executor leaves alone; their events it serves."""
+    """Makes subscriptions of a node that its executor leaves alone.
+
+    They have no QoS events: Fast DDS wakes whoever waits for one while there is a message to be
+    fetched, so the executor would never sleep.
+    """
 
     def __init__(self, node: Node) -> None:
         """Make them on this node."""
         super().__init__()
         self._node = node
 
-    def subscribe(self, message_class: type, topic: str, profile: QoSProfile, **more: Any) -> Any:
-        """Return a subscription to a topic's messages as bytes; `more` as rclpy takes it."""
+    def subscribe(self, message_class: type, topic: str, profile: QoSProfile) -> Any:
+        """Return a subscription to a topic's messages as bytes."""
         return self._node.create_subscription(
-            message_class, topic, _not_called, profile, callback_group=self, raw=True, **more
+            message_class,
+            topic,
+            _not_called,
+            profile,
+            callback_group=self,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            raw=True,
         )
 
     @staticmethod
@@ -41,7 +52,7 @@ class PolledSubscriptions(CallbackGroup):
 
     def can_execute(self, entity: Any) -> bool:
         """Return whether the executor may serve it."""
-        return not isinstance(entity, Subscription)
+        return False
 
     def beginning_execution(self, entity: Any) -> bool:
         """Allow it."""
