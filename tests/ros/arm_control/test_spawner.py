@@ -154,9 +154,7 @@ def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client: Any, s
     assert (slow.state, slow.configurations) == ("inactive", 1)
 
 
-def test_a_manager_that_loads_nothing_is_given_up(
-    control: Any, manager: Any, spawn: Any
-) -> None:
+def test_a_manager_that_loads_nothing_is_given_up(control: Any, manager: Any, spawn: Any) -> None:
     manager.tell("block")
     spawner = spawn("position_controller", "--service-call-timeout", "0.3")
     try:
