@@ -8,8 +8,8 @@ class WriterNumbers:
 
     Which publisher sent a message is not known, so a number belongs to whoever it fits best. With
     one publisher, or several whose numbers are far apart, the count is exact; where numbers of
-    several overlap it is never too high, and what it lacks shows with later messages. What a
-    publisher sent before the first message that came, or after the last one, is not missing.
+    several overlap it is an estimate. What a publisher sent before the first message that came, or
+    after the last one, is not missing.
     """
 
     def __init__(self, count_publishers: Callable[[], int]) -> None:
