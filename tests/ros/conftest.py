@@ -247,7 +247,7 @@ class Client:
             f"{matches} subscriptions on {topic}",
         )
         # A best-effort reader may miss what is sent at the very instant of the match.
-        self._stop.wait(0.2)
+        self._stop.wait(0.4)
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):

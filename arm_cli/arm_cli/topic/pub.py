@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from arm_cli.ros.session import Session
 
 KEEP_ALIVE_S = 0.1
-AFTER_MATCH_S = 0.2
+AFTER_MATCH_S = 0.4
 """What is sent at the very moment of the match may be lost."""
 
 
