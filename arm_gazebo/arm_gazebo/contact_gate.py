@@ -5,6 +5,8 @@ import math
 import mujoco
 import numpy as np
 
+from arm_gazebo.index_slice import as_slice
+
 CHECK_EVERY_S = 0.01
 FASTEST_M_S = 5.0
 """What moves slower than this cannot reach the floor unseen between two checks."""
@@ -32,9 +34,10 @@ class ContactGate:
         self._until_check = 0
         moving = _moving_geoms(model)
         margin = FASTEST_M_S * self._ticks * period_s
-        self._moving = moving
         self._heights = data.geom_xpos[:, 2]
+        self._moving = as_slice(moving)
         self._needed = model.geom_rbound[moving] + _floor_height(model, data) + margin
+        self._clear = np.empty(len(moving), dtype=bool)
 
     def update(self) -> None:
         """Look whether anything is near the floor; called once in each control period."""
@@ -43,8 +46,9 @@ class ContactGate:
         self._until_check -= 1
         if self._until_check < 0:
             self._until_check = self._ticks - 1
-            clear = (self._heights[self._moving] > self._needed).all()
-            self._model.opt.disableflags = self._off if clear else self._on
+            clear = np.greater(self._heights[self._moving], self._needed, self._clear)
+            all_clear = np.logical_and.reduce(clear)
+            self._model.opt.disableflags = self._off if all_clear else self._on
 
 
 def _touchable(model: mujoco.MjModel) -> np.ndarray:

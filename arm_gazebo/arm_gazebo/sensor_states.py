@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.hardware_info import HardwareInfo
+from arm_gazebo.index_slice import as_slice
 from arm_gazebo.instrument import Instrument
-from arm_gazebo.servo import as_slice
 
 
 class SensorStates:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.drive_mode import SERVOED, DriveMode
 from arm_gazebo.driven_joint import DrivenJoint
+from arm_gazebo.index_slice import as_slice
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, ServoTuning
@@ -30,7 +31,7 @@ USABLE_EFFORT = 0.9
 SETTLE_S = 0.1
 LOOK_EVERY_S = 0.01
 STIRRED = 5e-4
-"""A resting joint that moved by this much, in rad or m, is looked after again."""
+"""Resting joints that together moved by this much, in rad or m, are looked after again."""
 
 
 class Servo:
@@ -186,10 +187,7 @@ class Servo:
             self._still = self._qpos[self._addresses].tolist()
 
     def _is_stirred(self) -> bool:
-        positions = self._qpos[self._addresses].tolist()
-        return any(
-            abs(now - then) > STIRRED for now, then in zip(positions, self._still, strict=True)
-        )
+        return math.dist(self._qpos[self._addresses].tolist(), self._still) > STIRRED
 
     def _plan(self, gravity: list[float]) -> bool:
         """Move every set-point on; return whether one of them moves."""
@@ -274,17 +272,6 @@ class Servo:
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
         model.dof_armature[self._joints[index].joint.dof_address] = rotor
-
-
-def as_slice(indices: NDArray[np.intp]) -> slice | NDArray[np.intp]:
-    """Return evenly spaced, rising indices as a slice: a view instead of a copy."""
-    if len(indices) == 0:
-        return slice(0, 0)
-    steps = np.unique(np.diff(indices))
-    if len(steps) > 1 or (len(steps) == 1 and steps[0] < 1):
-        return indices
-    step = int(steps[0]) if len(steps) else 1
-    return slice(int(indices[0]), int(indices[-1]) + 1, step)
 
 
 def _felt(resistance: Array, coupling: Array) -> list[float]:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from arm_control.hardware import HardwareReturn
 from arm_control.hardware_info import HardwareInfo, InterfaceInfo
 from arm_gazebo.drive_mode import DriveMode
+from arm_gazebo.index_slice import as_slice
 from arm_gazebo.instrument import Instrument
 from arm_gazebo.robot_joint import RobotJoint
 from arm_gazebo.sensor_states import SensorStates
-from arm_gazebo.servo import as_slice
 from arm_gazebo.simulation import Simulation
 
 logger = logging.getLogger(__name__)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from arm_gazebo import physics_profiler
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.contact_gate import ContactGate
 from arm_gazebo.drive_mode import DriveMode
@@ -68,6 +69,7 @@ class Simulation:
         self._save_ticks = max(1, round(SAVE_EVERY_S / timing.period_s))
         # Without a handler MuJoCo writes a log file into whatever folder this process runs in.
         mujoco.set_mju_user_warning(_log_warning)
+        physics_profiler.switch_off()
         for index in range(len(driven)):
             self.servo.set_mode(index, self.idle_mode)
 
