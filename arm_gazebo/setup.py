@@ -1,33 +1,22 @@
 """Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_gazebo"
 DATA_FOLDERS = ["urdf", "worlds", "config", "launch"]
-
-
-def data_files() -> list[tuple[str, Sequence[str]]]:
-    """Return the share/ entries of every file below the data folders."""
-    share = Path("share") / PACKAGE
-    files: list[tuple[str, Sequence[str]]] = [
-        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
-        (str(share), ["package.xml"]),
-    ]
-    for folder in DATA_FOLDERS:
-        for path in sorted(Path(folder).rglob("*")):
-            if path.is_file():
-                files.append((str(share / path.parent), [str(path)]))
-    return files
-
+DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
 
 setup(
     name=PACKAGE,
     version="0.1.0",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    data_files=data_files(),
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+        *((f"share/{PACKAGE}/{path.parent}", [str(path)]) for path in DATA_FILES),
+    ],
     install_requires=["setuptools"],
     zip_safe=True,
     description="The simulation: URDF to MuJoCo, simulated hardware, worlds and cameras.",

@@ -154,7 +154,7 @@ def test_every_entry_point_leads_to_something(project):
 def test_the_data_folders_agree(project, package):
     folder = FOLDERS[package].relative_to(ROOT)
     present = [name for name in DATA_FOLDERS if (ROOT / folder / name).is_dir()]
-    assert sorted(setup_file(package).constants["DATA_FOLDERS"]) == present
+    assert sorted(setup_file(package).constants.get("DATA_FOLDERS", [])) == present
     wanted = {
         f"{folder}/resource/{package}": f"share/ament_index/resource_index/packages/{package}",
         f"{folder}/package.xml": f"share/{package}/package.xml",
