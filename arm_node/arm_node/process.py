@@ -9,12 +9,9 @@ the process is ready (see `arm_node.notify`).
 
 import gc
 import logging
-import math
 import signal
 import sys
 import threading
-import time
-import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
@@ -29,8 +26,6 @@ if TYPE_CHECKING:
 
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
-
-FAILURE_REPORT_PERIOD_S = 10.0
 
 EXIT_OK = 0
 EXIT_FAILED = 1
@@ -48,12 +43,12 @@ class NodeProcess:
         """Make the executor; `stop` is set to end the process."""
         from rclpy.executors import SingleThreadedExecutor
 
+        from arm_node.executor_thread import ExecutorThread
+
         self.executor = SingleThreadedExecutor()
         self.exit_code = EXIT_OK
         self._stop = stop
-        self._spin_ended = threading.Event()
-        self._spinning: threading.Thread | None = None
-        self._failures: dict[tuple[type[Exception], str, int | None], float] = {}
+        self._spinning = ExecutorThread("executor", self.executor)
 
     @property
     def stopping(self) -> bool:
@@ -71,7 +66,6 @@ class NodeProcess:
 
     def start_spinning(self) -> None:
         """Spin the executor in a thread of its own until `join_spinning`."""
-        self._spinning = threading.Thread(target=self._spin, name="executor", daemon=True)
         self._spinning.start()
 
     def join_spinning(self) -> None:
@@ -79,36 +73,7 @@ class NodeProcess:
 
         The application may call it at the end of its teardown, before it destroys nodes itself.
         """
-        self._spin_ended.set()
-        self.executor.shutdown(timeout_sec=2.0)
-        if self._spinning is not None:
-            self._spinning.join(timeout=5.0)
-
-    def _spin(self) -> None:
-        from rclpy.executors import ExternalShutdownException, ShutdownException
-        from rclpy.impl.implementation_singleton import rclpy_implementation
-
-        while not self._spin_ended.is_set():
-            try:
-                self.executor.spin()
-            except (ExternalShutdownException, ShutdownException):
-                return
-            except rclpy_implementation.InvalidHandle as error:
-                # A callback that ends during the shutdown wakes the executor by what is gone.
-                if not self._spin_ended.is_set():
-                    self._report_failed_callback(error)
-            except Exception as error:
-                # A callback raised. One bad message must not end the process: say it, go on.
-                self._report_failed_callback(error)
-
-    def _report_failed_callback(self, error: Exception) -> None:
-        """Log the traceback, but the same failure at the same place at most every 10 s."""
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        place = (type(error), last.filename, last.lineno)
-        now = time.monotonic()
-        if now - self._failures.get(place, -math.inf) >= FAILURE_REPORT_PERIOD_S:
-            self._failures[place] = now
-            logging.getLogger("arm_node").exception("a callback failed; the node goes on")
+        self._spinning.stop()
 
 
 Application = Callable[[NodeProcess], AbstractContextManager[None]]

@@ -19,9 +19,9 @@ from arm_control.ros.control_plane import ControlPlane
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.convert import activity_message
 from arm_control.ros.description_topic import LATCHED_QOS, DescriptionTopic
-from arm_control.ros.executor_thread import ExecutorThread
 from arm_control.ros.manager_services import ManagerServices
 from arm_control.ros.node_arguments import controller_arguments
+from arm_node.executor_thread import ExecutorThread
 
 SERVICE_THREADS = 2
 """One for what waits for the control loop, one for what only looks."""
@@ -78,10 +78,14 @@ class ControllerManagerServer:
         refusals = Refusals()
         self._services = ManagerServices(node, self._plane, manager, self._snapshot, refusals)
         node.health.watch(ManagerDiagnostics(manager, self._snapshot, loop, refusals))
+        # The services wait for the control loop. On the process's own executor they would hold up
+        # every subscription meanwhile; a coroutine would not help, because rclpy's executors sleep
+        # on while a future that a coroutine awaits is completed elsewhere.
         self._thread = ExecutorThread(
             "controller manager services", MultiThreadedExecutor(SERVICE_THREADS)
         )
-        self._thread.start(node)
+        self._thread.executor.add_node(node)
+        self._thread.start()
 
     def start_controllers(self, names: Sequence[str]) -> None:
         """Load, configure and activate controllers as a spawner would, without one.
@@ -123,7 +127,7 @@ class ControllerManagerServer:
             [status for status, _ in self._snapshot.controllers],
             [status for status, _, _ in self._snapshot.components],
         )
-        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.header.stamp = self._node.stamp()
         self._activity.publish(message)
 
     def _observe(self) -> None:

@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import TypeVar
 
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
-from arm_control.ros.executor_thread import ExecutorThread
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.robot_part import RobotInWorld
@@ -21,6 +21,7 @@ from arm_gazebo.spawn_model import ModelSource
 from arm_gazebo.world_file import find_world
 from arm_gazebo.world_keeper import ModelFeed, ModelHolder, WorldKeeper
 from arm_gazebo.world_loading import WorldLoader, named_world
+from arm_node.executor_thread import ExecutorThread
 
 ResultT = TypeVar("ResultT")
 
@@ -56,7 +57,7 @@ class SimulationServer:
         self._loop = loop
         # Nobody sets parameters of it, and the process's other nodes log.
         self._node = Node(NODE_NAME, start_parameter_services=False, enable_rosout=False)
-        self._thread = ExecutorThread("simulation services")
+        self._thread = ExecutorThread("simulation services", SingleThreadedExecutor())
         options = entries[0].options
         folders = tuple(dict.fromkeys(f for e in entries for f in e.options.package_path))
         source = ModelSource(options.step_s, folders, options.mesh_cache)
@@ -73,7 +74,8 @@ class SimulationServer:
             _about(simulation.timing),
         )
         WorldMarkerPublisher(self._node, keeper)
-        self._thread.start(self._node)
+        self._thread.executor.add_node(self._node)
+        self._thread.start()
 
     def shutdown(self) -> None:
         """Serve no more; the loop still runs."""
