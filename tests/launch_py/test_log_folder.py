@@ -63,3 +63,22 @@ def test_a_folder_that_cannot_be_made_is_a_sentence(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(StartError, match=r"cannot make the log folder .*set ROS_LOG_DIR"):
         LogFolder(tmp_path / "file")
+
+
+def test_a_full_disk_is_an_error_of_that_line_only(folder):
+    log = folder.path / "a.log"
+    log.symlink_to("/dev/full")
+    with pytest.raises(OSError, match="No space left"):
+        folder.write("a", "lost")
+    folder.write("b", "kept")
+    assert (folder.path / "b.log").read_text().endswith(" kept\n")
+
+
+def test_a_file_that_cannot_be_generated_is_a_sentence(folder):
+    (folder.path / "a.yaml").symlink_to("/dev/full")
+    with pytest.raises(StartError, match=r"cannot write .*a\.yaml: no space left on device"):
+        folder.generate("a.yaml", "x: 1")
+
+
+def test_an_unknown_home_in_the_root_is_a_folder_of_that_name():
+    assert log_root({"ROS_LOG_DIR": "~nobody-of-this-name/log"}) == Path("~nobody-of-this-name/log")
