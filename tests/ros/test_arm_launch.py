@@ -34,6 +34,9 @@ def test_a_float64_multi_array_moves_the_arm(launch, client):
 
 
 def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
+    from controller_manager_msgs.msg import ControllerManagerActivity
+    from diagnostic_msgs.msg import DiagnosticArray
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     from rosgraph_msgs.msg import Clock
     from sensor_msgs.msg import JointState
 
@@ -47,6 +50,14 @@ def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
     assert all(b > a for a, b in itertools.pairwise(clock_ns))
     assert {b - a for a, b in itertools.pairwise(state_ns)} == {10_000_000}
     assert set(state_ns) & set(clock_ns)
+    # What the manager tells of itself goes by the same clock.
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    reports = client.subscribe(DiagnosticArray, "/diagnostics")
+    activity = client.subscribe(
+        ControllerManagerActivity, "/controller_manager/activity", latched
+    ).wait_for(1)
+    stamps_s = [m.header.stamp.sec for m in (*activity, *reports.wait_for(1))]
+    assert max(stamps_s) <= clock.wait_for(1)[-1].clock.sec
 
 
 def test_the_camera_sends_pictures_and_a_matching_camera_info(launch, client):

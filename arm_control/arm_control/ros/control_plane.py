@@ -155,7 +155,7 @@ class ControlPlane:
             try:
                 return self._result(future, timeout_s)
             except FutureTimeoutError:
-                message = f"Switch controller timed out after {timeout_s:f} seconds!"
+                message = f"Switch controller timed out after {timeout_s:g} seconds!"
             except ArmControlError as error:
                 message = str(error)
         logger.error("%s", message)

@@ -4,12 +4,15 @@ import dataclasses
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 
+from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
+from arm_control.clock import Clock
 from arm_control.controller_switch import Strictness
 from arm_control.errors import ParameterError
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
+from arm_control.ros.convert import time_message
 from arm_control.ros.health_publisher import HealthPublisher
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.node_arguments import manager_arguments
@@ -36,6 +39,7 @@ class ControllerManagerNode(ParameterNode):
         *,
         name: str = "controller_manager",
         namespace: str = "",
+        clock: Clock | None = None,
     ) -> None:
         """Make the node.
 
@@ -43,11 +47,14 @@ class ControllerManagerNode(ParameterNode):
             arguments: of the process; default sys.argv.
             name: of the node.
             namespace: of the node, its controllers and components.
+            clock: what its stamps go by, for any thread to read; by default the node's own clock,
+                which a process that makes simulation time itself need not ask on /clock.
 
         Raises:
             ParameterError: a parameter has the wrong type or value.
         """
         self.arguments = tuple(sys.argv if arguments is None else arguments)
+        self._stamp_clock = clock
         super().__init__(
             name,
             namespace=namespace,
@@ -73,6 +80,12 @@ class ControllerManagerNode(ParameterNode):
     def default_strictness(self) -> Strictness:
         """Return the strictness of a switch request that names none."""
         return _STRICTNESS[self.settings.defaults.switch_controller.strictness]
+
+    def stamp(self) -> Time:
+        """Return the time for a message's header; any thread."""
+        if self._stamp_clock is None:
+            return self.get_clock().now().to_msg()
+        return time_message(self._stamp_clock.now_s())
 
     def _adapted(self, specs: Iterable[ParameterSpec]) -> Iterator[ParameterSpec]:
         """Yield the parameters, with the defaults that follow from another's value."""

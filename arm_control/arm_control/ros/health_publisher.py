@@ -62,7 +62,7 @@ class HealthPublisher:
             else node.get_name()
         )
         message = DiagnosticArray(status=[_status(name, report) for report in reports])
-        message.header.stamp = node.get_clock().now().to_msg()
+        message.header.stamp = node.stamp()
         return message
 
 

@@ -11,13 +11,23 @@ CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 
 
 class RosClockPublisher:
-    """Writes the time into one serialised message and publishes that. Loop thread."""
+    """Writes the time into one serialised message and publishes that. Loop thread.
+
+    It is the clock of this process, too (see `arm_control.clock.Clock`): what it has published
+    last is what everybody else takes for the time.
+    """
 
     def __init__(self, node: Node) -> None:
         self._publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
         self._message = MessageTemplate(Clock())
+        self._time_s = 0.0
+
+    def now_s(self) -> float:
+        """Return the time published last; any thread."""
+        return self._time_s
 
     def publish(self, time_s: float) -> None:
         """Publish a simulation time."""
+        self._time_s = time_s
         self._message.set_stamps(round(time_s * 1e9))
         self._message.publish(self._publisher)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from rclpy.executors import Executor
 
+from arm_control.clock import Clock
 from arm_control.control_loop import ControlLoop
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.ros.configured_manager import bring_up, configured_manager
@@ -29,13 +30,14 @@ class ManagedRobot:
     Args:
         settings: of the robot.
         arguments: ROS arguments of the process.
+        clock: simulation time.
 
     Raises:
         SettingsError, DescriptionError, ArmControlError: nothing says what is commanded, or not
             in a way that makes sense.
     """
 
-    def __init__(self, settings: RobotSettings, arguments: Sequence[str]) -> None:
+    def __init__(self, settings: RobotSettings, arguments: Sequence[str], clock: Clock) -> None:
         self._settings = settings
         self._server: ControllerManagerServer | None = None
         self._hardware_info = parse_hardware_info(settings.robot_description)
@@ -53,7 +55,7 @@ class ManagedRobot:
             replace(sensor, topic=_below(settings.namespace, sensor.topic))
             for sensor in parse_link_sensors(settings.robot_description, self._robot)
         )
-        self.node = ControllerManagerNode(arguments, namespace=settings.namespace)
+        self.node = ControllerManagerNode(arguments, namespace=settings.namespace, clock=clock)
 
     def in_world(self, options: BuildOptions) -> RobotInWorld:
         """Return the robot as the model's builder takes it.

@@ -61,9 +61,10 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             node = Node(NODE_NAME)
         process.executor.add_node(node)
         settings = read_settings(node)
+        clock = RosClockPublisher(node)
         robots = []
         for robot_settings in settings.robots:
-            robots.append(ManagedRobot(robot_settings, arguments))
+            robots.append(ManagedRobot(robot_settings, arguments, clock))
             nodes.callback(robots[-1].destroy_nodes)
         timing = _timing(robots, settings)
         entries = _entries(robots, settings, timing)
@@ -77,7 +78,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             for feed in _feeds(robots, settings, node.get_namespace())
         ]
         managers = [robot.manager for robot in robots]
-        clock, shown = RosClockPublisher(node), [*feeds, *_sensor_feed(robots, node, timing)]
+        shown = [*feeds, *_sensor_feed(robots, node, timing)]
         tick = SimulationTick(managers, simulation, clock, shown, timing.period_s)
         pacer = Pacer(
             timing.period_s,

@@ -246,7 +246,7 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
         manager.tell("unblock")
     assert (answer.ok, answer.message) == (
         False,
-        "Switch controller timed out after 0.200000 seconds!",
+        "Switch controller timed out after 0.2 seconds!",
     )
     assert states == {"position_controller": "inactive"}
     assert component.state.label == "active"
