@@ -5,20 +5,29 @@ import signal
 import sys
 from collections.abc import Sequence
 
-from arm_cli.errors import StoppedError
-from arm_cli.verbs import ARM
-
 DISTRIBUTION = "arm-suite"
 EXIT_BROKEN_PIPE = 128 + signal.SIGPIPE
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
+    try:
+        return _run(list(sys.argv[1:] if argv is None else argv))
+    except KeyboardInterrupt:
+        return int(signal.SIGINT)
+    except BrokenPipeError:
+        return _leave_broken_pipe()
+
+
+def _run(words: list[str]) -> int:
+    # Imported here: an interrupt meanwhile is one like any other.
+    from arm_cli.errors import StoppedError
+    from arm_cli.verbs import ARM
+
     if "_ARGCOMPLETE" in os.environ:
         from arm_cli.word_completion import complete_words
 
         complete_words()
-    words = list(sys.argv[1:] if argv is None else argv)
     if words[:1] in (["-V"], ["--version"]):
         print(_version())
         return 0
@@ -30,10 +39,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         return code
     except StoppedError as stopped:
         return stopped.exit_code
-    except KeyboardInterrupt:
-        return int(signal.SIGINT)
-    except BrokenPipeError:
-        return _leave_broken_pipe()
 
 
 def _leave_broken_pipe() -> int:

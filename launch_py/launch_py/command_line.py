@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -51,7 +53,8 @@ def run(
         before_start: called when everything is checked and nothing is started yet; whatever
             speaks against starting it raises as a LaunchError.
 
-    What is wrong with the words or the launch file is one sentence on stderr and exit code 2.
+    What is wrong with the words or the launch file is one sentence on stderr and exit code 2. Asked
+    to stop before anything is started, it says so and has not failed.
     """
     started_s = time.monotonic()
     parser = _parser(program, short_names)
@@ -59,9 +62,13 @@ def run(
     try:
         _refuse_unknown_options(unknown, parser)
         request = parse_request(options, short_names)
-        return _carry_out(request, started_s, before_start)
+        with _stop_signals_interrupt():
+            return _carry_out(request, started_s, before_start)
     except KeyboardInterrupt:
-        return EXIT_INTERRUPTED
+        if options.show_args or options.print_plan:
+            return EXIT_INTERRUPTED
+        sys.stderr.write(f"{program}: stopped before anything was started\n")
+        return 0
     except LaunchError as error:
         if options.debug:
             traceback.print_exc()
@@ -134,6 +141,22 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
         f"too many words: {' '.join(words)}; launch arguments are written name:=value, "
         "without spaces around ':='"
     )
+
+
+@contextmanager
+def _stop_signals_interrupt() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP do what Ctrl-C does, until the supervisor takes them all over."""
+    numbers = [
+        n
+        for n in (signal.SIGTERM, signal.SIGHUP)
+        if signal.getsignal(n) is not signal.SIG_IGN  # nohup
+    ]
+    previous = {number: signal.signal(number, signal.default_int_handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
 
 
 def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[[], None]) -> int:

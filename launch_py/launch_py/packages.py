@@ -46,12 +46,15 @@ class ConsoleScript:
         """Return the command line that runs it with this Python.
 
         Not by `-m`: that imports runpy (a few milliseconds), and does nothing at all where the
-        module lacks a `__main__` part. `-P` keeps the current folder off sys.path.
+        module lacks a `__main__` part. `-P` keeps the current folder off sys.path. Interrupted
+        while it still imports, it ends without a word: there is nothing to take down yet.
         """
         top = self.function.partition(".")[0]
         code = (
-            f"import sys; sys.argv[0] = {self.name!r}; "
-            f"from {self.module} import {top}; sys.exit({self.function}())"
+            f"import signal, sys; sys.argv[0] = {self.name!r}; "
+            "interrupted = signal.signal(signal.SIGINT, signal.SIG_DFL); "
+            f"from {self.module} import {top}; "
+            f"signal.signal(signal.SIGINT, interrupted); sys.exit({self.function}())"
         )
         return (sys.executable, "-P", "-c", code)
 

@@ -232,7 +232,9 @@ class Member:
             stop_watching()
 
     def _on_line(self, stream: str, text: str) -> None:
-        self._reporter.line(self.name, text, shown=stream in self.step.shown)
+        # What a Python says that is interrupted at its start is of no use to anybody.
+        given_up = self.stopping and not self.ready
+        self._reporter.line(self.name, text, shown=stream in self.step.shown and not given_up)
         for condition, pattern in list(self._patterns.items()):
             if pattern.search(text):
                 self._met(condition)
