@@ -1,25 +1,12 @@
 """The myCobot without physics: its frames and joint states, and RViz where there is one."""
 
 import os
-import shutil
 
-from launch_py import (
-    DeclareLaunchArgument,
-    ExecuteProcess,
-    LaunchDescription,
-    Notified,
-    SetLaunchConfiguration,
-)
-from launch_py.conditions import IfCondition
+from launch_py import DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.packages import Packages
-from launch_py.ros import FindPackageShare, Node, ParameterValue
-from launch_py.substitutions import (
-    AndSubstitution,
-    Call,
-    LaunchConfiguration,
-    NotSubstitution,
-    PathJoinSubstitution,
-)
+from launch_py.ros import FindPackageShare
+from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
 SLIDERS = "joint_state_publisher_gui"
 SWITCH = ["true", "false"]
@@ -44,12 +31,16 @@ def describe(model: str, *values: str) -> str:
     return expand_xacro(model, dict(zip(XACRO_ARGUMENTS, values, strict=True)))
 
 
+def sliders(jsp_gui: str) -> str:
+    """Return whose sliders move the joints."""
+    return "gui" if jsp_gui == "true" else "none"
+
+
 def arguments() -> list[DeclareLaunchArgument]:
     """Return the declarations."""
     share = FindPackageShare("mycobot_description")
     robot = LaunchConfiguration("robot_name")
     gui = "true" if SLIDERS in Packages(os.environ).names() else "false"
-    rviz = "true" if shutil.which("rviz2") else "false"
     table = {
         "robot_name": ("mycobot_280", "which robot of this package", None),
         **XACRO_ARGUMENTS,
@@ -63,10 +54,7 @@ def arguments() -> list[DeclareLaunchArgument]:
             "what RViz shows",
             None,
         ),
-        "jsp_gui": (gui, f"sliders; {SLIDERS} comes with a ROS 2 installation", SWITCH),
-        "use_jsp": ("true", "publish joint states where no sliders do", SWITCH),
-        "use_rviz": (rviz, "start RViz; it comes with a ROS 2 installation", SWITCH),
-        "use_sim_time": ("false", "the nodes' clock is a simulation's", SWITCH),
+        "jsp_gui": (gui, f"sliders: {SLIDERS} of a ROS 2 installation, or else the page", SWITCH),
     }
     return [
         DeclareLaunchArgument(name, default_value=default, description=text, choices=choices)
@@ -75,51 +63,25 @@ def arguments() -> list[DeclareLaunchArgument]:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the state publisher, what publishes joint states, and RViz."""
-    use_sim_time = LaunchConfiguration("use_sim_time")
-    description = {
-        "robot_description": ParameterValue(
-            LaunchConfiguration("robot_description"), value_type=str
-        ),
-        "use_sim_time": use_sim_time,
-    }
-    gui = LaunchConfiguration("jsp_gui")
+    """Return what shows any robot, told about this one."""
+    view = PathJoinSubstitution(
+        [FindPackageShare("arm_description"), "launch", "robot_view.launch.py"]
+    )
+    values = (LaunchConfiguration(name) for name in XACRO_ARGUMENTS)
     return LaunchDescription(
         [
             *arguments(),
-            SetLaunchConfiguration(
-                "robot_description",
-                Call(
-                    describe,
-                    LaunchConfiguration("urdf_model"),
-                    *(LaunchConfiguration(name) for name in XACRO_ARGUMENTS),
-                ),
-            ),
-            Node(
-                package="arm_description",
-                executable="robot_state_publisher",
-                parameters=[description],
-                ready=Notified(),
-            ),
-            Node(
-                package="arm_description",
-                executable="joint_state_publisher",
-                parameters=[description],
-                ready=Notified(),
-                condition=IfCondition(
-                    AndSubstitution(LaunchConfiguration("use_jsp"), NotSubstitution(gui))
-                ),
-            ),
-            Node(package=SLIDERS, executable=SLIDERS, condition=IfCondition(gui)),
-            ExecuteProcess(
-                cmd=[
-                    *("rviz2", "-d", LaunchConfiguration("rviz_config_file")),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(view),
+                launch_arguments={
+                    "robot_description": Call(describe, LaunchConfiguration("urdf_model"), *values),
+                    "sliders": Call(sliders, LaunchConfiguration("jsp_gui")),
                     # The file's own fixed frame is base_link: not there with a prefix.
-                    *("-f", [LaunchConfiguration("prefix"), LaunchConfiguration("base_link")]),
-                    *("--ros-args", "-p", ["use_sim_time:=", use_sim_time]),
-                ],
-                name="rviz2",
-                condition=IfCondition(LaunchConfiguration("use_rviz")),
+                    "fixed_frame": [
+                        LaunchConfiguration("prefix"),
+                        LaunchConfiguration("base_link"),
+                    ],
+                },
             ),
         ]
     )
