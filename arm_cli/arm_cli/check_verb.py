@@ -25,7 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--package-path",
         metavar="DIR:DIR",
         default="",
-        help="folders for package:// besides the file's own package and the installed ones",
+        help="folders for package:// and $(find ...) besides the file's own package, its "
+        "neighbours and the installed ones",
     )
     parser.add_argument(
         "--strict", action="store_true", help="a mesh that cannot be had is an error"
@@ -45,16 +46,18 @@ def run(options: argparse.Namespace) -> int:
     logging.getLogger().addHandler(logging.NullHandler())
 
     from arm_description.errors import DescriptionError
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.resources import folders_of
+    from arm_description.xacro_expansion import expand_xacro_file
     from arm_gazebo.build_options import BuildOptions
     from arm_gazebo.description_check import check_description
     from arm_gazebo.errors import SettingsError
     from arm_gazebo.mesh_cache import cache_folder
-    from arm_gazebo.robot_setup import folders, folders_of, model_arguments, model_file
+    from arm_gazebo.robot_setup import folders, model_arguments, model_file
 
     try:
         file = model_file(options.file)
-        urdf = expand_xacro(file, model_arguments(options.arguments))
+        given = folders(options.package_path)
+        urdf = expand_xacro_file(file, model_arguments(options.arguments), given).text
     except (DescriptionError, SettingsError) as error:
         raise ArmCliError(str(error)) from error
     if options.urdf:
@@ -62,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
         return 0
     build = BuildOptions(
         strict=options.strict,
-        package_path=(*folders(options.package_path), *folders_of(file)),
+        package_path=(*given, *folders_of(file)),
         mesh_cache=cache_folder(),
     )
     check = check_description(urdf, str(file), build)

@@ -34,6 +34,14 @@ class InterfaceInfo:
     parameters: Mapping[str, str] = field(default_factory=dict)
     is_limited: bool = True
 
+    @property
+    def unread_limits(self) -> tuple[str, ...]:
+        """Which of `min` and `max` are given, but are no numbers: those do not count."""
+        read = {"min": self.minimum, "max": self.maximum}
+        return tuple(
+            key for key, value in read.items() if self.parameters.get(key) and value is None
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class MimicInfo:
@@ -240,8 +248,8 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
         interfaces[name] = InterfaceInfo(
             name=name,
             initial_value=_parse_number(parameters, "initial_value", where_exactly),
-            minimum=_parse_number(parameters, "min", where_exactly),
-            maximum=_parse_number(parameters, "max", where_exactly),
+            minimum=_parse_limit(parameters, "min"),
+            maximum=_parse_limit(parameters, "max"),
             parameters=parameters,
             is_limited=_is_limited(child),
         )
@@ -264,13 +272,26 @@ def _parse_number(parameters: Mapping[str, str], key: str, where: str) -> float 
     text = parameters.get(key)
     if not text:
         return None
+    value = _number(text)
+    if value is None:
+        raise HardwareInfoError(f"{where % repr(key)} is '{text}'; it must be a finite number")
+    return value
+
+
+def _parse_limit(parameters: Mapping[str, str], key: str) -> float | None:
+    """Return a number, None where there is none: as in ros2_control, others are passed over.
+
+    Descriptions in use, those of Universal Robots among them, have "{2*pi}" there.
+    """
+    return _number(parameters.get(key, ""))
+
+
+def _number(text: str) -> float | None:
     try:
         value = float(text)
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise HardwareInfoError(f"{where % repr(key)} is '{text}'; it must be a finite number")
-    return value
+        return None
+    return value if math.isfinite(value) else None
 
 
 def _required_name(element: "etree._Element", what: str) -> str:

@@ -1,6 +1,7 @@
 """Files that a URDF names: package://, model:// and file:// URIs and plain paths."""
 
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -11,6 +12,10 @@ from arm_description.errors import ResourceNotFoundError
 SCHEMES = ("package://", "model://", "file://")
 MODEL_PATH_VARIABLES = ("GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
 """Where Gazebo's users say where their models are."""
+MANIFEST = "package.xml"
+FOLDERS_UP = 3
+"""At least: the folder of a model's file, its package, and what holds its neighbours."""
+_MANIFEST_NAME = re.compile(r"<name>\s*([\w.-]+)\s*</name>")
 
 
 def resolve_uri(
@@ -18,8 +23,7 @@ def resolve_uri(
 ) -> Path:
     """Return the existing file or folder that a URI names.
 
-    * `package://NAME/REST`: REST in the package's share folder, under each prefix of
-      AMENT_PREFIX_PATH and under this Python's own; then in a folder NAME of the search path.
+    * `package://NAME/REST`: REST in the package's folder; see `package_folders`.
     * `model://NAME/REST`: the same after the folders of GZ_SIM_RESOURCE_PATH and
       GAZEBO_MODEL_PATH.
     * `file:///PATH` and an absolute path: that file.
@@ -36,13 +40,59 @@ def resolve_uri(
     Raises:
         ResourceNotFoundError: names every place tried.
     """
-    tried = list(dict.fromkeys(_candidates(uri.strip(), search_path, environ)))
-    for candidate in tried:
+    tried: dict[Path, None] = {}
+    for candidate in _candidates(uri.strip(), search_path, environ):
         # os.path.exists, unlike Path.exists, takes names that no file can have.
         if os.path.exists(candidate):
             return candidate
+        tried[candidate] = None
     places = "".join(f"\n  {candidate}" for candidate in tried)
     raise ResourceNotFoundError(f"no file for '{uri}'; tried:{places}")
+
+
+def find_package(
+    name: str, search_path: Sequence[Path] = (), environ: Mapping[str, str] = os.environ
+) -> Path:
+    """Return the folder of a package's data; see `package_folders`.
+
+    Raises:
+        ResourceNotFoundError: in one line, for xacro takes it into its own.
+    """
+    tried: dict[Path, None] = {}
+    for folder in package_folders(name, search_path, environ):
+        if folder.is_dir():
+            return folder
+        tried[folder] = None
+    raise ResourceNotFoundError(f"no package '{name}'; tried {', '.join(map(str, tried))}")
+
+
+def package_folders(
+    name: str, search_path: Sequence[Path], environ: Mapping[str, str]
+) -> Iterator[Path]:
+    """Yield where a package may be, existing or not.
+
+    First its share folder, under each prefix of AMENT_PREFIX_PATH and under this Python's own;
+    then a folder NAME of the search path, and of Gazebo's, who asks the same of it. A folder of
+    those, or one in it, that is called otherwise is the package if its package.xml says so, as
+    in many a repository.
+    """
+    yield from (share / name for share in share_folders(environ))
+    search = (*search_path, *_model_folders(environ))
+    for folder in search:
+        yield folder / name
+        if folder.name == name:
+            yield folder
+    for folder in search:
+        for place in (folder, *_folders_in(folder)):
+            if place.name != name and _package_name(place) == name:
+                yield place
+
+
+def folders_of(model: Path) -> tuple[Path, ...]:
+    """Return where a model's own files may be: beside it, in its package, in a neighbour."""
+    above = tuple(model.absolute().parents)
+    package = next((i for i, folder in enumerate(above) if (folder / MANIFEST).is_file()), 0)
+    return above[: max(FOLDERS_UP, package + 2)]
 
 
 def share_folders(environ: Mapping[str, str] = os.environ) -> list[Path]:
@@ -90,11 +140,26 @@ def _in_packages(
     if os.path.normpath(inside or ".").split(os.sep)[0] == "..":
         raise ResourceNotFoundError(f"'{scheme}{rest}' leads out of the package '{name}'")
     if scheme == "model://":
-        for variable in MODEL_PATH_VARIABLES:
-            for folder in filter(None, environ.get(variable, "").split(os.pathsep)):
-                yield Path(folder) / name / inside
-    yield from (share / name / inside for share in share_folders(environ))
-    for folder in search_path:
-        yield folder / name / inside
-        if folder.name == name:
-            yield folder / inside
+        yield from (folder / name / inside for folder in _model_folders(environ))
+    yield from (folder / inside for folder in package_folders(name, search_path, environ))
+
+
+def _model_folders(environ: Mapping[str, str]) -> list[Path]:
+    paths = (environ.get(variable, "") for variable in MODEL_PATH_VARIABLES)
+    return [Path(folder) for path in paths for folder in path.split(os.pathsep) if folder]
+
+
+def _folders_in(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if path.is_dir())
+    except OSError:
+        return []
+
+
+def _package_name(folder: Path) -> str:
+    """Return what a folder's package.xml calls it, "" where there is none to be read."""
+    try:
+        found = _MANIFEST_NAME.search((folder / MANIFEST).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return ""
+    return found.group(1) if found else ""

@@ -1,16 +1,15 @@
 """xacro files to URDF text, with $(find package) and $(arg ...) working from pip."""
 
 import io
-import os
 import re
-import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stderr
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from arm_description.errors import XacroError
+from arm_description.resources import find_package, folders_of
 
 MOST_PLACES = 5
 """Of a stack of macros and files that a message names: an endless one has a thousand."""
@@ -39,7 +38,9 @@ def expand_xacro(path: Path | str, arguments: Mapping[str, str] | None = None) -
 
 
 def expand_xacro_file(
-    path: Path | str, arguments: Mapping[str, str] | None = None
+    path: Path | str,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
 ) -> XacroExpansion:
     """Expand a xacro file; a plain .urdf passes through as it is.
 
@@ -48,6 +49,8 @@ def expand_xacro_file(
     Args:
         path: the file.
         arguments: values for the file's <xacro:arg> elements, as text.
+        package_path: folders for $(find NAME), before the file's own package and its neighbours;
+            those that are installed go before all of them.
 
     Raises:
         XacroError: the file cannot be read or expanded; the message names the file and,
@@ -66,16 +69,17 @@ def expand_xacro_file(
     if _DOCTYPE in _COMMENT.sub("", text):
         raise XacroError(f"{file} has a DOCTYPE, which is not accepted; remove it")
     # xacro adds the defaults of the file's arguments to the dict that it is given.
-    return XacroExpansion(_process(file, values), values)
+    text = _process(file, values, (*package_path, *folders_of(file)))
+    return XacroExpansion(text, values)
 
 
-def _process(file: Path, arguments: dict[str, str]) -> str:
+def _process(file: Path, arguments: dict[str, str], package_path: Sequence[Path]) -> str:
     # xacro reports its errors through xml.parsers.expat without importing it.
     import xml.parsers.expat  # noqa: F401
 
     import xacro
 
-    with _own_prefix_findable():
+    with _findable(package_path):
         try:
             document: Any = xacro.process_file(str(file), mappings=arguments)
         # xacro runs the file's own expressions: whatever those raise comes out here.
@@ -100,15 +104,20 @@ def _first_line(error: BaseException) -> str:
 
 
 @contextmanager
-def _own_prefix_findable() -> Iterator[None]:
-    # $(find) reads AMENT_PREFIX_PATH of this process, which pip does not set.
-    before = os.environ.get("AMENT_PREFIX_PATH")
-    prefixes = [prefix for prefix in (before or "").split(os.pathsep) if prefix]
-    os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))
+def _findable(package_path: Sequence[Path]) -> Iterator[None]:
+    """Let $(find) look where package:// is looked for.
+
+    xacro asks ament alone, which knows installed packages only, and not those of pip.
+    """
+    from ament_index_python import packages
+
+    asked = packages.get_package_share_directory
+
+    def find(package_name: str) -> str:
+        return str(find_package(package_name, package_path))
+
+    packages.get_package_share_directory = find
     try:
         yield
     finally:
-        if before is None:
-            del os.environ["AMENT_PREFIX_PATH"]
-        else:
-            os.environ["AMENT_PREFIX_PATH"] = before
+        packages.get_package_share_directory = asked

@@ -185,6 +185,19 @@ def _check_interfaces(
                 f"not simulated: {', '.join(left_out)}",
                 component.line,
             )
+        unread = [
+            f"{key}='{interface.parameters[key]}' of {joint.name}/{interface.name}"
+            for joint in component.joints
+            for interface in joint.command_interfaces
+            for key in interface.unread_limits
+        ]
+        if unread:
+            others = f" and {len(unread) - 1} more" if len(unread) > 1 else ""
+            report.drop(
+                f"<ros2_control name='{component.name}'>",
+                f"{unread[0]}{others}: no number, so no limit",
+                component.line,
+            )
 
 
 def _check_strength(built: BuiltModel, report: BuildReport) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from arm_description.resources import resolve_uri
+from arm_description.resources import folders_of, resolve_uri
 from arm_description.xacro_expansion import expand_xacro_file
 from arm_gazebo.controllers_file import Controllers, fill_in, startable_controllers
 from arm_gazebo.default_control import (
@@ -22,8 +22,6 @@ from arm_gazebo.errors import SettingsError
 SPAWN_AUTO = "auto"
 """Start every controller whose joints are free."""
 ASSIGNMENT = ":="
-FOLDERS_UP = 3
-"""The folder of a model's file, its package, and the folder that holds its neighbours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +73,8 @@ def set_up_robot(
             robot.
     """
     file = model_file(model)
-    expansion = expand_xacro_file(file, model_arguments(_words(model_args)))
+    given = folders(package_path)
+    expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
     description = expansion.text
     remarks: list[str] = []
     commanded: tuple[str, ...] | None = None
@@ -91,7 +90,7 @@ def set_up_robot(
         description,
         content,
         _spawned(spawn, content if controllers else None, commanded or (), remarks),
-        (*folders(package_path), *folders_of(file)),
+        (*given, *folders_of(file)),
         tuple(remarks),
     )
 
@@ -126,11 +125,6 @@ def _words(text: str) -> list[str]:
 def folders(path: str) -> tuple[Path, ...]:
     """Return the folders of a text that parts them by colons."""
     return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
-
-
-def folders_of(model: Path) -> tuple[Path, ...]:
-    """Return where a model's own files may be: beside it, in its package, in a neighbour."""
-    return tuple(model.absolute().parents)[:FOLDERS_UP]
 
 
 def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, tuple[str, ...]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.names import listing
-from arm_description.resources import resolve_uri
+from arm_description.resources import folders_of, resolve_uri
 from arm_description.robot import Pose
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro_file
@@ -93,7 +93,7 @@ class ModelSource:
             if not path.is_file():
                 raise RefusedError(Refusal.NO_RESOURCE, f"{path} is no file")
             if path.suffix == ".xacro":
-                return self._read_text(expand_xacro_file(path, {}).text, path)
+                return self._read_text(expand_xacro_file(path, {}, self.package_path).text, path)
             if path.stat().st_size > LARGEST_CHARACTERS:
                 raise _too_large(str(path))
             return self._read_text(path.read_text(encoding="utf-8"), path)
@@ -162,7 +162,7 @@ class ModelSource:
         spec = mujoco.MjSpec()
         spec.compiler.degree = False
         spec.option.timestep = self.step_s
-        beside = () if path is None else tuple(path.absolute().parents)[:3]
+        beside = () if path is None else folders_of(path)
         cache = None if self.mesh_cache is None else MeshCache(self.mesh_cache)
         return spec, MeshLibrary(spec, (*beside, *self.package_path), cache)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from arm_description import ResourceNotFoundError, resolve_uri
-from arm_description.resources import share_folders
+from arm_description.resources import find_package, folders_of, share_folders
 
 
 def make(path: Path) -> Path:
@@ -142,3 +142,46 @@ def test_a_relative_path_may_climb_within_the_given_folders_only(tmp_path):
     assert resolve_uri("../meshes/a.stl", folders, {}) == expected
     with pytest.raises(ResourceNotFoundError, match="leads out of"):
         resolve_uri("../../a.stl", folders[:1], {})
+
+
+def manifest(folder: Path, name: str) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "package.xml").write_text(f"<package format='3'>\n  <name> {name} </name></package>")
+    return folder
+
+
+def test_a_repository_may_be_called_otherwise_than_its_package(tmp_path):
+    package = manifest(tmp_path / "source/Robot_ROS2_Description", "robot")
+    expected = make(package / "a.stl")
+    assert resolve_uri("package://robot/a.stl", [package], {}) == expected
+    assert resolve_uri("package://robot/a.stl", [tmp_path / "source"], {}) == expected
+    with pytest.raises(ResourceNotFoundError):
+        resolve_uri("package://arm/a.stl", [tmp_path / "source"], {})
+
+
+def test_a_package_xml_that_is_no_text_names_nothing(tmp_path):
+    (manifest(tmp_path / "folder", "robot") / "package.xml").write_bytes(b"\xff<name>robot</name>")
+    with pytest.raises(ResourceNotFoundError, match="no package 'robot'; tried "):
+        find_package("robot", [tmp_path], {})
+
+
+def test_a_package_is_found_where_gazebo_looks_for_it(tmp_path):
+    expected = make(tmp_path / "source/robot/a.stl")
+    environ = {"GZ_SIM_RESOURCE_PATH": f"{tmp_path}/source"}
+    assert resolve_uri("package://robot/a.stl", environ=environ) == expected
+
+
+def test_a_package_is_a_folder_of_an_installed_one_or_of_the_search_path(tmp_path):
+    behind = make(tmp_path / "source/robot/a.stl").parent
+    environ = ament(tmp_path)
+    assert find_package("robot", [tmp_path / "source"], environ) == behind
+    first = make(tmp_path / "share/robot/a.stl").parent
+    assert find_package("robot", [tmp_path / "source"], environ) == first
+
+
+def test_the_folders_of_a_model_reach_up_to_the_neighbours_of_its_package(tmp_path):
+    model = tmp_path / "source/robot/urdf/arms/six/arm.urdf"
+    assert folders_of(model) == tuple(model.parents)[:3]
+    manifest(tmp_path / "source/robot", "robot")
+    assert folders_of(model) == tuple(model.parents)[:5]
+    assert folders_of(model)[-1] == tmp_path / "source"

@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 
 from arm_description import XacroError, expand_xacro, parse_urdf
+from arm_description.xacro_expansion import expand_xacro_file
 
 HEAD = "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>"
 
 
 def write(path: Path, inside: str) -> Path:
+    path.parent.mkdir(exist_ok=True)
     path.write_text(f"{HEAD}\n{inside}\n</robot>")
     return path
 
@@ -53,6 +55,33 @@ def test_find_prefers_the_users_prefixes_and_leaves_the_variable_alone(tmp_path,
     file = write(tmp_path / "a.xacro", "<link name='$(find arm_description)'/>")
     assert parse_urdf(expand_xacro(file)).root == f"{tmp_path}/share/arm_description"
     assert os.environ["AMENT_PREFIX_PATH"] == str(tmp_path)
+
+
+def test_find_knows_the_files_own_package_and_its_neighbours(tmp_path):
+    """As they lie in a workspace, or in a folder that somebody downloaded."""
+    for folder, name in (("Arm_Description", "arm_x"), ("hand_x", "hand_x")):
+        (tmp_path / folder / "urdf").mkdir(parents=True)
+        (tmp_path / folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+        write(tmp_path / folder / "urdf/part.xacro", f"<link name='{name}'/>")
+    (tmp_path / "Arm_Description/limits.yaml").write_text("reach: !degrees 180\n")
+    file = write(
+        tmp_path / "Arm_Description/urdf/a.xacro",
+        "<xacro:include filename='$(find arm_x)/urdf/part.xacro'/>"
+        "<xacro:include filename='$(find hand_x)/urdf/part.xacro'/>"
+        "<xacro:property name='own' value='$(find arm_x)/limits.yaml'/>"
+        "<link name=\"${round(xacro.load_yaml(own)['reach'], 2)}\"/>",
+    )
+    text = expand_xacro(file)
+    assert all(f'name="{name}"' in text for name in ("arm_x", "hand_x", "3.14"))
+
+
+def test_find_looks_in_the_folders_given(tmp_path):
+    (tmp_path / "elsewhere/far_x").mkdir(parents=True)
+    file = write(tmp_path / "one" / "a.xacro", "<link name='$(find far_x)'/>")
+    with pytest.raises(XacroError, match="no package 'far_x'; tried "):
+        expand_xacro_file(file)
+    expansion = expand_xacro_file(file, package_path=[tmp_path / "elsewhere"])
+    assert parse_urdf(expansion.text).root == f"{tmp_path}/elsewhere/far_x"
 
 
 def test_a_plain_urdf_passes_through_as_it_is(tmp_path):
