@@ -14,19 +14,19 @@ SHORT_NAMES = {
 def run(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
     return run_launch(
-        argv, program="arm launch", short_names=SHORT_NAMES, before_start=_check_interfaces
+        argv, program="arm launch", short_names=SHORT_NAMES, before_start=_check_environment
     )
 
 
-def _check_interfaces() -> None:
-    """Refuse to start processes that would all fail for want of the same packages.
+def _check_environment() -> None:
+    """Refuse to start processes that would all fail for the same reason.
 
     Raises:
-        LaunchError: an interface package is missing; the message says the fix.
+        LaunchError: ROS cannot start in this environment; the message says the fix.
     """
-    from arm_node.environment import MissingInterfacesError, prepare_environment
+    from arm_node.environment import UnusableEnvironmentError, prepare_environment
 
     try:
         prepare_environment()
-    except MissingInterfacesError as error:
+    except UnusableEnvironmentError as error:
         raise LaunchError(str(error)) from error

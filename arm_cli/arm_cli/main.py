@@ -24,6 +24,10 @@ def _run(words: list[str]) -> int:
     from arm_cli.errors import StoppedError
     from arm_cli.verbs import ARM
 
+    if None in (sys.stdin, sys.stdout, sys.stderr):
+        from launch_py.standard_streams import open_closed_streams
+
+        open_closed_streams()
     if "_ARGCOMPLETE" in os.environ:
         from arm_cli.word_completion import complete_words
 

@@ -3,6 +3,6 @@
 Import-light on purpose: nothing here imports rclpy before `prepare_environment` has run.
 """
 
-from arm_node.environment import MissingInterfacesError, prepare_environment
+from arm_node.environment import UnusableEnvironmentError, prepare_environment
 
-__all__ = ["MissingInterfacesError", "prepare_environment"]
+__all__ = ["UnusableEnvironmentError", "prepare_environment"]

@@ -16,8 +16,20 @@ INTERFACE_PACKAGES = (
 """Interface packages that the rclpy wheels lack and the distribution arm-interfaces brings."""
 
 
-class MissingInterfacesError(Exception):
-    """An interface package that the nodes need is not installed; the message says the fix."""
+LAST_DOMAIN = 232
+"""The ports of a higher DDS domain would be beyond the last one."""
+
+
+class UnusableEnvironmentError(Exception):
+    """ROS cannot start in this environment; the message says the fix."""
+
+
+class MissingInterfacesError(UnusableEnvironmentError):
+    """An interface package that the nodes need is not installed."""
+
+
+class InvalidDomainError(UnusableEnvironmentError):
+    """ROS_DOMAIN_ID is no domain."""
 
 
 def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
@@ -29,7 +41,9 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
 
     Raises:
         MissingInterfacesError: an interface package of arm-interfaces is not installed.
+        InvalidDomainError: ROS_DOMAIN_ID is no number from 0 to 232.
     """
+    _check_domain(environ.get("ROS_DOMAIN_ID", ""))
     prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     if sys.prefix not in prefixes:
         environ["AMENT_PREFIX_PATH"] = os.pathsep.join([*prefixes, sys.prefix])
@@ -42,4 +56,13 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
             f"{'are' if len(missing) > 1 else 'is'} not installed for {sys.executable}; "
             "run 'pip install ./arm_interfaces' from the arm suite's folder, "
             "or source a ROS 2 Jazzy that has them"
+        )
+
+
+def _check_domain(text: str) -> None:
+    # Of '1e1' ROS would take the 1, and of '-1' that it is not set.
+    word = text.strip()
+    if word and not (word.isascii() and word.isdigit() and int(word) <= LAST_DOMAIN):
+        raise InvalidDomainError(
+            f"ROS_DOMAIN_ID is {text!r}; it must be a whole number from 0 to {LAST_DOMAIN}"
         )

@@ -18,7 +18,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from arm_node.discovery import answers_held_back
-from arm_node.environment import MissingInterfacesError, prepare_environment
+from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.notify import notify
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def run_process(
         argv: ROS arguments of the process, the program's name first; default sys.argv.
         user_errors: errors whose message is for the user: one FATAL line, no traceback, exit 1.
 
-    A missing interface package is one sentence on stderr and exit code 2.
+    An environment in which ROS cannot start is one sentence on stderr and exit code 2.
     """
     # What is made at the start stays: collecting it again and again would cost start-up time, and
     # later a pause in the middle of a control period.
@@ -101,7 +101,7 @@ def run_process(
     with _signals_set(threading.Event()) as stop:
         try:
             prepare_environment()
-        except MissingInterfacesError as error:
+        except UnusableEnvironmentError as error:
             sys.stderr.write(f"{error}\n")
             return EXIT_USAGE
         return _run_with_ros(application, argv, user_errors, stop)

@@ -66,3 +66,27 @@ def test_python_m_arm_cli_is_the_command():
         check=False,
     )
     assert done.stdout.startswith("arm ")
+
+
+@pytest.mark.parametrize("closed", ["<&- >&-", ">&- 2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("module", ["arm_cli --help", "launch_py --help"])
+def test_without_its_standard_streams_the_command_writes_to_nowhere(closed, module):
+    done = subprocess.run(
+        ["sh", "-c", f"exec {sys.executable} -m {module} {closed}"],
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize("words", [["launch"], ["topic", "list"]])
+def test_a_domain_that_is_none_is_said_before_anything_starts(capsys, monkeypatch, words):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "abc")
+    assert main(words) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.endswith(
+        ": ROS_DOMAIN_ID is 'abc'; it must be a whole number from 0 to 232\n"
+    )

@@ -5,7 +5,11 @@ import sys
 
 import pytest
 
-from arm_node.environment import MissingInterfacesError, prepare_environment
+from arm_node.environment import (
+    InvalidDomainError,
+    MissingInterfacesError,
+    prepare_environment,
+)
 
 
 def test_this_pythons_prefix_is_searched_for_packages():
@@ -33,3 +37,19 @@ def test_a_missing_interface_package_is_named_with_the_fix(monkeypatch):
     )
     with pytest.raises(MissingInterfacesError, match=r"tf2_msgs is not.*pip install"):
         prepare_environment({"HOME": "/home/me"})
+
+
+@pytest.mark.parametrize("text", ["abc", "-1", "233", "1e1", "0x5", "1.0", "\u0663", "4294967296"])
+def test_what_is_no_domain_is_refused(text):
+    with pytest.raises(InvalidDomainError) as refused:
+        prepare_environment({"HOME": "/home/me", "ROS_DOMAIN_ID": text})
+    assert str(refused.value) == (
+        f"ROS_DOMAIN_ID is {text!r}; it must be a whole number from 0 to 232"
+    )
+
+
+@pytest.mark.parametrize("text", ["", "0", " 7 ", "007", "232"])
+def test_what_ros_takes_for_a_domain_is_left_as_it_is(text):
+    environment = {"HOME": "/home/me", "ROS_DOMAIN_ID": text}
+    prepare_environment(environment)
+    assert environment["ROS_DOMAIN_ID"] == text

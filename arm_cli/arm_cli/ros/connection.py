@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from arm_cli.errors import UsageError
 from arm_cli.ros.library_output import library_output_on_stderr
-from arm_node.environment import MissingInterfacesError, prepare_environment
+from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from launch_py.child_environment import dds_profile
 
 if TYPE_CHECKING:
@@ -24,11 +24,11 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Se
     whoever is there answers at once. Meanwhile stdout is for what Python prints alone.
 
     Raises:
-        UsageError: an interface package is missing; the message says the fix.
+        UsageError: ROS cannot start in this environment; the message says the fix.
     """
     try:
         prepare_environment()
-    except MissingInterfacesError as error:
+    except UnusableEnvironmentError as error:
         raise UsageError(str(error)) from error
     profile = dds_profile(os.environ)
     if profile is not None:
