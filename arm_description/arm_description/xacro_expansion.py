@@ -75,7 +75,7 @@ def expand_xacro_file(
 
 def _process(file: Path, arguments: dict[str, str], package_path: Sequence[Path]) -> str:
     # xacro reports its errors through xml.parsers.expat without importing it.
-    import xml.parsers.expat  # noqa: F401
+    import xml.parsers.expat  # noqa: F401 # pyright: ignore[reportUnusedImport]
 
     import xacro
 

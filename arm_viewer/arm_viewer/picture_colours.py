@@ -1,5 +1,7 @@
 """Images of ROS as what a browser shows: red, green and blue of 8 bits each."""
 
+from typing import Any
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +47,7 @@ def colours(picture: Picture) -> NDArray[np.uint8]:
     return np.ascontiguousarray(pixels[:, :, :3])
 
 
-def _pixels(picture: Picture) -> NDArray:
+def _pixels(picture: Picture) -> NDArray[Any]:
     if picture.encoding not in _CHANNELS:
         known = ", ".join(_CHANNELS)
         raise PictureError(f"cannot show the encoding '{picture.encoding}'; known are {known}")
@@ -64,7 +66,7 @@ def _pixels(picture: Picture) -> NDArray:
     return values.reshape(picture.height, picture.width, channels)
 
 
-def _shrunk(pixels: NDArray) -> NDArray:
+def _shrunk(pixels: NDArray[Any]) -> NDArray[Any]:
     every = -(-pixels.shape[1] // MOST_PIXELS_WIDE)
     return pixels[::every, ::every]
 

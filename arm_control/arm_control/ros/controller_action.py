@@ -192,4 +192,4 @@ def _cancel_by_itself(handle: ServerGoalHandle) -> None:
     The way there leads through 'canceling', and rclpy has no public step to it for a server.
     """
     if not handle.is_cancel_requested:
-        handle._update_state(GoalEvent.CANCEL_GOAL)
+        handle._update_state(GoalEvent.CANCEL_GOAL)  # pyright: ignore[reportPrivateUsage]

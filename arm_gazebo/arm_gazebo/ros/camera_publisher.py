@@ -109,7 +109,7 @@ def _info_message(sensor: CameraSensor) -> CameraInfo:
     return message
 
 
-def _compress(picture: NDArray[np.uint8]) -> array:
+def _compress(picture: NDArray[np.uint8]) -> "array[int]":
     # Loaded only where somebody asks for it: it costs 0.1 s and 40 MB.
     import cv2
 

@@ -1,6 +1,7 @@
 """The line above everything, where something is wrong, and the button for a picture."""
 
 import html
+from typing import Any
 
 import cv2
 import numpy as np
@@ -36,7 +37,7 @@ class StatusPanel:
             self._banner.visible = bool(said)
 
 
-def _give_picture(event: GuiEvent) -> None:
+def _give_picture(event: GuiEvent[Any]) -> None:
     """Have the browser that asked draw the 3D view as it sees it, and download it there."""
     client = event.client
     if client is None:

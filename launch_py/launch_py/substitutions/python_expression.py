@@ -10,13 +10,14 @@ from launch_py.substitution import Substitution, Text, describe_text, perform_te
 
 if TYPE_CHECKING:
     import ast
+    from collections.abc import Callable
 
     from launch_py.launch_context import LaunchContext
 
 NAMES = {"true": True, "false": False}
 """Values of launch arguments read so; in Python they would be unknown names."""
 
-OPERATORS = {
+OPERATORS: dict[str, Callable[..., Any]] = {
     "Eq": operator.eq,
     "NotEq": operator.ne,
     "Lt": operator.lt,
