@@ -17,7 +17,8 @@ from arm_description.urdf_element import Remark
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.build_report import BuildReport, Finding, Outcome
 from arm_gazebo.built_model import BuiltModel
-from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.camera_reader import parse_cameras
+from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.default_control import commandable_joints, with_hardware
 from arm_gazebo.description_leftovers import leftovers
 from arm_gazebo.errors import GazeboError

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.camera_sensor import parse_cameras
+from arm_gazebo.camera_reader import parse_cameras
 from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.world_file import find_world, load_world, shipped_worlds
 

@@ -30,7 +30,7 @@ def simulate(width: int, height: int, noise: float, backend: str) -> None:
     from arm_description.xacro_expansion import expand_xacro
     from arm_gazebo.build_options import BuildOptions
     from arm_gazebo.camera_feed import CameraFeed
-    from arm_gazebo.camera_sensor import parse_cameras
+    from arm_gazebo.camera_reader import parse_cameras
     from arm_gazebo.model_builder import build_model
 
     xacro = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")

@@ -13,7 +13,8 @@ from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
 from arm_description.urdf import parse_urdf
 from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.camera_reader import parse_cameras
+from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.instrument import Instrument

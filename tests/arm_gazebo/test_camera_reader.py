@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from arm_gazebo.camera_sensor import CameraSensor, parse_cameras
+from arm_gazebo.camera_reader import parse_cameras
+from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import SensorError
 
 LINKS = '<link name="base_link"/><link name="camera_link"/><link name="eye"/>'
