@@ -6,6 +6,7 @@ import numpy as np
 from geometry_msgs.msg import Point, Vector3
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
@@ -32,34 +33,43 @@ MOST_GONE = 1000
 
 
 class WorldMarkerPublisher:
-    """Looks ten times a second whether somebody listens, and if so whether something moved.
+    """Looks ten times a second, while somebody listens, whether something moved.
 
     Every message has all shapes, so that the last one is enough for whoever comes late. It is
     serialised once for each model; then only the poses in its bytes change. The thread of the
-    node's executor, which is the keeper's.
+    node's executor, which is the keeper's: it sleeps on while nobody listens.
     """
 
     def __init__(self, node: Node, keeper: WorldKeeper) -> None:
         self._keeper = keeper
-        self._publisher = node.create_publisher(MarkerArray, TOPIC, QOS)
-        self._listeners = 0
+        self._timer = node.create_timer(
+            PERIOD_S, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+        self._timer.cancel()
+        self._publisher = node.create_publisher(
+            MarkerArray, TOPIC, QOS, event_callbacks=PublisherEventCallbacks(matched=self._match)
+        )
+        self._awaited = False
         self._model: object = None
         self._shown: dict[tuple[str, int], None] = {}
         self._gone: dict[tuple[str, int], None] = {}
-        node.create_timer(PERIOD_S, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _match(self, matched: QoSPublisherMatchedInfo) -> None:
+        if not matched.current_count:
+            self._timer.cancel()
+        elif matched.current_count_change > 0:
+            self._awaited = True
+            self._timer.reset()
 
     def _look(self) -> None:
-        listeners = self._publisher.get_subscription_count()
-        new, self._listeners = listeners > self._listeners, listeners
-        if not listeners:
-            return
         if self._model is not self._keeper.model:
             self._take_model()
         poses = self._shapes.poses(*self._keeper.motions().geom_poses)
-        if new or not np.abs(poses - self._poses).max(initial=0.0) < MOVED:
+        if self._awaited or not np.abs(poses - self._poses).max(initial=0.0) < MOVED:
             self._poses = poses
             self._template.float64[self._places] = poses.ravel()
             self._template.publish(self._publisher)
+            self._awaited = False
 
     def _take_model(self) -> None:
         self._model = self._keeper.model
