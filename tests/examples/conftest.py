@@ -19,12 +19,13 @@ def _importable(monkeypatch: pytest.MonkeyPatch) -> None:
 def servo_info() -> Callable[..., Any]:
     """Make the hardware description of two servos on a port."""
     from arm_control import parse_hardware_info
+    from arm_description import expand_xacro
 
-    urdf = (ROOT / "servo_arm" / "urdf" / "servo_arm.urdf").read_text()
+    model = ROOT / "servo_arm" / "urdf" / "servo_arm.urdf.xacro"
 
     def make(port: Path, timeout_s: float = 5.0) -> Any:
-        text = urdf.replace("/tmp/servo_arm", str(port)).replace(">0.2<", f">{timeout_s}<")
-        (info,) = parse_hardware_info(text)
+        urdf = expand_xacro(model, {"device": str(port), "timeout": str(timeout_s)})
+        (info,) = parse_hardware_info(urdf)
         return info
 
     return make

@@ -1,7 +1,5 @@
 """The fake servos, a controller manager that drives them, and its controllers."""
 
-from pathlib import Path
-
 from launch_py import (
     DeclareLaunchArgument,
     LaunchDescription,
@@ -16,7 +14,9 @@ from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitut
 
 def describe(model: str, device: str) -> str:
     """Return the URDF with the servos' port in it."""
-    return Path(model).read_text().replace("/tmp/servo_arm", device)
+    from arm_description import expand_xacro
+
+    return expand_xacro(model, {"device": device})
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -45,7 +45,9 @@ def generate_launch_description() -> LaunchDescription:
             ),
             SetLaunchConfiguration(
                 "robot_description",
-                Call(describe, PathJoinSubstitution([share, "urdf", "servo_arm.urdf"]), device),
+                Call(
+                    describe, PathJoinSubstitution([share, "urdf", "servo_arm.urdf.xacro"]), device
+                ),
             ),
             servos,
             Node(
