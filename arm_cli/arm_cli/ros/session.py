@@ -101,11 +101,6 @@ class Session:
         """
         self.wait_until(lambda: False, timeout_s=duration_s)
 
-    def spin_forever(self) -> None:
-        """Spin until a signal comes, which raises a StoppedError."""
-        while True:
-            self.spin_once(0.1)
-
     def result(self, future: Future, timeout_s: float | None = None) -> Any:
         """Return a future's result, None where it has none within the time-out.
 
