@@ -1,5 +1,9 @@
 """Any robot in any world: the simulation with its controllers, and the state publisher."""
 
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
 from launch_py import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
@@ -32,7 +36,11 @@ ROBOT_ARGUMENTS = {
         "controllers to start with the simulation, with commas; auto starts those whose joints "
         "are free, in the file's order",
     ),
-    "package_path": ("", "folders for package://, besides the model's own package, with colons"),
+    "package_path": (
+        "",
+        "folders for package:// and $(find ...), besides the model's own package and its "
+        "neighbours, with colons",
+    ),
     "namespace": ("", "of all nodes of the robot"),
     "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
     "pose": ("", 'of the root in the world, in m and rad: "[x, y, z, roll, pitch, yaw]"'),
@@ -114,6 +122,7 @@ def simulate(context: LaunchContext) -> list:
     place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
     return [
         *(LogInfo(msg=remark) for remark in setup.remarks),
+        files_findable(setup.package_path),
         simulation({**setup.parameters(), **place}, [setup.controllers], words["namespace"]),
         state_publisher(setup.description, words["namespace"]),
     ]
@@ -136,8 +145,14 @@ def simulate_several(path: str) -> list:
         if robot.pose:
             settings[name]["pose"] = list(robot.pose)
         others += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
+        others.append(files_findable(setup.package_path))
         others.append(state_publisher(setup.description, name))
     return [simulation({"robots": list(settings), **settings}, controllers), *others]
+
+
+def files_findable(folders: Iterable[Path]) -> AppendEnvironmentVariable:
+    """Return what lets the page, too, find the meshes of a robot that is not installed."""
+    return AppendEnvironmentVariable(MODEL_PATH, os.pathsep.join(map(str, folders)))
 
 
 def simulation(settings: dict, controllers: list, namespace: str = "") -> Node:
