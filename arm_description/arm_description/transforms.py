@@ -5,12 +5,15 @@ Rx(roll). Quaternions are (x, y, z, w), as in geometry_msgs. Angles in rad, leng
 """
 
 from collections.abc import Sequence
-from math import cos, sin
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+UPRIGHT = 1e-9
+"""Cosine of a pitch at which x points along the fixed z, and roll and yaw turn about one axis."""
 
 
 def rotation_from_rpy(rpy: Sequence[float]) -> Array:
@@ -24,6 +27,19 @@ def rotation_from_rpy(rpy: Sequence[float]) -> Array:
             [-sp, cp * sr, cp * cr],
         ]
     )
+
+
+def rpy_from_rotation(rotation: Array) -> tuple[float, float, float]:
+    """Return roll, pitch, yaw of a (3, 3) rotation; roll is 0 where only its sum with yaw counts.
+
+    The pitch is at most a quarter turn to both sides.
+    """
+    (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rotation.tolist()
+    level = hypot(r00, r10)
+    pitch = atan2(-r20, level)
+    if level < UPRIGHT:
+        return 0.0, pitch, atan2(-r01, r11)
+    return atan2(r21, r22), pitch, atan2(r10, r00)
 
 
 def rotation_about(axis: Sequence[float], angle: float) -> Array:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from launch_py import (
@@ -131,6 +132,7 @@ def simulate(context: LaunchContext) -> list:
 def simulate_several(path: str) -> list:
     """Return the nodes of the robots that a file names, in one world."""
     from arm_gazebo.controllers_file import controllers_below
+    from arm_gazebo.placed_description import placed
     from arm_gazebo.robot_setup import set_up_robot
     from arm_gazebo.robots_file import read_robots_file
 
@@ -141,9 +143,12 @@ def simulate_several(path: str) -> list:
             robot.model, robot.model_args, robot.controllers, robot.spawn, robot.package_path
         )
         controllers.append(controllers_below(name, setup.controllers))
-        settings[name] = {**setup.parameters(), "base": robot.base}
-        if robot.pose:
+        settings[name] = {"base": robot.base}
+        if robot.base == "fixed":
+            setup = replace(setup, description=placed(setup.description, robot.pose))
+        elif robot.pose:
             settings[name]["pose"] = list(robot.pose)
+        settings[name] |= setup.parameters()
         others += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
         others.append(files_findable(setup.package_path))
         others.append(state_publisher(setup.description, name))

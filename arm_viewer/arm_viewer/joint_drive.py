@@ -1,4 +1,4 @@
-"""By which topic the page can move a joint, as the controllers are now."""
+"""By which topic or action the page can move a joint, as the controllers are now."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,11 +10,13 @@ POSITION = "/position"
 
 
 class DriveKind(Enum):
-    """What a controller takes; the value is its topic below the controller's name."""
+    """What a controller takes: a name below the controller's own, and its type."""
 
-    POSITIONS = "commands"
-    POSITION = "command"
-    TRAJECTORY = "joint_trajectory"
+    POSITIONS = "commands", "std_msgs/msg/Float64MultiArray"
+    POSITION = "command", "std_msgs/msg/Float64"
+    TRAJECTORY = "joint_trajectory", "trajectory_msgs/msg/JointTrajectory"
+    GRIPPER = "gripper_cmd", "control_msgs/action/GripperCommand"
+    PARALLEL_GRIPPER = "gripper_cmd", "control_msgs/action/ParallelGripperCommand"
 
 
 KINDS = {
@@ -22,8 +24,11 @@ KINDS = {
     "ForwardCommandController": DriveKind.POSITIONS,
     "JointPositionController": DriveKind.POSITION,
     "JointTrajectoryController": DriveKind.TRAJECTORY,
+    "GripperActionController": DriveKind.GRIPPER,
 }
 """By the last word of a controller's type."""
+PARALLEL_GRIPPER_TYPE = "parallel_gripper_action_controller/GripperActionController"
+"""Has the last word of others, but takes other goals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +37,13 @@ class JointDrive:
 
     Attributes:
         controller: its name.
-        topic: absolute name of where it takes them.
+        name: absolute name of the topic or action where it takes them.
         kind: in which message.
         joints: in the message's order.
     """
 
     controller: str
-    topic: str
+    name: str
     kind: DriveKind
     joints: tuple[str, ...]
 
@@ -46,21 +51,32 @@ class JointDrive:
 def joint_drives(controllers: Iterable[Controller], namespace: str) -> tuple[JointDrive, ...]:
     """Return the drives of the robot in a namespace; each joint has one at most.
 
-    A controller claims a joint's position command for itself, so no two active ones share it.
+    A controller claims a joint's command for itself, so no two active ones share it.
     """
     drives = []
     for controller in controllers:
-        kind = KINDS.get(controller.type.rpartition("/")[2])
-        claimed = tuple(c.removesuffix(POSITION) for c in controller.claimed)
-        # One that commands velocities or efforts too would want more than a slider tells.
-        if (
-            kind is not None
-            and controller.namespace == namespace
-            and controller.state == "active"
-            and claimed
-            and all(c.endswith(POSITION) for c in controller.claimed)
-        ):
-            joints = controller.joints if set(controller.joints) == set(claimed) else claimed
-            topic = f"{namespace}/{controller.name}/{kind.value}"
-            drives.append(JointDrive(controller.name, topic, kind, joints))
+        kind = _kind(controller)
+        if kind is None or controller.namespace != namespace or controller.state != "active":
+            continue
+        joints = _joints(controller, kind)
+        if joints:
+            name = f"{namespace}/{controller.name}/{kind.value[0]}"
+            drives.append(JointDrive(controller.name, name, kind, joints))
     return tuple(drives)
+
+
+def _kind(controller: Controller) -> DriveKind | None:
+    if controller.type == PARALLEL_GRIPPER_TYPE:
+        return DriveKind.PARALLEL_GRIPPER
+    return KINDS.get(controller.type.rpartition("/")[2])
+
+
+def _joints(controller: Controller, kind: DriveKind) -> tuple[str, ...]:
+    """Return the joints whose positions a controller takes, none where it wants more than that."""
+    if kind in (DriveKind.GRIPPER, DriveKind.PARALLEL_GRIPPER):
+        # Its joint by position or effort first, then the interfaces that limit it.
+        return tuple(name.rpartition("/")[0] for name in controller.claimed[:1])
+    if not all(name.endswith(POSITION) for name in controller.claimed):
+        return ()
+    claimed = tuple(name.removesuffix(POSITION) for name in controller.claimed)
+    return controller.joints if set(controller.joints) == set(claimed) else claimed

@@ -88,4 +88,7 @@ def _row(
 ) -> NDArray[np.float64]:
     read = [[getattr(r, q.value) for r in readings.values()] for q in _QUANTITIES]
     told = [[commands.get(f"{j}/{q.value}", math.nan) for j in readings] for q in _QUANTITIES]
-    return np.array([read, told])
+    row = np.array([read, told])
+    # One infinity, and the browser's chart has no scale.
+    row[np.isinf(row)] = math.nan
+    return row

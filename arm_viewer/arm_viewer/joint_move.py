@@ -35,7 +35,8 @@ def plan_moves(snapshot: Snapshot, request: MoveJoints) -> tuple[JointMove, ...]
     where they are. A controller one of whose joints is not known gets nothing.
     """
     readings = _positions(snapshot, request.namespace)
-    staying = {joint: _staying(snapshot, joint, at) for joint, at in readings.items()}
+    told = snapshot.commands.get(request.namespace, {})
+    staying = {joint: _staying(told, joint, at) for joint, at in readings.items()}
     robot = _robot(snapshot, request.namespace)
     moves = []
     for drive in joint_drives(snapshot.controllers, request.namespace):
@@ -53,8 +54,8 @@ def _positions(snapshot: Snapshot, namespace: str) -> dict[str, float]:
     return {name: r.position for name, r in joints.items() if math.isfinite(r.position)}
 
 
-def _staying(snapshot: Snapshot, joint: str, position: float) -> float:
-    told = snapshot.commands.get(f"{joint}/position", math.nan)
+def _staying(commands: Mapping[str, float], joint: str, position: float) -> float:
+    told = commands.get(f"{joint}/position", math.nan)
     return told if abs(told - position) < NEAR else position
 
 

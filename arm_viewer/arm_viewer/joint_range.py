@@ -27,13 +27,19 @@ class JointRange:
     @property
     def step(self) -> float:
         """The power of ten that makes some thousand steps of the range."""
-        return 10.0 ** math.floor(math.log10((self.upper - self.lower) / STEPS))
+        return 10.0**-self._digits
 
     def nearest(self, position: float) -> float:
         """Return the position within the limits, and of whole steps, that is nearest."""
-        whole = round(position / self.step) * self.step
+        # To digits, not to multiples of the step: those would be shown as 0.7000000000000001.
+        whole = round(position, self._digits)
         # Adding 0.0 makes 0.0 of -0.0, which would be shown with its sign.
         return min(max(whole, self.lower), self.upper) + 0.0
+
+    @property
+    def _digits(self) -> int:
+        """After the point, of a whole step; negative where steps are tens or more."""
+        return -math.floor(math.log10((self.upper - self.lower) / STEPS))
 
 
 def joint_ranges(joints: Iterable[Joint]) -> tuple[JointRange, ...]:

@@ -33,6 +33,19 @@ class SwitchControllers:
 
 
 @dataclass(frozen=True, slots=True)
+class Configure:
+    """Configure a controller that is loaded and no more.
+
+    Attributes:
+        manager: absolute name of its manager's node.
+        controller: its name.
+    """
+
+    manager: str
+    controller: str
+
+
+@dataclass(frozen=True, slots=True)
 class MeasureRates:
     """Measure the rates of all topics from now on, or no more."""
 
@@ -46,6 +59,6 @@ class ShowPictures:
     topics: frozenset[str]
 
 
-Request = ShowPictures | MoveJoints | SwitchControllers | MeasureRates
+Request = ShowPictures | MoveJoints | SwitchControllers | Configure | MeasureRates
 Send = Callable[[Request], None]
 """Hands a request to the ROS thread; never blocks, may be called from any thread."""

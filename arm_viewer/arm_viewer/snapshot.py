@@ -190,8 +190,10 @@ class Snapshot:
     controllers: tuple[Controller, ...] = ()
     refusal: str = ""
     """Why the last switch of controllers was refused; empty where it was not."""
-    commands: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-    """What active controllers were told last, by command interface: "j0/position"."""
+    commands: Mapping[str, Mapping[str, float]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+    """What active controllers were told last, by namespace and command interface "j0/position"."""
     time: SimulationTime | None = None
     """None where nobody publishes /clock."""
     topics: tuple[Topic, ...] = ()

@@ -9,6 +9,7 @@ from arm_description.transforms import (
     quaternion_product,
     rotation_about,
     rotation_from_rpy,
+    rpy_from_rotation,
     transform,
 )
 
@@ -52,6 +53,18 @@ def test_a_product_turns_by_the_second_then_by_the_first(first, second):
 
 def test_a_quarter_turn_about_z_takes_x_to_y():
     assert np.allclose(rotation_about((0.0, 0.0, 1.0), np.pi / 2) @ X, Y)
+
+
+@settings(deadline=None)
+@given(RPY)
+def test_roll_pitch_yaw_are_found_again(rpy):
+    rotation = rotation_from_rpy(rpy)
+    assert np.allclose(rotation_from_rpy(rpy_from_rotation(rotation)), rotation, atol=1e-7)
+
+
+def test_roll_pitch_yaw_of_what_points_upwards():
+    rotation = rotation_from_rpy((0.3, -np.pi / 2, 0.4))
+    assert np.allclose(rotation_from_rpy(rpy_from_rotation(rotation)), rotation, atol=1e-7)
 
 
 def test_a_transform_turns_then_shifts():

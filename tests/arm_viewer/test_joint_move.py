@@ -40,13 +40,13 @@ def snapshot(*controllers, namespace="", at=(0.1, 0.2), commands=()):
             {f"{namespace}/joint_states": JointStates(MappingProxyType(readings), 0.0)}
         ),
         controllers=tuple(controllers),
-        commands=MappingProxyType(dict(commands)),
+        commands=MappingProxyType({namespace: dict(commands), "/other": {"j1/position": 0.19}}),
     )
 
 
 def test_positions_are_in_the_order_of_the_controller_s_parameter():
     (move,) = plan_moves(snapshot(controller()), MoveJoints("", {"j0": 1.0}))
-    assert move.drive.topic == "/arm/commands"
+    assert move.drive.name == "/arm/commands"
     assert move.drive.joints == ("j1", "j0")
     assert move.positions == (0.2, 1.0)
 
@@ -71,7 +71,7 @@ def test_a_joint_that_is_elsewhere_than_it_was_told_stays_where_it_is():
 def test_a_trajectory_takes_the_time_that_the_slowest_joint_needs():
     (move,) = plan_moves(snapshot(controller(TRAJECTORIES)), MoveJoints("", {"j0": 1.1, "j1": 1.2}))
     assert move.drive.kind is DriveKind.TRAJECTORY
-    assert move.drive.topic == "/arm/joint_trajectory"
+    assert move.drive.name == "/arm/joint_trajectory"
     assert move.duration_s == pytest.approx(1.0 / (SPEED_USED * 0.5))
 
 
@@ -79,7 +79,7 @@ def test_each_robot_has_its_own_namespace():
     here, there = controller(namespace="/left"), controller(namespace="/right")
     shown = snapshot(here, there, namespace="/left")
     (move,) = plan_moves(shown, MoveJoints("/left", {"j0": 1.0}))
-    assert move.drive.topic == "/left/arm/commands"
+    assert move.drive.name == "/left/arm/commands"
 
 
 @pytest.mark.parametrize(
@@ -100,6 +100,21 @@ def test_a_controller_of_other_joints_is_left_alone():
     assert plan_moves(snapshot(controller()), MoveJoints("", {"j7": 1.0})) == ()
 
 
+@pytest.mark.parametrize(
+    ("kind", "claimed", "drive"),
+    [
+        ("position_controllers", ("j1/position", "j1/max_effort"), DriveKind.GRIPPER),
+        ("effort_controllers", ("j1/effort",), DriveKind.GRIPPER),
+        ("parallel_gripper_action_controller", ("j1/position",), DriveKind.PARALLEL_GRIPPER),
+    ],
+)
+def test_a_gripper_takes_the_position_of_its_joint_as_a_goal(kind, claimed, drive):
+    gripper = controller(f"{kind}/GripperActionController", claimed=claimed, joints=())
+    (move,) = plan_moves(snapshot(gripper), MoveJoints("", {"j1": 0.5}))
+    assert (move.drive.kind, move.drive.name) == (drive, "/arm/gripper_cmd")
+    assert (move.drive.joints, move.positions) == (("j1",), (0.5,))
+
+
 def test_single_joints_of_ros_1():
     one = controller(
         "position_controllers/JointPositionController",
@@ -108,4 +123,4 @@ def test_single_joints_of_ros_1():
         joints=(),
     )
     (move,) = plan_moves(snapshot(one), MoveJoints("", {"j0": 1.0}))
-    assert (move.drive.topic, move.positions) == ("/j0p_controller/command", (1.0,))
+    assert (move.drive.name, move.positions) == ("/j0p_controller/command", (1.0,))

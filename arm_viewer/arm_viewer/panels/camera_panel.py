@@ -6,6 +6,7 @@ import numpy as np
 from viser import GuiApi, GuiImageHandle
 
 from arm_viewer.errors import PictureError
+from arm_viewer.panels.note import PROBLEM_COLOUR, note
 from arm_viewer.picture_colours import colours
 from arm_viewer.requests import Send, ShowPictures
 from arm_viewer.snapshot import Picture, Snapshot
@@ -29,7 +30,7 @@ class CameraPanel:
         self._gui = gui
         self._place = gui.add_folder(None)
         with self._place:
-            self._hint = gui.add_markdown(NO_CAMERA)
+            self._hint = gui.add_html(note(NO_CAMERA))
 
     def update(self, snapshot: Snapshot) -> None:
         """Show the newest images."""
@@ -55,7 +56,7 @@ class _Camera:
         with self._folder:
             self._switch = gui.add_checkbox("Show", shown)
             self._image: GuiImageHandle = gui.add_image(NOTHING, format="jpeg", visible=False)
-            self._problem = gui.add_markdown("", visible=False)
+            self._problem = gui.add_html("", visible=False)
         self._picture: Picture | None = None
 
     @property
@@ -77,7 +78,7 @@ class _Camera:
         try:
             self._image.image = colours(picture)
         except PictureError as error:
-            self._problem.content = f"{error}"
+            self._problem.content = note(str(error), PROBLEM_COLOUR)
             self._problem.visible, self._image.visible = True, False
         else:
             self._problem.visible, self._image.visible = False, True

@@ -1,14 +1,15 @@
-"""The controllers of every manager, with a button each to activate or deactivate it."""
+"""The controllers of every manager, with a button each that brings it on, or to rest."""
 
 from html import escape
 
 from viser import GuiApi
 
-from arm_viewer.requests import Send, SwitchControllers
+from arm_viewer.panels.note import PROBLEM_COLOUR, note
+from arm_viewer.requests import Configure, Request, Send, SwitchControllers
 from arm_viewer.snapshot import Controller, Snapshot
 
-BUTTONS = {"active": "Deactivate", "inactive": "Activate"}
-"""By state; in another one there is nothing to switch."""
+BUTTONS = {"active": "Deactivate", "inactive": "Activate", "unconfigured": "Configure"}
+"""By state; one that is finalized can be unloaded and no more."""
 COLOURS = {"active": "#69db7c", "inactive": "#ffa94d"}
 OTHER_COLOUR = "#adb5bd"
 
@@ -26,7 +27,7 @@ class ControllerPanel:
         self._gui = gui
         self._place = gui.add_folder("Controllers")
         with self._place:
-            self._nobody = gui.add_html(_note("No controller manager is there."))
+            self._nobody = gui.add_html(note("No controller manager is there."))
             self._refusal = gui.add_html("", visible=False)
         self._shown_refusal = ""
 
@@ -49,7 +50,7 @@ class ControllerPanel:
     def _show_refusal(self, refusal: str) -> None:
         if refusal != self._shown_refusal:
             self._shown_refusal = refusal
-            self._refusal.content = f'<div style="color:#ff8787">{_note(refusal)}</div>'
+            self._refusal.content = note(refusal, PROBLEM_COLOUR)
             self._refusal.visible = bool(refusal)
 
 
@@ -84,7 +85,7 @@ class _Row:
         self._shown: Controller | None = None
         self._text = gui.add_html("")
         self._button = gui.add_button("", hint=f"{controller.name} of {controller.manager}")
-        self._button.on_click(lambda _: self._switch())
+        self._button.on_click(lambda _: self._change())
 
     def update(self, controller: Controller) -> None:
         if controller == self._shown:
@@ -99,12 +100,19 @@ class _Row:
         self._text.remove()
         self._button.remove()
 
-    def _switch(self) -> None:
-        controller = self._shown
-        if controller is not None and controller.state == "active":
-            self._send(SwitchControllers(controller.manager, deactivate=(controller.name,)))
-        elif controller is not None:
-            self._send(SwitchControllers(controller.manager, activate=(controller.name,)))
+    def _change(self) -> None:
+        if self._shown is not None and self._shown.state in BUTTONS:
+            self._send(_next_step(self._shown))
+
+
+def _next_step(controller: Controller) -> Request:
+    """Return what the button asks for."""
+    manager, name = controller.manager, controller.name
+    if controller.state == "active":
+        return SwitchControllers(manager, deactivate=(name,))
+    if controller.state == "inactive":
+        return SwitchControllers(manager, activate=(name,))
+    return Configure(manager, name)
 
 
 def _describe(controller: Controller) -> str:
@@ -117,7 +125,3 @@ def _describe(controller: Controller) -> str:
         f'<span style="color:{colour};float:right">{escape(controller.state)}</span><br/>'
         f'<span style="opacity:0.65">{escape(controller.type)}{claimed}</span></div>'
     )
-
-
-def _note(text: str) -> str:
-    return f'<div style="font-size:0.8rem;padding:0.25em 0.75em">{escape(text)}</div>'

@@ -3,12 +3,15 @@
 import random
 import time
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from viser import GuiApi, GuiEvent
 
 from arm_viewer.joint_drive import joint_drives
 from arm_viewer.joint_follower import JointFollower
 from arm_viewer.joint_range import JointRange, joint_ranges
+from arm_viewer.panels.follower_table import FollowerTable
+from arm_viewer.panels.note import note
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
 
@@ -46,13 +49,15 @@ class _RobotSliders:
     def __init__(self, gui: GuiApi, description: Description, send: Send) -> None:
         self.description = description
         self._send = send
-        ranges = () if description.robot is None else joint_ranges(description.robot.joints)
+        joints = () if description.robot is None else description.robot.joints
+        ranges = joint_ranges(joints)
         title = f"Joints of {description.namespace}" if description.namespace else "Joints"
         self._folder = gui.add_folder(title, visible=bool(ranges))
         with self._folder:
             self._sliders = [_JointSlider(gui, joint, self._move) for joint in ranges]
+            self._followers = FollowerTable(gui, joints)
             self._buttons = gui.add_button_group("All", ("Center", "Randomize"), visible=False)
-            self._hint = gui.add_markdown(NO_DRIVE, visible=False)
+            self._hint = gui.add_html(note(NO_DRIVE), visible=False)
         self._buttons.on_click(self._move_all)
 
     def update(self, snapshot: Snapshot) -> None:
@@ -64,6 +69,7 @@ class _RobotSliders:
         readings: Mapping[str, JointReading] = {} if states is None else states.joints
         for slider in self._sliders:
             slider.update(readings, displays or slider.range.name in driven)
+        self._followers.update(readings)
         self._buttons.visible = displays
         self._hint.visible = not (displays or driven)
 
@@ -75,7 +81,7 @@ class _RobotSliders:
         held = {slider.range.name: slider.value for slider in self._sliders if slider.is_held()}
         self._send(MoveJoints(self.description.namespace, held))
 
-    def _move_all(self, event: GuiEvent) -> None:
+    def _move_all(self, event: GuiEvent[Any]) -> None:
         ranges = [slider.range for slider in self._sliders]
         if event.target.value == "Center":
             positions = {joint.name: joint.centre for joint in ranges}
@@ -120,7 +126,7 @@ class _JointSlider:
         if shown is not None:
             self._handle.value = self.range.nearest(shown)
 
-    def _moved(self, event: GuiEvent) -> None:
+    def _moved(self, event: GuiEvent[Any]) -> None:
         # Without a client it was `update`, which only follows: it must not move the joint.
         if event.client_id is not None:
             self._follower.hold(time.monotonic())

@@ -46,7 +46,8 @@ class PlotPanel:
         states = snapshot.joint_states.get(self._topic.value)
         if states is not None and states is not self._seen:
             self._seen = states
-            self._history.add(states.received_s, states.joints, snapshot.commands)
+            told = snapshot.commands.get(self._topic.value.removesuffix(DEFAULT_TOPIC), {})
+            self._history.add(states.received_s, states.joints, told)
         if snapshot.made_s - self._drawn_s >= PERIOD_S and not self._still.value:
             self._drawn_s = snapshot.made_s
             for chart in self._charts:
@@ -71,6 +72,8 @@ class _Chart:
             title=f"{quantity.value} ({UNITS[quantity]})",
             scales={"x": uplot.Scale(time=False, auto=False, range=(-WINDOW_S, 0.0))},
             axes=(_axis(), _axis()),
+            # Live, it would say "--" of every line until the mouse is over the chart.
+            legend=uplot.Legend(live=False),
             height=HEIGHT,
         )
 

@@ -7,6 +7,7 @@ from viser import GuiApi, SceneApi
 
 from arm_description.names import listing
 from arm_description.robot import Robot
+from arm_viewer.panels.note import PROBLEM_COLOUR, note
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.markers import Markers
 from arm_viewer.scene.node_name import node_name
@@ -50,7 +51,8 @@ class RobotPanel:
             self._axes = gui.add_checkbox("Frames", False, hint="axes: x red, y green, z blue")
             self._names = gui.add_checkbox("Frame names", False)
             self._world = gui.add_checkbox("World", True, hint="what stands around the robots")
-        self._problem = gui.add_markdown("", visible=False)
+        self._shown_problem = ""
+        self._problem = gui.add_html("", visible=False)
 
     def update(self, snapshot: Snapshot) -> None:
         """Show what the switches say, where the transforms say."""
@@ -81,8 +83,9 @@ class RobotPanel:
             self._robots[topic] = _Shown(description, places, model)
 
     def _say(self, problem: str) -> None:
-        if self._problem.content != problem:
-            self._problem.content = problem
+        if self._shown_problem != problem:
+            self._shown_problem = problem
+            self._problem.content = note(problem, PROBLEM_COLOUR)
             self._problem.visible = bool(problem)
 
 
@@ -108,4 +111,4 @@ def _problem(snapshot: Snapshot, robots: Iterable[_Shown], frames: Container[str
         for shown in robots
         if (missing := [frame for frame in shown.places.values() if frame not in frames])
     ]
-    return "\n\n".join(filter(None, lines))
+    return "\n".join(filter(None, lines))

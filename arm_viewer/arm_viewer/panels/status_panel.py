@@ -15,7 +15,7 @@ BANNER = (
     '<div role="alert" style="margin: 0.6em 0.8em; padding: 0.5em 0.8em; border-radius: 4px; '
     'background: #5c3a10; color: #ffd8a8; font-size: 0.85em">{text}</div>'
 )
-LONGEST_WAIT_S = 20.0
+LONGEST_WAIT_S = 60.0
 PICTURE_NAME = "arm.png"
 
 
@@ -42,13 +42,18 @@ def _give_picture(event: GuiEvent[Any]) -> None:
     client = event.client
     if client is None:
         return
-    drawn = client.get_render(
-        height=client.camera.image_height,
-        width=client.camera.image_width,
-        transport_format="png",
-        timeout=LONGEST_WAIT_S,
-    )
+    try:
+        drawn = client.get_render(
+            height=client.camera.image_height,
+            width=client.camera.image_width,
+            transport_format="png",
+            timeout=LONGEST_WAIT_S,
+        )
+    except (RuntimeError, TimeoutError):
+        # viser's words for a browser that has gone, and for one that is too slow.
+        client.add_notification("No screenshot", f"The browser did not draw in {LONGEST_WAIT_S} s.")
+        return
     covered = drawn[:, :, 3:] / 255.0
     picture = drawn[:, :, :3] * covered + np.array(BACKGROUND) * (1.0 - covered)
     _, png = cv2.imencode(".png", picture[:, :, ::-1].astype(np.uint8))
-    client.send_file_download(PICTURE_NAME, png.tobytes())
+    client.send_file_download(PICTURE_NAME, png.tobytes(), save_immediately=True)

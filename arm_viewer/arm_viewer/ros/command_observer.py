@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 from control_msgs.msg import JointTrajectoryControllerState
 from rclpy.node import Node
@@ -19,7 +20,10 @@ _TRAJECTORY_TYPE = "control_msgs/msg/JointTrajectoryControllerState"
 
 
 class CommandObserver:
-    """Keeps the newest command of every interface that an active controller claims."""
+    """Keeps the newest command of every interface that an active controller claims.
+
+    By namespace: robots of one kind have joints of the same names.
+    """
 
     def __init__(
         self,
@@ -33,15 +37,12 @@ class CommandObserver:
         self._controllers = controllers
         self._arrays: dict[str, TopicReader[Float64MultiArray]] = {}
         self._trajectories: dict[str, TopicReader[JointTrajectoryControllerState]] = {}
-        self.commands: Mapping[str, float] = MappingProxyType({})
+        self.commands: Mapping[str, Mapping[str, float]] = MappingProxyType({})
 
     def discover(self, topics: TopicTypes) -> None:
         """Follow the topics of active controllers; forget what others were told."""
         active = [c for c in self._controllers() if c.state == "active"]
-        claimed = {interface for controller in active for interface in controller.claimed}
-        if not claimed.issuperset(self.commands):
-            kept = {name: value for name, value in self.commands.items() if name in claimed}
-            self.commands = MappingProxyType(kept)
+        self._forget_all_but({(c.namespace, name) for c in active for name in c.claimed})
         prefixes = [_prefix(controller) for controller in active]
         _follow(
             self._arrays,
@@ -57,12 +58,19 @@ class CommandObserver:
 
     def collect(self, now_s: float) -> None:
         """Take what has arrived."""
-        new: dict[str, float] = {}
         for controller in self._controllers():
-            new.update(self._told_by_array(controller))
-            new.update(self._told_by_trajectory(controller))
-        if new:
-            self.commands = MappingProxyType({**self.commands, **new})
+            new = {**self._told_by_array(controller), **self._told_by_trajectory(controller)}
+            if new:
+                namespace = controller.namespace
+                told = MappingProxyType({**self.commands.get(namespace, {}), **new})
+                self.commands = MappingProxyType({**self.commands, namespace: told})
+
+    def _forget_all_but(self, claimed: set[tuple[str, str]]) -> None:
+        kept = {
+            namespace: {name: told[name] for name in told if (namespace, name) in claimed}
+            for namespace, told in self.commands.items()
+        }
+        self.commands = MappingProxyType(kept)
 
     def _told_by_array(self, controller: Controller) -> dict[str, float]:
         reader = self._arrays.get(f"{_prefix(controller)}/commands")
@@ -89,7 +97,7 @@ class CommandObserver:
             told.update(zip(names, values, strict=False))
         return {name: value for name, value in told.items() if name in controller.claimed}
 
-    def _reader(self, message_class: type, topic: str) -> TopicReader:
+    def _reader(self, message_class: type, topic: str) -> TopicReader[Any]:
         return TopicReader(self._node, self._polled, message_class, topic, _QOS)
 
 
@@ -98,7 +106,9 @@ def _prefix(controller: Controller) -> str:
 
 
 def _follow(
-    readers: dict[str, TopicReader], wanted: set[str], make: Callable[[str], TopicReader]
+    readers: dict[str, TopicReader[Any]],
+    wanted: set[str],
+    make: Callable[[str], TopicReader[Any]],
 ) -> None:
     for topic in readers.keys() - wanted:
         readers.pop(topic).close()

@@ -1,32 +1,22 @@
 """Moves joints by whatever controllers are active on them."""
 
 from collections.abc import Callable
-from typing import Any
 
-from builtin_interfaces.msg import Duration
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from std_msgs.msg import Float64, Float64MultiArray
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_viewer.joint_drive import DriveKind, joint_drives
-from arm_viewer.joint_move import JointMove, plan_moves
+from arm_viewer.joint_drive import DriveKind, JointDrive, joint_drives
+from arm_viewer.joint_move import plan_moves
 from arm_viewer.requests import MoveJoints
+from arm_viewer.ros.command_topic import CommandTopic
+from arm_viewer.ros.gripper_goals import ACTIONS, GripperGoals
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.snapshot import Snapshot
 
-_MESSAGES = {
-    DriveKind.POSITIONS: Float64MultiArray,
-    DriveKind.POSITION: Float64,
-    DriveKind.TRAJECTORY: JointTrajectory,
-}
-_QUEUE = 10
-
 
 class JointCommander:
-    """Publishes to the active controllers; used by the executor's thread alone.
+    """Sends to the active controllers; used by the executor's thread alone.
 
-    The publishers are made when a controller is seen to be active, before the first movement:
+    The ways there are made when a controller is seen to be active, before the first movement:
     what is sent in the moment of the match may be lost.
     """
 
@@ -34,21 +24,21 @@ class JointCommander:
         """Move what that snapshot shows."""
         self._node = node
         self._latest = latest
-        self._publishers: dict[tuple[str, DriveKind], Publisher] = {}
+        self._ways: dict[tuple[str, DriveKind], CommandTopic | GripperGoals] = {}
 
     def discover(self, topics: TopicTypes) -> None:
         """Follow the controllers that are active."""
         snapshot = self._latest()
+        # The order of a controller's joints may be heard of later: no reason to begin anew.
         drives = {
-            (drive.topic, drive.kind)
+            (drive.name, drive.kind): drive
             for namespace in {d.namespace for d in snapshot.descriptions.values()}
             for drive in joint_drives(snapshot.controllers, namespace)
         }
-        for key in self._publishers.keys() - drives:
-            self._node.destroy_publisher(self._publishers.pop(key))
-        for topic, kind in drives - self._publishers.keys():
-            publisher = self._node.create_publisher(_MESSAGES[kind], topic, _QUEUE)
-            self._publishers[topic, kind] = publisher
+        for key in self._ways.keys() - drives.keys():
+            self._ways.pop(key).close()
+        for key in drives.keys() - self._ways.keys():
+            self._ways[key] = _way(self._node, drives[key])
 
     def collect(self, now_s: float) -> None:
         """Take nothing: this one only sends."""
@@ -56,22 +46,10 @@ class JointCommander:
     def move(self, request: MoveJoints) -> None:
         """Send the positions to the controllers of their joints."""
         for move in plan_moves(self._latest(), request):
-            publisher = self._publishers.get((move.drive.topic, move.drive.kind))
-            if publisher is not None:
-                publisher.publish(_message(move))
+            way = self._ways.get((move.drive.name, move.drive.kind))
+            if way is not None:
+                way.send(move)
 
 
-def _message(move: JointMove) -> Any:
-    positions = list(move.positions)
-    match move.drive.kind:
-        case DriveKind.POSITIONS:
-            return Float64MultiArray(data=positions)
-        case DriveKind.POSITION:
-            return Float64(data=positions[0])
-        case DriveKind.TRAJECTORY:
-            seconds = int(move.duration_s)
-            nanoseconds = int((move.duration_s - seconds) * 1e9)
-            point = JointTrajectoryPoint(
-                positions=positions, time_from_start=Duration(sec=seconds, nanosec=nanoseconds)
-            )
-            return JointTrajectory(joint_names=list(move.drive.joints), points=[point])
+def _way(node: Node, drive: JointDrive) -> CommandTopic | GripperGoals:
+    return (GripperGoals if drive.kind in ACTIONS else CommandTopic)(node, drive)

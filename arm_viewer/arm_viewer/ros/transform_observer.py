@@ -53,9 +53,9 @@ def _read(message: TFMessage) -> dict[str, Transform]:
     for stamped in message.transforms:
         move, turn = stamped.transform.translation, stamped.transform.rotation
         position, rotation = (move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w)
-        # tf2 refuses the same: a frame in itself, what is no number, what is no rotation.
+        # tf2 refuses the same: no name, a frame in itself, what is no number, what is no rotation.
         if (
-            stamped.child_frame_id != stamped.header.frame_id
+            len({"", stamped.child_frame_id, stamped.header.frame_id}) == 3
             and all(map(math.isfinite, (*position, *rotation)))
             and abs(math.hypot(*rotation) - 1.0) < 0.01
         ):

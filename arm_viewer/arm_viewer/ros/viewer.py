@@ -9,16 +9,23 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.requests import MeasureRates, MoveJoints, Request, ShowPictures, SwitchControllers
+from arm_viewer.requests import (
+    Configure,
+    MeasureRates,
+    MoveJoints,
+    Request,
+    ShowPictures,
+    SwitchControllers,
+)
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver
-from arm_viewer.ros.controller_switch import ControllerSwitch
 from arm_viewer.ros.description_observer import DescriptionObserver
 from arm_viewer.ros.image_observer import ImageObserver
 from arm_viewer.ros.joint_commander import JointCommander
 from arm_viewer.ros.joint_state_observer import JointStateObserver
 from arm_viewer.ros.joint_state_source import JointStateSource
+from arm_viewer.ros.manager_caller import ManagerCaller
 from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.node_observer import NodeObserver
 from arm_viewer.ros.observer import Observer
@@ -47,7 +54,7 @@ class Viewer(Node):
         self._images = ImageObserver(self, polled)
         self._markers = MarkerObserver(self, polled)
         self._controllers = ControllerObserver(self)
-        self._switch = ControllerSwitch(self, self._listed)
+        self._managers = ManagerCaller(self, self._listed)
         self._commands = CommandObserver(self, polled, self._listed)
         self._commander = JointCommander(self, self.latest)
         self._source = JointStateSource(self, self.latest) if displays else None
@@ -61,7 +68,7 @@ class Viewer(Node):
             self._images,
             self._markers,
             self._controllers,
-            self._switch,
+            self._managers,
             self._commands,
             self._commander,
             self._simulation_clock,
@@ -107,7 +114,7 @@ class Viewer(Node):
             markers=self._markers.markers,
             displayed=frozenset({self._source.namespace} if self._source else ()),
             controllers=self._controllers.controllers,
-            refusal=self._switch.refusal,
+            refusal=self._managers.refusal,
             commands=self._commands.commands,
             time=self._simulation_clock.time,
             topics=self._topics.topics,
@@ -127,8 +134,8 @@ class Viewer(Node):
                         self._source.move(request)
                 case ShowPictures():
                     self._images.serve(request)
-                case SwitchControllers():
-                    self._switch.serve(request)
+                case SwitchControllers() | Configure():
+                    self._managers.serve(request)
                 case MeasureRates():
                     self._topics.measure(request.wanted)
 

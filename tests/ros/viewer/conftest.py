@@ -18,7 +18,7 @@ TIMEOUT_S = 120.0
 VIEWPORT = {"width": 1280, "height": 800}
 
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
-collect_ignore = [] if BROWSER else ["test_page.py"]
+collect_ignore_glob = [] if BROWSER else ["test_*.py"]
 
 ARGUMENTS = ("--disable-gpu", "--no-sandbox")
 CAMERA_PIXELS = """() => {
@@ -74,7 +74,7 @@ class Visitor:
 
     def slider(self, label: str):
         """Return the handle of a slider."""
-        return self.page.locator(f"xpath=//label[text()='{label}']/following::*[@role='slider'][1]")
+        return self.page.locator(f"xpath=//label[.='{label}']/following::*[@role='slider'][1]")
 
     def slider_value(self, label: str) -> float:
         """Return what a slider shows."""
