@@ -2,15 +2,13 @@
 
 import argparse
 
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.listing import add_list_arguments, print_list
 from arm_cli.ros.connection import connect
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument("-t", "--show-types", action="store_true", help="with their types")
-    parser.add_argument("-c", "--count-actions", action="store_true", help="only their number")
-    add_json_argument(parser)
+    add_list_arguments(parser, "actions")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -21,10 +19,4 @@ def run(options: argparse.Namespace) -> None:
         graph = Graph(session)
         graph.settle()
         actions = graph.actions()
-    if options.json:
-        print_json([{"name": name, "types": types} for name, types in actions.items()])
-    elif options.count_actions:
-        print(len(actions))
-    else:
-        for name, types in actions.items():
-            print(f"{name} [{', '.join(types)}]" if options.show_types else name)
+    print_list(actions, options)

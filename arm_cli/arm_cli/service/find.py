@@ -3,20 +3,15 @@
 import argparse
 
 from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.listing import add_count_argument, add_hidden_argument, print_those_of
 from arm_cli.ros.connection import connect
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parser.add_argument("service_type", help="such as std_srvs/srv/Trigger")
-    parser.add_argument("-c", "--count-services", action="store_true", help="only their number")
-    parser.add_argument(
-        "-a",
-        "--include-hidden-services",
-        dest="hidden",
-        action="store_true",
-        help="hidden services, too",
-    )
+    add_count_argument(parser, "services")
+    add_hidden_argument(parser, "services")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -31,8 +26,5 @@ def run(options: argparse.Namespace) -> None:
 
         graph = Graph(session)
         graph.settle()
-        names = [name for name, types in graph.services(options.hidden).items() if wanted in types]
-    if options.count_services:
-        print(len(names))
-    else:
-        print(*names, sep="\n", end="\n" if names else "")
+        found = graph.services(options.hidden)
+    print_those_of(wanted, found, options)

@@ -3,6 +3,7 @@
 import argparse
 
 from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.listing import add_count_argument, add_hidden_argument, print_those_of
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with, message_names
 
@@ -12,14 +13,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete_with(
         parser.add_argument("topic_type", help="such as sensor_msgs/msg/Image"), message_names
     )
-    parser.add_argument("-c", "--count-topics", action="store_true", help="only their number")
-    parser.add_argument(
-        "-a",
-        "--include-hidden-topics",
-        dest="hidden",
-        action="store_true",
-        help="hidden topics, too",
-    )
+    add_count_argument(parser, "topics")
+    add_hidden_argument(parser, "topics")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -34,8 +29,5 @@ def run(options: argparse.Namespace) -> None:
 
         graph = Graph(session)
         graph.settle()
-        names = [name for name, types in graph.topics(options.hidden).items() if wanted in types]
-    if options.count_topics:
-        print(len(names))
-    else:
-        print(*names, sep="\n", end="\n" if names else "")
+        found = graph.topics(options.hidden)
+    print_those_of(wanted, found, options)

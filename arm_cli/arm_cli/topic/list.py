@@ -3,7 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.listing import add_hidden_argument, add_list_arguments, print_list
 from arm_cli.ros.connection import connect
 
 if TYPE_CHECKING:
@@ -12,20 +12,11 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument("-t", "--show-types", action="store_true", help="with their types")
-    parser.add_argument("-c", "--count-topics", action="store_true", help="only their number")
-    parser.add_argument(
-        "-a",
-        "--all",
-        "--include-hidden-topics",
-        dest="hidden",
-        action="store_true",
-        help="hidden topics, too",
-    )
+    add_list_arguments(parser, "topics")
+    add_hidden_argument(parser, "topics", "--all")
     parser.add_argument(
         "-v", "--verbose", action="store_true", help="who publishes and who subscribes, by number"
     )
-    add_json_argument(parser)
 
 
 def run(options: argparse.Namespace) -> None:
@@ -36,15 +27,10 @@ def run(options: argparse.Namespace) -> None:
         graph = Graph(session)
         graph.settle()
         topics = graph.topics(options.hidden)
-        if options.json:
-            print_json([{"name": name, "types": types} for name, types in topics.items()])
-        elif options.count_topics:
-            print(len(topics))
-        elif options.verbose:
+        if options.verbose and not (options.json or options.count):
             _print_verbose(graph, topics)
         else:
-            for name, types in topics.items():
-                print(f"{name} [{', '.join(types)}]" if options.show_types else name)
+            print_list(topics, options)
 
 
 def _print_verbose(graph: "Graph", topics: dict[str, list[str]]) -> None:
