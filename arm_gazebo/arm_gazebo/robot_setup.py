@@ -8,6 +8,7 @@ from pathlib import Path
 
 from arm_description.resources import folders_of, resolve_uri
 from arm_description.xacro_expansion import expand_xacro_file
+from arm_description.xml_document import parse_xml
 from arm_gazebo.controllers_file import Controllers, fill_in, startable_controllers
 from arm_gazebo.default_control import (
     COMMANDER,
@@ -86,6 +87,10 @@ def set_up_robot(
     else:
         content = default_parameters(commanded or ())
         remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
+        remarks += (
+            f"the description names some for Gazebo's plugin; to have them: controllers:={file}"
+            for file in _files_for_gazebo(description)
+        )
     return RobotSetup(
         description,
         content,
@@ -153,6 +158,13 @@ def _made_up(joints: tuple[str, ...]) -> str:
     names = [*DEFAULT_CONTROLLERS] if joints else [*DEFAULT_CONTROLLERS][:1]
     driven = f"; {COMMANDER} drives {', '.join(joints)}" if joints else ""
     return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} made up{driven}"
+
+
+def _files_for_gazebo(description: str) -> list[str]:
+    """Return the parameter files that a description hands to gz_ros2_control."""
+    named = parse_xml(description).iterfind("gazebo/plugin/parameters")
+    files = (str(element.text or "").strip() for element in named)
+    return [file for file in files if os.path.isfile(file)]
 
 
 def _spawned(

@@ -155,10 +155,11 @@ class _LinkReader:
     def _pose(self, part: SdfElement) -> Pose:
         return pose_of(self._frames.within(self._link, part))
 
-    def _inertial(self) -> Inertial | None:
+    def _inertial(self) -> Inertial:
         inertial = self._link.child("inertial")
         if inertial is None:
-            return None
+            # SDF's own, whatever the shape: 1 kg, and 1 kg m2 about every axis.
+            return Inertial(1.0, Pose(), (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
         moments = inertial.child("inertia")
         keys = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}
         ixx, ixy, ixz, iyy, iyz, izz = (

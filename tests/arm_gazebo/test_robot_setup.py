@@ -36,6 +36,19 @@ def test_hardware_and_controllers_are_made_up_and_said(bare):
     assert "position_controller drives j0, j1" in setup.remarks[1]
 
 
+def test_a_file_that_the_description_hands_to_gazebos_plugin_is_named(bare, tmp_path):
+    (tmp_path / "own.yaml").touch()
+    plugins = "".join(
+        f"<gazebo><plugin filename='x' name='y'><parameters>{tmp_path}/{name}</parameters>"
+        "</plugin></gazebo>"
+        for name in ("own.yaml", "none.yaml")
+    )
+    bare.write_text(bare.read_text().replace("</robot>", f"{plugins}</robot>"))
+    *_, remark = set_up_robot(str(bare)).remarks
+    assert remark.endswith(f"to have them: controllers:={tmp_path}/own.yaml")
+    assert "made up" in set_up_robot(str(bare)).remarks[-2]
+
+
 def test_made_up_controllers_take_the_joints_that_the_hardware_commands_by_position(
     tmp_path, parts
 ):

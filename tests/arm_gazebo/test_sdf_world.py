@@ -77,6 +77,14 @@ def test_free_model_stands_on_the_ground(world):
     assert data.body("red_cylinder").xpos == pytest.approx([0.22, 0.12, 0.175], abs=1e-3)
 
 
+def test_a_link_without_inertial_weighs_what_it_does_in_gazebo(world):
+    compiled, _, report = world(model("crate"))
+    crate = compiled.body("crate::link")
+    assert crate.mass[0] == 1.0
+    assert crate.inertia == pytest.approx([1.0, 1.0, 1.0])
+    assert report.warnings == ()
+
+
 def test_static_model_does_not_fall(world):
     compiled, data, _ = world(model("shelf", "1 2 3 0 0 1.5708", head=STATIC))
     assert compiled.nv == 0
