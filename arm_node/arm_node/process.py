@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
 
+SIGNAL_INTERVAL_S = 0.5
+"""A signal that another thread got, as after SIGSTOP and SIGCONT, does not wake the main thread."""
+
 EXIT_OK = 0
 EXIT_FAILED = 1
 EXIT_USAGE = 2
@@ -62,7 +65,11 @@ class NodeProcess:
 
     def wait(self, timeout_s: float | None = None) -> bool:
         """Block until the end is asked for; return whether it was, within the time-out."""
-        return self._stop.wait(timeout_s)
+        if timeout_s is not None:
+            return self._stop.wait(timeout_s)
+        while not self._stop.wait(SIGNAL_INTERVAL_S):
+            pass
+        return True
 
     def start_spinning(self) -> None:
         """Spin the executor in a thread of its own until `join_spinning`."""
