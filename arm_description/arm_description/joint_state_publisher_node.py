@@ -19,12 +19,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         from rclpy.utilities import remove_ros_args
 
         from arm_description.ros.joint_state_publisher import JointStatePublisher
-        from arm_description.ros.node_errors import user_mistakes_named
 
         file = _parser().parse_args(remove_ros_args(arguments)[1:]).urdf
         description = None if file is None else expand_xacro(file)
-        with user_mistakes_named():
-            node = JointStatePublisher(description, fail=lambda: process.stop(1))
+        node = JointStatePublisher(description, fail=lambda: process.stop(1))
         process.executor.add_node(node)
         yield
 

@@ -13,10 +13,9 @@ from arm_node.process import NodeProcess, run_process
 def application(_process: NodeProcess) -> Iterator[None]:
     """Run the node."""
     from arm_description.ros.event_loop import spinning
-    from arm_description.ros.node_errors import user_mistakes_named
     from arm_description.ros.robot_state_publisher import RobotStatePublisher
 
-    with user_mistakes_named(), answers_held_back():
+    with answers_held_back():
         node = RobotStatePublisher()
     with spinning(node):
         yield

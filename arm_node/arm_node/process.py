@@ -98,6 +98,7 @@ def run_process(
         application: builds the nodes, see `Application`.
         argv: ROS arguments of the process, the program's name first; default sys.argv.
         user_errors: errors whose message is for the user: one FATAL line, no traceback, exit 1.
+            What rclpy refuses (a parameter's type, a name, a topic of two types) is as well.
 
     An environment in which ROS cannot start is one sentence on stderr and exit code 2.
     """
@@ -121,6 +122,7 @@ def _run_with_ros(
     stop: threading.Event,
 ) -> int:
     import rclpy
+    from rclpy.impl.implementation_singleton import rclpy_implementation
     from rclpy.signals import SignalHandlerOptions
     from rclpy.utilities import try_shutdown
 
@@ -130,6 +132,9 @@ def _run_with_ros(
             args=list(sys.argv if argv is None else argv),
             signal_handler_options=SignalHandlerOptions.NO,
         )
+    except rclpy_implementation.UnknownROSArgsError as error:
+        sys.stderr.write(f"cannot start ROS: unknown words after --ros-args: {error}\n")
+        return EXIT_USAGE
     except Exception as error:
         # rcl raises half a dozen unrelated types here, all of them about the arguments given.
         sys.stderr.write(f"cannot start ROS: {first_line(error)}\n")
@@ -158,6 +163,9 @@ def _run_initialised(
         except user_errors as error:
             logging.getLogger("arm_node").critical("%s", error)
             process.stop(EXIT_FAILED)
+        except _refusals() as error:
+            logging.getLogger("arm_node").critical("cannot make the node: %s", first_line(error))
+            process.stop(EXIT_FAILED)
         finally:
             process.join_spinning()
             for node in list(process.executor.get_nodes()):
@@ -180,6 +188,15 @@ def run_node(
         yield
 
     return run_process(application, argv, user_errors)
+
+
+def _refusals() -> tuple[type[Exception], ...]:
+    """Return what rclpy raises where parameters, names or topics given to a node cannot be."""
+    from rclpy.exceptions import NameValidationException, ParameterException
+    from rclpy.qos_overriding_options import InvalidQosOverridesError
+
+    # A RuntimeError is what rcl itself refuses, and a QoS policy of no such value.
+    return (ParameterException, NameValidationException, InvalidQosOverridesError, RuntimeError)
 
 
 def first_line(error: BaseException) -> str:

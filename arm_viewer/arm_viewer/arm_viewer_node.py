@@ -14,12 +14,11 @@ from arm_viewer.errors import ViewerError
 def application(process: NodeProcess) -> Iterator[None]:
     """Serve the page until the process ends."""
     # Imported once the environment is prepared: message packages are found through it.
-    from arm_description.ros.node_errors import user_mistakes_named
     from arm_viewer.page import page_running
     from arm_viewer.page_server import page_server
     from arm_viewer.ros.viewer import Viewer
 
-    with user_mistakes_named(), answers_held_back():
+    with answers_held_back():
         node = Viewer()
     with page_server(node.port) as server, page_running(server, node.latest, node.send):
         node.get_logger().info(f"the page is at http://127.0.0.1:{server.get_port()}")

@@ -19,19 +19,19 @@ class Mistake(Exception):
 def task(node, process):
     {body}
 
-sys.exit(run_task("worker", task, ["worker"], user_errors=(Mistake,)))
+sys.exit(run_task("worker", task, ["worker", *sys.argv[1:]], user_errors=(Mistake,)))
 """
 TIMEOUT_S = 60.0
 
 
 @pytest.fixture
-def start() -> Iterator[Callable[[str], subprocess.Popen[str]]]:
-    """Return a function that runs a task, given as the body of a function."""
+def start() -> Iterator[Callable[..., subprocess.Popen[str]]]:
+    """Return a function that runs a task, given as the body of a function, with arguments."""
     started: list[subprocess.Popen[str]] = []
 
-    def run(body: str) -> subprocess.Popen[str]:
+    def run(body: str, *arguments: str) -> subprocess.Popen[str]:
         process = subprocess.Popen(
-            [sys.executable, "-c", PROGRAM.format(body=body)],
+            [sys.executable, "-c", PROGRAM.format(body=body), *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -54,7 +54,7 @@ def start() -> Iterator[Callable[[str], subprocess.Popen[str]]]:
     ],
 )
 def test_its_end_is_that_of_the_process(
-    start: Callable[[str], subprocess.Popen[str]], body: str, code: int, said: str, traceback: bool
+    start: Callable[..., subprocess.Popen[str]], body: str, code: int, said: str, traceback: bool
 ) -> None:
     process = start(body)
     output, _ = process.communicate(timeout=TIMEOUT_S)
@@ -63,10 +63,28 @@ def test_its_end_is_that_of_the_process(
     assert ("Traceback" in output) is traceback
 
 
-def test_a_signal_is_told_to_the_task(start: Callable[[str], subprocess.Popen[str]]) -> None:
+def test_a_signal_is_told_to_the_task(start: Callable[..., subprocess.Popen[str]]) -> None:
     process = start("print('at work', flush=True); return 5 if process.wait(60.0) else 4")
     assert process.stdout is not None
     assert process.stdout.readline() == "at work\n"
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        ("-p use_sim_time:=5", 1, "cannot make the node: Trying to set parameter 'use_sim_time'"),
+        ("-r __node:=a-b", 2, "cannot start ROS: failed to initialize rcl: Couldn't parse remap"),
+        ("--foo", 2, "cannot start ROS: unknown words after --ros-args: ['--foo']"),
+    ],
+)
+def test_arguments_that_rclpy_refuses_are_a_sentence(
+    start: Callable[..., subprocess.Popen[str]], arguments: str, code: int, said: str
+) -> None:
+    process = start("return 0", "--ros-args", *arguments.split())
+    output, _ = process.communicate(timeout=TIMEOUT_S)
+    assert process.returncode == code
+    assert said in output
+    assert "Traceback" not in output

@@ -22,8 +22,9 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from rclpy.utilities import try_shutdown
 
-from arm_cli.errors import StoppedError
+from arm_cli.errors import StoppedError, UsageError
 from arm_node.discovery import answers_held_back
+from arm_node.process import first_line
 
 POLL_S = 0.02
 PATIENCE_S = 1.0
@@ -118,8 +119,14 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
     Args:
         name: of the node; by default hidden and unique.
         use_sim_time: whether the node's clock follows /clock.
+
+    Raises:
+        UsageError: ROS cannot start; its log folder may not be writable.
     """
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        raise UsageError(f"cannot start ROS: {first_line(error)}") from error
     executor = SingleThreadedExecutor()
     try:
         with answers_held_back():

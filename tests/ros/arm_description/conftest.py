@@ -1,6 +1,7 @@
 """The nodes of arm_description in processes of their own, one robot for all of them."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 import yaml
 
 WAIT_TIMEOUT_S = 40.0
+ESCAPES = re.compile("\x1b\\[[0-9;]*m")
 
 LIMIT = "<limit lower='-3' upper='3' effort='1' velocity='1'/>"
 URDF = f"""<robot name='r'>
@@ -65,6 +67,11 @@ class NodeProcess:
         """All that was printed so far."""
         with self._changed:
             return self._output
+
+    @property
+    def own_words(self) -> list[str]:
+        """The lines so far that are not Fast DDS's own, which complains on a loaded machine."""
+        return [line for line in self.output.splitlines() if "[RTPS" not in ESCAPES.sub("", line)]
 
     def wait_for(self, text: str) -> None:
         """Block until this text was printed."""

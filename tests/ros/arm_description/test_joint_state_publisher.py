@@ -202,4 +202,4 @@ def test_a_signal_ends_it_with_exit_code_0_and_without_a_word(start, states, urd
     node = start(MODULE, urdf_file)
     states.wait_for()
     assert node.stop(number) == 0
-    assert node.output == ""
+    assert node.own_words == []

@@ -360,4 +360,4 @@ def test_a_signal_ends_it_with_exit_code_0_and_without_a_word(tf, send, number):
     send(1.0, turn=0.0)
     collector.wait_for()
     assert node.stop(number) == 0
-    assert node.output == ""
+    assert node.own_words == []
