@@ -17,13 +17,18 @@ from arm_gazebo.camera_sensor import (
     SAME_FRAME,
     CameraSensor,
 )
-from arm_gazebo.sensor_tags import TYPES, SensorTags, sensor_elements, sensor_type
+from arm_gazebo.sensor_tags import COLOR_FORMATS, TYPES, SensorTags, sensor_elements, sensor_type
 
 logger = logging.getLogger(__name__)
 
 MAX_SIDE = 8192
 """Widest picture, in pixels: what common GL drivers can render into."""
-FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
+FORMATS = (
+    *COLOR_FORMATS,
+    *("L8", "L_INT8", "L16", "L_INT16", "B8G8R8", "BGR_INT8", "R_FLOAT16", "R_FLOAT32"),
+    *("BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8", "BAYER_GRBG8"),
+)
+"""Gazebo's; whatever is asked for, pictures are rgb8, and `leftovers` says so."""
 NOISE_TYPES = ("none", "gaussian", "gaussian_quantized")
 CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
 

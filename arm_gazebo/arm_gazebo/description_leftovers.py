@@ -7,7 +7,7 @@ from typing import Any
 from arm_description.urdf_element import written_name
 from arm_description.xml_document import parse_xml
 from arm_gazebo.build_report import Finding, Outcome
-from arm_gazebo.sensor_tags import sensor_type
+from arm_gazebo.sensor_tags import COLOR_FORMATS, sensor_type
 
 _SHAPES = {
     "origin": {},
@@ -87,6 +87,12 @@ def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
                 name,
                 _dropped(element, name, f"its type '{element.get('type')}' is not simulated"),
             )
+        elif sensor_type(element) == "camera":
+            for wanted in element.iterfind(".//image/format"):
+                word = str(wanted.text or "").strip()
+                if word and word not in COLOR_FORMATS:
+                    name = f"<format> of camera '{element.get('name')}'"
+                    yield "format", _dropped(wanted, name, f"pictures are rgb8, not {word}")
 
 
 def _dropped(element: Any, name: str, reason: str) -> Finding:

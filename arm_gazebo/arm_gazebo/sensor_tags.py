@@ -18,16 +18,23 @@ TYPES = {
     "contact": "contact",
 }
 """What is simulated: Gazebo's names, older ones included, and the one used here."""
+COLOR_FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
 TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
 
 
 def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
-    """Return the `<sensor>` elements of a URDF and what each is attached to, in their order."""
+    """Return the `<sensor>` elements of a URDF and what each is attached to, in their order.
+
+    Those of links and joints that are not there are left out, as by Gazebo: a xacro's condition
+    that leaves out a link often forgets its tags. `parse_gazebo_tags` says so.
+    """
+    known = {str(part.get("name")).strip() for part in root if part.tag in ("link", "joint")}
     for gazebo in root.findall("gazebo"):
-        for sensor in gazebo.findall("sensor"):
-            yield str(gazebo.get("reference", "")).strip(), sensor
+        reference = str(gazebo.get("reference", "")).strip()
+        for sensor in gazebo.findall("sensor") if reference in known else ():
+            yield reference, sensor
 
 
 def sensor_type(element: Any) -> str | None:

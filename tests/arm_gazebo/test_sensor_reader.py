@@ -26,6 +26,11 @@ def sensors(*tags: tuple[str, str, str]) -> tuple[LinkSensor, ...]:
     return parse_link_sensors(urdf, parse_urdf(urdf))
 
 
+def test_a_sensor_of_a_link_that_is_not_there_is_left_out():
+    (imu,) = sensors(("nose", "imu", "<update_rate>-1</update_rate>"), ("hand", "imu", ""))
+    assert imu.name == "b"
+
+
 def test_what_is_left_out_has_defaults():
     assert sensors(("hand", "imu", ""), ("wrist", "force_torque", ""), ("hand", "contact", "")) == (
         ImuSensor("a", "hand", "hand", "a"),
@@ -77,7 +82,7 @@ def test_every_tag_of_a_force_torque_sensor_is_read():
 @pytest.mark.parametrize(
     ("reference", "kind", "inside", "said"),
     [
-        ("nose", "imu", "", "imu sensor 'a', <gazebo> (line 1): no link 'nose'; the robot has"),
+        ("wrist", "imu", "", "imu sensor 'a', <gazebo> (line 1): no link 'wrist'; the robot has"),
         ("hand", "force_torque", "", "no joint 'hand'; the robot has wrist"),
         ("hand", "imu", "<update_rate>-1</update_rate>", "at least 0, not '-1'"),
         ("hand", "imu", "<topic>a b</topic>", "'a b' is not a valid ROS topic name"),
