@@ -78,3 +78,15 @@ def test_signals_come_from_the_loop_and_the_handlers_are_restored(loop):
         assert called == []
         loop.run(until=lambda: bool(called))
     assert signal.getsignal(signal.SIGUSR1) is before
+
+
+def test_signals_that_came_together_are_one_call_each(loop):
+    called = []
+    names = {signal.SIGUSR1: "first", signal.SIGUSR2: "second"}
+    with loop.signals({number: lambda n=name: called.append(n) for number, name in names.items()}):
+        for number in (signal.SIGUSR1, signal.SIGUSR2) * 3:
+            signal.raise_signal(number)
+        loop.run(until=lambda: len(called) >= 2)
+        loop.call_later(0.0, lambda: called.append("end"))
+        loop.run(until=lambda: "end" in called)
+    assert called == ["first", "second", "end"]

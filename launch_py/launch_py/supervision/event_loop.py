@@ -94,7 +94,8 @@ class EventLoop:
         os.set_blocking(writable, False)
 
         def deliver() -> None:
-            for number in os.read(readable, 4096):
+            # Once for however many of them: a profiler stops and continues a child without end.
+            for number in dict.fromkeys(os.read(readable, 65536)):
                 callback = callbacks.get(signal.Signals(number))
                 if callback is not None:
                     callback()
