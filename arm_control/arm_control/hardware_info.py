@@ -25,6 +25,7 @@ class InterfaceInfo:
         maximum: highest command, None if not given.
         parameters: every `<param>` of the interface, the ones above included, as text.
         is_limited: whether its commands may be clamped; not after `<limits enable="false"/>`.
+        data_type: what the description says that it is; all are numbers here.
     """
 
     name: str
@@ -33,6 +34,7 @@ class InterfaceInfo:
     maximum: float | None = None
     parameters: Mapping[str, str] = field(default_factory=dict)
     is_limited: bool = True
+    data_type: str = "double"
 
     @property
     def unread_limits(self) -> tuple[str, ...]:
@@ -121,6 +123,15 @@ class HardwareInfo:
             for part in self._parts()
             for interface in part.command_interfaces
         )
+
+    @property
+    def data_types(self) -> dict[str, str]:
+        """Data types of all interfaces by full name, as the description says them."""
+        return {
+            f"{part.name}/{interface.name}": interface.data_type
+            for part in self._parts()
+            for interface in (*part.state_interfaces, *part.command_interfaces)
+        }
 
     def _parts(self) -> Iterator[JointInfo]:
         yield from self.joints
@@ -252,6 +263,7 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
             maximum=_parse_limit(parameters, "max"),
             parameters=parameters,
             is_limited=_is_limited(child),
+            data_type=child.get("data_type", "double"),
         )
     return tuple(interfaces.values())
 

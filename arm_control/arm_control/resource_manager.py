@@ -61,6 +61,11 @@ class ResourceManager:
         self._state_index = {name: i for i, name in enumerate(self._state_owner)}
         self._command_index = {name: i for i, name in enumerate(self._command_owner)}
         self.exported = ExportedInterfaces()
+        self._data_types = {
+            name: data_type
+            for component in self.components.values()
+            for name, data_type in component.hardware.info.data_types.items()
+        }
         self._claims: dict[str, str] = {}
         self._commandable = {LifecycleState.ACTIVE}
         if command_inactive:
@@ -217,10 +222,16 @@ class ResourceManager:
         )
 
     def _command_status(self, name: str) -> InterfaceStatus:
-        return InterfaceStatus(name, self.is_command_available(name), name in self._claims)
+        is_claimed = name in self._claims
+        return InterfaceStatus(
+            name, self.is_command_available(name), is_claimed, self._data_type_of(name)
+        )
 
     def _state_status(self, name: str) -> InterfaceStatus:
-        return InterfaceStatus(name, self.is_state_available(name), is_claimed=False)
+        return InterfaceStatus(name, self.is_state_available(name), False, self._data_type_of(name))
+
+    def _data_type_of(self, name: str) -> str:
+        return self._data_types.get(name, "double")
 
     def _command_place(self, name: str) -> Place:
         index = self._command_index.get(name)

@@ -13,11 +13,13 @@ class InterfaceStatus:
         name: full name, 'j0/position'.
         is_available: whether its component is configured.
         is_claimed: whether a controller commands it; False for every state interface.
+        data_type: 'double', or what the robot description says.
     """
 
     name: str
     is_available: bool
     is_claimed: bool
+    data_type: str = "double"
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,6 +56,15 @@ def test_a_joint_with_its_interfaces() -> None:
     assert command.parameters == {"min": "-1.5", "max": "2"}
 
 
+def test_an_interface_is_a_double_unless_it_says_otherwise() -> None:
+    info = parse_one(
+        JOINT + "<gpio name='io'><command_interface name='on' data_type='bool'/>"
+        "<state_interface name='on' data_type='bool'/></gpio>"
+    )
+    assert info.data_types["io/on"] == "bool"
+    assert info.data_types["j0/velocity"] == "double"
+
+
 def test_full_names_come_in_document_order_joints_first() -> None:
     info = parse_one(
         "<gpio name='io'><command_interface name='out'/><state_interface name='in'/></gpio>"

@@ -229,6 +229,19 @@ def test_the_rate_shown_is_the_one_that_it_runs_at(
     assert bool(says) is bool(caplog.records)
 
 
+def test_interfaces_are_listed_with_the_type_of_the_description() -> None:
+    hardware = fake_hardware(("j0",))
+    joint = hardware.info.joints[0]
+    named = {i.name: dataclasses.replace(i, data_type="bool") for i in joint.command_interfaces}
+    joint = dataclasses.replace(
+        joint, command_interfaces=tuple(named.values()), state_interfaces=()
+    )
+    hardware.info = dataclasses.replace(hardware.info, joints=(joint,))
+    commands, states = ControllerManager([hardware], 100).list_hardware_interfaces()
+    assert {i.data_type for i in commands} == {"bool"}
+    assert {i.name: i.data_type for i in states}["j0/velocity"] == "double"
+
+
 def test_a_component_that_wants_a_thread_is_told_that_it_has_none(
     caplog: pytest.LogCaptureFixture,
 ) -> None:

@@ -22,6 +22,7 @@ from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_node import ControllerNode
 from arm_control.ros.executor_bridge import run_on_executor
 from arm_control.ros.node_arguments import controller_arguments
+from arm_node.process import first_line
 
 logger = logging.getLogger(__name__)
 
@@ -79,6 +80,7 @@ class ControlPlane:
                 raise ControllerManagerError(
                     f"A controller named '{name}' was already loaded inside the controller manager"
                 )
+            self._check_name(name)
             types = self._node.strings(f"{name}.type")
             if len(types) != 1:
                 raise ControllerManagerError(f"The 'type' param was not defined for '{name}'.")
@@ -217,6 +219,15 @@ class ControlPlane:
             # The loop has begun with it: it is too late to call it off, and it ends soon.
             return future.result(LOOP_TIMEOUT_S)
 
+    def _check_name(self, name: str) -> None:
+        """Refuse the name of another node: of two, neither's parameters could be reached."""
+        full_name = f"{self._node.get_namespace().rstrip('/')}/{name}"
+        others = (self._node, *self._executor.get_nodes())
+        if full_name in {node.get_fully_qualified_name() for node in others}:
+            raise ControllerManagerError(
+                f"no controller can be named '{name}': there is a node {full_name} already"
+            )
+
     def _make_node(self, name: str, type_name: str) -> ControllerNode:
         arguments = controller_arguments(
             self._node.arguments,
@@ -240,9 +251,11 @@ class ControlPlane:
             raise
         except Exception as error:
             # Anybody's constructor, and rcl, which raises a type for every argument it dislikes.
-            logger.exception("controller '%s' cannot be made", name)
+            # The former's author needs a traceback; who gave the arguments needs a sentence.
+            if not type(error).__module__.startswith("rclpy"):
+                logger.exception("controller '%s' cannot be made", name)
             raise ControllerManagerError(
-                f"controller '{name}' cannot be made: {type(error).__name__}: {error}"
+                f"controller '{name}' cannot be made: {type(error).__name__}: {first_line(error)}"
             ) from error
 
     def _state_of(self, name: str) -> LifecycleState:

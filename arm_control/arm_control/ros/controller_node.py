@@ -1,5 +1,6 @@
 """The node of one controller: its parameters, its adapter, its transition events."""
 
+import logging
 from collections.abc import Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Any
@@ -81,6 +82,10 @@ class ControllerNode(ParameterNode):
         rate_hz = self.get_parameter("update_rate").value
         if not isinstance(rate_hz, int) or rate_hz < 0:
             raise ParameterError(f"parameter 'update_rate' must not be negative, but is {rate_hz}")
+        if self.get_parameter("is_async").value:
+            logging.getLogger(self.get_name()).warning(
+                "parameter 'is_async' has no effect: controllers run in the control loop"
+            )
         return parameters, rate_hz
 
     def on_configure(self, parameters: Any) -> None:

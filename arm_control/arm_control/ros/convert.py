@@ -54,7 +54,7 @@ def interface_message(status: InterfaceStatus) -> HardwareInterface:
     """Return an interface as list_hardware_interfaces shows it."""
     return HardwareInterface(
         name=status.name,
-        data_type="double",
+        data_type=status.data_type,
         is_available=status.is_available,
         is_claimed=status.is_claimed,
     )

@@ -106,6 +106,16 @@ def test_a_controllers_parameters(control: Any, parameters_of: Any) -> None:
     assert {name: parameters[name] for name in expected} == expected
 
 
+def test_a_controller_that_wants_a_thread_is_told_that_it_has_none(
+    control: Any, manager: Any, set_parameter: Any
+) -> None:
+    control.load("position_controller")
+    assert set_parameter("/position_controller", "is_async", True).successful
+    assert control.configure("position_controller")
+    manager.wait_for_line("parameter 'is_async' has no effect: controllers run in the control loop")
+    assert [c.is_async for c in control.list()] == [False]
+
+
 def test_the_broadcasters_parameters_are_read_only(
     control: Any, parameters_of: Any, set_parameter: Any
 ) -> None:

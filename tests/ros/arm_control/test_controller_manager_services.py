@@ -92,6 +92,37 @@ def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(
     manager.wait_for_line(reason)
 
 
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("two words", "controller 'two words' cannot be made: InvalidNodeNameException: "),
+        ("controller_manager", "there is a node /controller_manager already"),
+        ("hardwareinterface", "there is a node /hardwareinterface already"),
+    ],
+)
+def test_a_name_that_its_node_cannot_have_is_refused(
+    control: Any, manager: Any, set_parameter: Any, name: str, reason: str
+) -> None:
+    assert set_parameter("/controller_manager", f"{name}.type", POSITION).successful
+    assert not control.load(name)
+    manager.wait_for_line(reason)
+    assert "Traceback" not in manager.output
+
+
+def test_a_switch_is_done_as_soon_as_possible_or_not(control: Any) -> None:
+    control.load("position_controller")
+    control.configure("position_controller")
+    for activate_asap in (True, False):
+        for lists in ("activate_controllers", "deactivate_controllers"):
+            answer = control.call(
+                "switch_controller",
+                strictness=STRICT,
+                activate_asap=activate_asap,
+                **{lists: ["position_controller"]},
+            )
+            assert answer.ok, answer.message
+
+
 def test_a_name_is_loaded_only_once(control: Any, manager: Any) -> None:
     control.load("position_controller")
     assert not control.load("position_controller")
