@@ -137,21 +137,23 @@ def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, t
     from arm_control.hardware_info import parse_hardware_info
     from arm_description.urdf import parse_urdf
 
+    robot = parse_urdf(description, str(file))
+    joints = commandable_joints(robot)
     if not has_hardware(description):
-        robot = parse_urdf(description, str(file))
-        joints = commandable_joints(robot)
         remarks.append(
             f"robot '{robot.name}' has no <ros2_control> block: one is made up that commands "
             f"{', '.join(joints) or 'nothing, for no joint can be commanded'}"
         )
         return with_hardware(description, robot), joints
-    joints = tuple(
+    # Many a block gives interfaces to joints that mimic others, or that are fixed, too.
+    commanded = tuple(
         joint.name
         for component in parse_hardware_info(description)
         for joint in component.joints
-        if any(interface.name == "position" for interface in joint.command_interfaces)
+        if joint.name in joints
+        and any(interface.name == "position" for interface in joint.command_interfaces)
     )
-    return description, joints
+    return description, commanded
 
 
 def _made_up(joints: tuple[str, ...]) -> str:

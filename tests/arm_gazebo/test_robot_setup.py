@@ -49,6 +49,24 @@ def test_a_file_that_the_description_hands_to_gazebos_plugin_is_named(bare, tmp_
     assert "made up" in set_up_robot(str(bare)).remarks[-2]
 
 
+def test_made_up_controllers_leave_out_joints_that_cannot_be_commanded(tmp_path, parts):
+    """As in the blocks of grippers, which often list all of their joints."""
+    file = tmp_path / "gripper.urdf"
+    names = ["left", "right", "tip", "missing"]
+    file.write_text(
+        parts.robot(
+            *(parts.link(name, 1.0) for name in ("base", "a", "b", "c")),
+            parts.joint("left", "base", "a"),
+            parts.joint("right", "base", "b", more='<mimic joint="left" multiplier="-1"/>'),
+            parts.joint("tip", "a", "c", kind="fixed", limit=""),
+            parts.ros2_control(names),
+        )
+    )
+    setup = set_up_robot(str(file))
+    assert not isinstance(setup.controllers, Path)
+    assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["left"]
+
+
 def test_made_up_controllers_take_the_joints_that_the_hardware_commands_by_position(
     tmp_path, parts
 ):
