@@ -16,7 +16,8 @@ MOST_PLACES = 5
 
 _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _DOCTYPE = "<!DOCTYPE"
-_XACRO_NAMESPACE = "ros.org/wiki/xacro"
+_XACRO_NAMESPACE = "xmlns:xacro"
+"""What it stands for, xacro does not care: several addresses are in use."""
 
 
 @dataclass(frozen=True, slots=True)

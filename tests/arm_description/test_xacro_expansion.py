@@ -90,8 +90,10 @@ def test_a_plain_urdf_passes_through_as_it_is(tmp_path):
     assert expand_xacro(file) == "<robot name='${not xacro}'><!-- kept --></robot>"
 
 
-def test_a_urdf_that_declares_xacro_is_expanded(tmp_path):
+@pytest.mark.parametrize("site", ["www.ros.org/wiki", "ros.org/wiki", "wiki.ros.org"])
+def test_a_urdf_that_declares_xacro_is_expanded(tmp_path, site):
     file = write(tmp_path / "a.urdf", "<link name='${1 + 1}'/>")
+    file.write_text(file.read_text().replace("www.ros.org/wiki", site))
     assert parse_urdf(expand_xacro(file)).root == "2"
 
 
