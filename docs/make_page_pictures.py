@@ -17,22 +17,33 @@ from pathlib import Path
 os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
 os.environ.setdefault("ROS_DOMAIN_ID", "62")
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, ViewportSize, sync_playwright
 
 IMAGES = Path(__file__).with_name("images")
-SIZE = {"width": 1280, "height": 800}
+SIZE: ViewportSize = {"width": 1280, "height": 800}
 PORT = 18082
 TIMEOUT_MS = 240_000
-SETTLING_MS = 10_000
-"""Of the arm, the plots and the camera; a processor that draws the 3D view is slow."""
+MOVING_MS = 3_000
+"""The arm gets to its pose, and the charts show how."""
+FRAMES = 4
+"""What was sent to the page arrives with the first ones."""
 POSE = "data: [-0.9, 0.5, 0.7, 0.9]"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
-FEW_FRAMES = """
+FRAMES_ON_DEMAND = """
 const frame = window.requestAnimationFrame.bind(window);
-window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 1500);
+const waiting = new Map();
+let count = 0;
+window.requestAnimationFrame = (draw) => (waiting.set(++count, draw), count);
+window.cancelAnimationFrame = (number) => waiting.delete(number);
+window.drawFrame = () => new Promise((done) => frame((now) => {
+  const draws = [...waiting.values()];
+  waiting.clear();
+  draws.forEach((draw) => draw(now));
+  done();
+}));
 """
-"""Every frame is drawn by the processor, which has the simulation to do as well."""
+"""The processor draws a frame for seconds; meanwhile the page would not hear of a click."""
 
 
 @contextlib.contextmanager
@@ -53,11 +64,12 @@ def open_page(page: Page) -> None:
         with contextlib.suppress(OSError), urllib.request.urlopen(url, timeout=5):
             break
         page.wait_for_timeout(500)
-    page.add_init_script(FEW_FRAMES)
+    page.add_init_script(FRAMES_ON_DEMAND)
     page.goto(url)
-    page.get_by_text("j3", exact=True).first.wait_for(state="attached")
     warning = page.locator(".mantine-Notification-closeButton")
-    warning.wait_for(state="attached")
+    for awaited in (page.get_by_text("j3", exact=True).first, warning):
+        while not awaited.count():
+            page.evaluate("drawFrame()")
     warning.dispatch_event("click")
 
 
@@ -65,7 +77,10 @@ def take(page: Page, name: str, *ticked: str) -> None:
     """Tick some boxes, and save what the page shows then."""
     for label in ticked:
         page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
-    page.wait_for_timeout(SETTLING_MS)
+    page.wait_for_timeout(MOVING_MS)
+    for _ in range(FRAMES):
+        page.evaluate("drawFrame()")
+        page.wait_for_timeout(200)
     page.screenshot(path=str(IMAGES / name))
 
 

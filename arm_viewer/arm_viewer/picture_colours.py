@@ -37,7 +37,7 @@ def colours(picture: Picture) -> NDArray[np.uint8]:
     pixels = _shrunk(_pixels(picture))
     encoding = picture.encoding
     if encoding in _DISTANCES:
-        return _distance_colours(pixels[:, :, 0].astype(np.float32))
+        return _distance_colours(pixels[:, :, 0].astype(np.float64))
     if encoding == "mono16":
         pixels = (pixels >> 8).astype(np.uint8)
     if encoding.startswith("bgr"):
@@ -71,12 +71,13 @@ def _shrunk(pixels: NDArray[Any]) -> NDArray[Any]:
     return pixels[::every, ::every]
 
 
-def _distance_colours(distances: NDArray[np.float32]) -> NDArray[np.uint8]:
+def _distance_colours(distances: NDArray[np.float64]) -> NDArray[np.uint8]:
     known = np.isfinite(distances) & (distances > 0.0)
     if not known.any():
         return np.zeros((*distances.shape, 3), dtype=np.uint8)
     nearest, farthest = distances[known].min(), distances[known].max()
-    share = np.where(known, (farthest - distances) / max(farthest - nearest, 1e-6), 0.0)
+    seen = np.where(known, distances, farthest)
+    share = (farthest - seen) / max(farthest - nearest, 1e-6)
     coloured = cv2.applyColorMap((share * 255.0).astype(np.uint8), cv2.COLORMAP_TURBO)
     coloured[~known] = 0
     return np.ascontiguousarray(coloured[:, :, ::-1], dtype=np.uint8)

@@ -65,3 +65,11 @@ def test_other_joints_begin_anew():
 def test_an_empty_history_has_no_times():
     ages, readings, commands = JointHistory(window_s=1.0).table(Quantity.EFFORT, now_s=0.0)
     assert ages.size == readings.size == commands.size == 0
+
+
+def test_an_infinity_is_taken_for_nothing():
+    history = JointHistory(10.0)
+    history.add(0.0, {"j": JointReading(math.inf, 1.0, -math.inf)}, {"j/position": math.inf})
+    _, readings, commands = history.table(Quantity.POSITION, 0.0)
+    assert np.isnan(readings).all()
+    assert np.isnan(commands).all()

@@ -70,3 +70,10 @@ def test_a_large_image_becomes_smaller():
 def test_what_cannot_be_shown_is_said(broken):
     with pytest.raises(PictureError):
         colours(broken)
+
+
+def test_distances_as_far_apart_as_numbers_go_have_colours():
+    farthest = np.finfo(np.float32).max
+    shown = colours(picture(np.array([[1.0, farthest, -farthest]], dtype=np.float32), "32FC1"))
+    assert shown[0, 0].any()
+    assert not shown[0, 2].any()

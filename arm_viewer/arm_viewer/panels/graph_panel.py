@@ -7,6 +7,8 @@ from arm_viewer.drawing.svg import to_svg
 from arm_viewer.snapshot import Snapshot
 
 WIDTH, HEIGHT = 600.0, 520.0
+DARK = "overflow:auto;background:#fff;filter:invert(0.88) hue-rotate(180deg)"
+"""The picture is made for paper: light becomes dark, and colours stay what they are."""
 
 
 class GraphPanel:
@@ -33,4 +35,4 @@ class GraphPanel:
 
 
 def _html(nodes: tuple[NodeTopics, ...]) -> str:
-    return f'<div style="overflow:auto;background:#fff">{to_svg(node_graph(nodes))}</div>'
+    return f'<div style="{DARK}">{to_svg(node_graph(nodes))}</div>'

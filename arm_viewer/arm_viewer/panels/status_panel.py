@@ -49,9 +49,11 @@ def _give_picture(event: GuiEvent[Any]) -> None:
             transport_format="png",
             timeout=LONGEST_WAIT_S,
         )
-    except (RuntimeError, TimeoutError):
-        # viser's words for a browser that has gone, and for one that is too slow.
-        client.add_notification("No screenshot", f"The browser did not draw in {LONGEST_WAIT_S} s.")
+    except TimeoutError:
+        client.add_notification("No screenshot", f"Not drawn within {LONGEST_WAIT_S:.0f} s.")
+        return
+    except RuntimeError:
+        # The browser has gone meanwhile.
         return
     covered = drawn[:, :, 3:] / 255.0
     picture = drawn[:, :, :3] * covered + np.array(BACKGROUND) * (1.0 - covered)
