@@ -60,6 +60,7 @@ ACTION = VerbFamily(
         Verb("list", "list the actions", "arm_cli.action.list"),
         Verb("info", "show an action's clients and servers", "arm_cli.action.info"),
         Verb("type", "print an action's type", "arm_cli.action.type"),
+        Verb("find", "list the actions of a type", "arm_cli.action.find"),
         Verb("send_goal", "send a goal and wait for its result", "arm_cli.action.send_goal"),
     ),
 )
@@ -183,6 +184,7 @@ PKG = VerbFamily(
         Verb("list", "list the packages", "arm_cli.pkg.list"),
         Verb("prefix", "print where a package is installed", "arm_cli.pkg.prefix"),
         Verb("executables", "list the executables of a package", "arm_cli.pkg.executables"),
+        Verb("xml", "print a package's manifest", "arm_cli.pkg.xml"),
     ),
 )
 

@@ -27,5 +27,5 @@ def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> s
     if not names:
         return f"{noun} none"
     if len(names) > MAX_LISTED:
-        return f"{noun} {len(names)}, none with a name like it"
+        return f"none of the {len(names)} is named like it"
     return f"{noun} {', '.join(names)}"

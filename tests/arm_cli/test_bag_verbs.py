@@ -10,8 +10,10 @@ from arm_cli.bag.bag_topic import BagMessage, BagTopic
 from arm_cli.bag.bag_writer import BagSettings, BagWriter
 from arm_cli.bag.offered_qos import INFINITE_NS, OfferedQos, offers_to_text, read_offers
 from arm_cli.bag.play_schedule import PlaySchedule
+from arm_cli.bag.qos_overrides import read_qos_overrides
 from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
 from arm_cli.bag.type_definition import TypeDefinition, find_definition
+from arm_cli.errors import BagError
 from arm_cli.interfaces.index import InterfaceIndex
 from arm_cli.main import main
 
@@ -99,6 +101,8 @@ def test_an_unfinished_bag_is_said_to_be_one(capsys, bag):
         ("play {bag} --topics /c", 1, "no topic '/c' in {bag}; it has /a, /b"),
         ("play {bag} --exclude-regex .", 1, "no topic of {bag} is selected; it has"),
         ("play {bag} --start-offset 2", 1, "beyond the end of {bag}, which lasts 1.500 s"),
+        ("record -a --compression-mode file", 1, "--compression-mode wants a --compression-format"),
+        ("record -a --qos-profile-overrides-path /no.yaml", 1, "cannot read /no.yaml: No such"),
         ("play {bag} --remap /a", 2, "--remap '/a' is not OLD:=NEW"),
     ],
 )
@@ -147,6 +151,36 @@ def test_qos_of_older_metadata_is_numbers_in_a_text():
 @pytest.mark.parametrize("value", ["", "[", None, 3, ["x"], "{}"])
 def test_qos_that_is_none_is_no_offer(value):
     assert read_offers(value) == ()
+
+
+def test_overrides_are_by_topic_and_the_rest_is_default(tmp_path):
+    file = tmp_path / "overrides.yaml"
+    file.write_text(
+        "tf: {reliability: best_effort}\n/x:\n  history: keep_all\n  deadline: {sec: 1, nsec: 5}\n"
+    )
+    assert read_qos_overrides(file) == {
+        "/tf": OfferedQos(reliability="best_effort"),
+        "/x": OfferedQos(history="keep_all", deadline_ns=1_000_000_005),
+    }
+    assert read_qos_overrides(None) == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("- /tf", "has no topics"),
+        ("/tf: [", "is no YAML"),
+        ("/tf: best_effort", "/tf has no policies, such as"),
+        ("/tf: {reliabilty: reliable}", "/tf has no policy 'reliabilty'; did you mean"),
+        ("/tf: {reliability: best}", "/tf: reliability cannot be 'best'; did you mean"),
+    ],
+)
+def test_overrides_that_are_none_are_a_sentence(tmp_path, text, sentence):
+    file = tmp_path / "overrides.yaml"
+    file.write_text(text)
+    with pytest.raises(BagError) as error:
+        read_qos_overrides(file)
+    assert sentence in str(error.value)
 
 
 def test_metadata_survive_their_text():

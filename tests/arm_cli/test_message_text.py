@@ -9,8 +9,9 @@ from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_msgs.msg import Byte, String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_cli.errors import MessageError
+from arm_cli.errors import MessageError, UsageError
 from arm_cli.messages.field_path import FieldPath
+from arm_cli.messages.message_filter import message_filter
 from arm_cli.messages.text import Abridgement, to_csv, to_plain, to_yaml
 from arm_cli.output import print_json
 
@@ -95,3 +96,18 @@ def test_a_field_path_that_leads_nowhere_is_refused(path, sentence):
 def test_what_is_no_field_path_is_refused(text):
     with pytest.raises(MessageError, match="--field"):
         FieldPath.parse(text)
+
+
+def test_a_filter_says_which_messages_count():
+    fits = message_filter("m.position[0] > 0.4 and 'j1' in m.name")
+    assert fits(STATE)
+    assert not fits(JointState(position=[0.4]))
+
+
+def test_a_filter_that_does_not_fit_the_messages_is_a_sentence():
+    with pytest.raises(MessageError, match=r"--filter 'm\.positon' fails: AttributeError: "):
+        message_filter("m.positon")(STATE)
+    with pytest.raises(MessageError, match="fails: IndexError: "):
+        message_filter("m.velocity[0] > 1")(STATE)
+    with pytest.raises(UsageError, match="is no Python expression"):
+        message_filter("m.position[0")

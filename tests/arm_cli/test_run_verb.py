@@ -65,6 +65,24 @@ def test_pkg_lists_packages_and_executables(capsys):
     assert "did you mean 'arm_controller'" in capsys.readouterr().err
 
 
+def test_pkg_executables_by_their_files(capsys):
+    assert main(["pkg", "executables", "--full-path", "arm_cli"]) == 0
+    [path] = capsys.readouterr().out.splitlines()
+    assert os.access(path, os.X_OK)
+    assert os.path.basename(path) == "arm"
+
+
+def test_pkg_xml(capsys):
+    assert main(["pkg", "xml", "arm_cli"]) == 0
+    assert "<name>arm_cli</name>" in capsys.readouterr().out
+    assert main(["pkg", "xml", "arm_cli", "--tag", "name"]) == 0
+    assert capsys.readouterr().out == "arm_cli\n"
+    assert main(["pkg", "xml", "arm_cli", "--tag", "nam"]) == 1
+    assert "has no element 'nam'; did you mean 'name'" in capsys.readouterr().err
+    assert main(["pkg", "xml", "arm_cl"]) == 1
+    assert "did you mean 'arm_cli'" in capsys.readouterr().err
+
+
 def test_pkg_prefix(capsys):
     assert main(["pkg", "prefix", "arm_cli"]) == 0
     prefix = capsys.readouterr().out.strip()

@@ -65,6 +65,7 @@ def test_a_family_without_a_verb_lists_its_verbs(capsys):
             ["topic", "pub", "/x", "a/B", "--rate", "0"],
             "argument -r/--rate: '0' is no number above",
         ),
+        (["param", "list", "--filter", "*"], "argument --filter: '*' is no regular expression"),
         (["control", "set_controller_state", "c", "on"], "invalid choice: 'on'"),
     ],
 )

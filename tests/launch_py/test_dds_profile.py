@@ -52,6 +52,11 @@ def test_a_profile_makes_discovery_fast_and_wide(name):
     assert ranges == ["64"]
 
 
+def test_launched_processes_may_be_held_up_for_a_while():
+    tree = etree.parse(profile_path(PROFILES[0]))
+    assert tree.findtext(".//d:port_queue_capacity", namespaces=NAMESPACE) == "4096"
+
+
 @pytest.mark.ros
 @pytest.mark.parametrize("name", PROFILES)
 def test_a_profile_is_loaded_without_complaint(name):

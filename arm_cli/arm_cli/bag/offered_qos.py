@@ -10,7 +10,7 @@ INFINITE_NS = 2**63 - 1
 """A duration that nobody has limited."""
 
 # The position is the number that files before metadata version 9 hold instead of the name.
-_NAMES = {
+POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
     "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
@@ -99,7 +99,7 @@ def _offer(item: dict[str, Any]) -> OfferedQos:
 
 
 def _policy(item: dict[str, Any], key: str, default: str) -> str:
-    value, names = item.get(key), _NAMES[key]
+    value, names = item.get(key), POLICIES[key]
     if isinstance(value, int) and 0 <= value < len(names):
         return names[value]
     return value if isinstance(value, str) and value in names else default

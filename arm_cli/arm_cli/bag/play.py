@@ -3,6 +3,7 @@
 import argparse
 import sys
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.bag.bag_path import existing_path
@@ -68,6 +69,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help=f"messages that are read before they are due (default {READ_AHEAD})",
     )
+    parser.add_argument(
+        "--qos-profile-overrides-path",
+        type=Path,
+        metavar="FILE",
+        help="YAML with the quality of service of publishers, by topic",
+    )
+    # There are no such controls; but lines written for ros2 switch them off.
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
 
 
 def _add_topics(parser: argparse.ArgumentParser) -> None:
@@ -97,12 +106,14 @@ def run(options: argparse.Namespace) -> None:
 
     Raises:
         NotFoundError: the bag has no such topic.
-        BagError: the bag cannot be read, or has nothing to play.
+        BagError: the bag or the file of overrides cannot be read, or there is nothing to play.
         UsageError: a name to be remapped is not OLD:=NEW.
     """
     from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.qos_overrides import read_qos_overrides
 
     names = _remapped_names(options.remap)
+    overrides = read_qos_overrides(options.qos_profile_overrides_path)
     with BagReader(options.bag_path) as reader:
         unfinished = describe_unfinished(reader)
         if unfinished is not None:
@@ -114,7 +125,7 @@ def run(options: argparse.Namespace) -> None:
 
             player = BagPlayer(session, options.clock)
             try:
-                playable = player.advertise(topics, names)
+                playable = player.advertise(topics, names, overrides)
                 while True:
                     session.spin_for(options.delay)
                     _play_once(player, reader, playable, extent_ns, options)

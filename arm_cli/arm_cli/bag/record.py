@@ -59,6 +59,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--use-sim-time", action="store_true", help="take the messages' times from /clock"
     )
     parser.add_argument(
+        "--qos-profile-overrides-path",
+        type=Path,
+        metavar="FILE",
+        help="YAML with the quality of service of subscriptions, by topic",
+    )
+    # There are no such controls; but lines written for ros2 switch them off.
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument(
         "--node-name", default=NODE_NAME, metavar="NAME", help=f"default {NODE_NAME}"
     )
 
@@ -117,6 +125,12 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
         help="of the files' chunks (default none); every MCAP reader understands it",
     )
     group.add_argument(
+        "--compression-mode",
+        choices=("none", "file", "message"),
+        default="none",
+        help="accepted: chunks are compressed, and files stay readable",
+    )
+    group.add_argument(
         "--storage-preset-profile",
         choices=tuple(_PRESETS),
         default="none",
@@ -128,14 +142,18 @@ def run(options: argparse.Namespace) -> None:
     """Record until a signal comes.
 
     Raises:
-        BagError: nothing is selected, or the bag cannot be written.
+        BagError: nothing is selected, the file of overrides is none, or the bag cannot be written.
     """
+    from arm_cli.bag.qos_overrides import read_qos_overrides
+
     selection = _selection(options)
+    overrides = read_qos_overrides(options.qos_profile_overrides_path)
+    settings = _settings(options)
     folder = Path(options.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     from arm_cli.bag.bag_writer import BagWriter
     from arm_cli.bag.recording import Recording
 
-    writer = BagWriter(folder, _settings(options))
+    writer = BagWriter(folder, settings)
     with connect(options.node_name, options.use_sim_time) as session:
         from arm_cli.ros.bag_recorder import BagRecorder
 
@@ -146,6 +164,7 @@ def run(options: argparse.Namespace) -> None:
             selection,
             options.polling_interval * 1e-3,
             options.use_sim_time,
+            overrides,
         )
         try:
             if options.use_sim_time:
@@ -179,6 +198,8 @@ def _selection(options: argparse.Namespace) -> "TopicSelection":
 def _settings(options: argparse.Namespace) -> "BagSettings":
     from arm_cli.bag.bag_writer import BagSettings
 
+    if options.compression_mode != "none" and options.compression is None:
+        raise BagError("--compression-mode wants a --compression-format: lz4 or zstd")
     duration_s = options.max_bag_duration
     return BagSettings(
         compression=options.compression or _PRESETS[options.storage_preset_profile],

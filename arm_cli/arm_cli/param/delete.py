@@ -16,13 +16,15 @@ def run(options: argparse.Namespace) -> int:
     """Remove the parameter; the exit code is 1 where the node refuses.
 
     Raises:
-        NotFoundError: there is no such node.
+        NotFoundError: there is no such node, or it has no such parameter.
         UnansweredError: the node does not answer.
     """
     with open_parameters(options.node_name) as parameters:
         from rcl_interfaces.msg import ParameterValue
 
         (result,) = parameters.set({options.parameter_name: ParameterValue()})
+        if not result.successful:
+            parameters.check_known(options.parameter_name)
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:
         print(f"Deleted parameter successfully{reason}")

@@ -21,10 +21,7 @@ def run(options: argparse.Namespace) -> None:
         UnansweredError: the node does not answer.
     """
     with open_parameters(options.node_name) as parameters:
-        known = parameters.names()
-        for name in options.parameter_names:
-            if name not in known:
-                raise parameters.unknown(name, known)
+        parameters.check_known(*options.parameter_names)
         descriptors = parameters.descriptors(options.parameter_names)
     for descriptor in descriptors:
         _print(descriptor)

@@ -1,6 +1,7 @@
 """`arm param list`: the parameters of a node, or of all."""
 
 import argparse
+import re
 import sys
 
 from arm_cli.errors import UnansweredError
@@ -23,8 +24,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--param-prefixes", nargs="+", default=[], help="only parameters that begin so"
     )
+    parser.add_argument(
+        "--filter",
+        type=_pattern,
+        default=".*",
+        metavar="REGEX",
+        help="only parameters whose names begin as it says",
+    )
     parser.add_argument("--param-type", action="store_true", help="with their types")
     add_json_argument(parser)
+
+
+def _pattern(text: str) -> re.Pattern[str]:
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is no regular expression: {error}") from error
 
 
 def run(options: argparse.Namespace) -> None:
@@ -53,7 +68,7 @@ def run(options: argparse.Namespace) -> None:
         for node in nodes:
             parameters = NodeParameters(session, node)
             try:
-                names = parameters.names(options.param_prefixes)
+                names = list(filter(options.filter.match, parameters.names(options.param_prefixes)))
                 types = [d.type for d in parameters.descriptors(names)] if names else []
             except UnansweredError as error:
                 if options.node_name:

@@ -17,7 +17,7 @@ def run(options: argparse.Namespace) -> int:
     """Set the value; the exit code is 1 where the node refuses it.
 
     Raises:
-        NotFoundError: there is no such node.
+        NotFoundError: there is no such node, or it has no such parameter.
         UnansweredError: the node does not answer.
     """
     with open_parameters(options.node_name) as parameters:
@@ -28,6 +28,8 @@ def run(options: argparse.Namespace) -> int:
         value = ParameterValue()
         write_value(value, options.value)
         (result,) = parameters.set({options.parameter_name: value})
+        if not result.successful:
+            parameters.check_known(options.parameter_name)
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:
         print(f"Set parameter successful{reason}")

@@ -2,6 +2,8 @@
 
 import argparse
 import os
+import sysconfig
+from pathlib import Path
 
 from arm_cli.errors import NotFoundError
 from arm_cli.output import add_json_argument, print_json
@@ -17,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument("package_name", nargs="?", help="by default every package"),
         packages_with_executables,
     )
+    parser.add_argument("--full-path", action="store_true", help="the files themselves")
     add_json_argument(parser)
 
 
@@ -38,4 +41,10 @@ def run(options: argparse.Namespace) -> None:
         print_json([{"package": package, "executable": name} for package, name in found])
         return
     for package, name in found:
-        print(f"{package} {name}")
+        print(_path(packages, package, name) if options.full_path else f"{package} {name}")
+
+
+def _path(packages: Packages, package: str, name: str) -> Path:
+    command = packages.executable(package, name)
+    # A script of a Python distribution is run by its function; its file is where pip puts scripts.
+    return Path(command[0]) if len(command) == 1 else Path(sysconfig.get_path("scripts"), name)

@@ -12,7 +12,9 @@ from launch_py.packages import Packages
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    complete_with(parser.add_argument("package_name", help="such as arm_description"), _packages)
+    complete_with(
+        parser.add_argument("package_name", help="such as arm_description"), package_names
+    )
     parser.add_argument("--share", action="store_true", help="its share folder instead")
 
 
@@ -30,5 +32,6 @@ def run(options: argparse.Namespace) -> None:
         raise NotFoundError(str(error)) from error
 
 
-def _packages(**_: Any) -> list[str]:
+def package_names(**_: Any) -> list[str]:
+    """Return the packages, for the Tab key."""
     return Packages(os.environ).names()

@@ -11,6 +11,7 @@ from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
 from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.offered_qos import OfferedQos
 from arm_cli.bag.play_schedule import PlaySchedule
 from arm_cli.errors import NotFoundError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
@@ -65,7 +66,12 @@ class BagPlayer:
         self._ticker = None if clock_rate_hz is None else ClockTicker(session, clock_rate_hz)
         self._signals_seen_s = 0.0
 
-    def advertise(self, topics: Sequence[BagTopic], names: Mapping[str, str]) -> list[str]:
+    def advertise(
+        self,
+        topics: Sequence[BagTopic],
+        names: Mapping[str, str],
+        overrides: Mapping[str, OfferedQos] | None = None,
+    ) -> list[str]:
         """Make the publishers, and wait until those who listen already have found them.
 
         What cannot be played is said and left out.
@@ -73,6 +79,7 @@ class BagPlayer:
         Args:
             topics: to be played.
             names: under which some of them are published, by the names in the bag.
+            overrides: quality of service of some, where not as recorded, by the names in the bag.
 
         Returns:
             The names of the topics that can be played.
@@ -88,7 +95,9 @@ class BagPlayer:
             except NotFoundError as error:
                 _say(f"{topic.name} is not played: {error}")
                 continue
-            publisher = node.create_publisher(message_class, name, playing_profile(topic.offers))
+            override = (overrides or {}).get(topic.name)
+            profile = playing_profile(topic.offers if override is None else [override])
+            publisher = node.create_publisher(message_class, name, profile)
             if self._has_other_definition(topic, name):
                 _say(f"{topic.name} is not played: its {topic.type} had other fields than now")
                 node.destroy_publisher(publisher)

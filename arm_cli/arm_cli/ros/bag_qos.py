@@ -37,9 +37,16 @@ def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
     )
 
 
-def recording_profile(publishers: Sequence[TopicEndpointInfo]) -> QoSProfile:
-    """Return a subscription's profile that gets all that every one of the publishers offers."""
-    profile = matching_profile(publishers)
+def recording_profile(
+    publishers: Sequence[TopicEndpointInfo], override: OfferedQos | None = None
+) -> QoSProfile:
+    """Return a subscription's profile that gets all that every one of the publishers offers.
+
+    Args:
+        publishers: of the topic.
+        override: what the user wants instead.
+    """
+    profile = matching_profile(publishers) if override is None else playing_profile([override])
     profile.depth = RECORDING_DEPTH
     return profile
 
@@ -54,6 +61,8 @@ def playing_profile(offers: Sequence[OfferedQos]) -> QoSProfile:
     profile = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth)
     if not offers:
         return profile
+    if any(offer.history == "keep_all" for offer in offers):
+        profile.history = HistoryPolicy.KEEP_ALL
     reliable = any(offer.reliability != "best_effort" for offer in offers)
     latched = any(offer.durability == "transient_local" for offer in offers)
     profile.reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT

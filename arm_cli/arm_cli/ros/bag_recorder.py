@@ -3,11 +3,14 @@
 import sys
 import time
 from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.offered_qos import OfferedQos
 from arm_cli.bag.recording import Recording
 from arm_cli.bag.topic_selection import TopicSelection
 from arm_cli.bag.type_definition import find_definition
@@ -43,6 +46,7 @@ class BagRecorder:
         selection: TopicSelection,
         poll_period_s: float,
         use_sim_time: bool,
+        overrides: Mapping[str, OfferedQos] | None = None,
     ) -> None:
         """Prepare.
 
@@ -52,6 +56,7 @@ class BagRecorder:
             selection: what is recorded.
             poll_period_s: of looking for new topics.
             use_sim_time: whether messages get the time of the session's clock.
+            overrides: quality of service of subscriptions, where not that of the publishers.
         """
         self.lost: Counter[str] = Counter()
         self._session = session
@@ -60,6 +65,7 @@ class BagRecorder:
         self._selection = selection
         self._poll_period_s = poll_period_s
         self._use_sim_time = use_sim_time
+        self._overrides = overrides or {}
         self._polled = PolledSubscriptions(session.node)
         self._index = InterfaceIndex()
         self._subscriptions: dict[str, tuple[Subscription, QoSProfile, type]] = {}
@@ -134,13 +140,16 @@ class BagRecorder:
             offers=tuple(offered_qos(publisher) for publisher in publishers),
         )
         self._recording.add_topic(topic, find_definition(self._index, topic.type))
-        self._open(name, message_class, recording_profile(publishers))
+        self._open(name, message_class, self._profile(name, publishers))
         _say(f"Subscribed to topic '{name}'")
 
     def _open(self, name: str, message_class: type, profile: QoSProfile) -> None:
         subscription = self._polled.subscribe(message_class, name, profile)
         self._subscriptions[name] = (subscription, profile, message_class)
         self._numbers[name] = WriterNumbers(lambda: len(self._graph.publishers(name)))
+
+    def _profile(self, name: str, publishers: Sequence[TopicEndpointInfo]) -> QoSProfile:
+        return recording_profile(publishers, self._overrides.get(name))
 
     def _take_all(self) -> None:
         put = self._recording.put
@@ -167,7 +176,7 @@ class BagRecorder:
             publishers = self._graph.publishers(name)
             if not publishers:
                 continue
-            wanted = recording_profile(publishers)
+            wanted = self._profile(name, publishers)
             if (wanted.reliability, wanted.durability) != (profile.reliability, profile.durability):
                 self._session.node.destroy_subscription(subscription)
                 self._open(name, message_class, wanted)

@@ -48,10 +48,8 @@ class NodeParameters:
         values = self.values([name])
         if values and values[0].type:
             return values[0]
-        known = self.names()
-        if name in known:
-            return values[0] if values else ParameterValue()
-        raise self.unknown(name, known)
+        self.check_known(name)
+        return values[0] if values else ParameterValue()
 
     def descriptors(self, names: Sequence[str]) -> list[ParameterDescriptor]:
         """Return the descriptors of parameters."""
@@ -64,10 +62,17 @@ class NodeParameters:
         request = SetParameters.Request(parameters=parameters)
         return list(self._call(SetParameters, "set_parameters", request).results)
 
-    def unknown(self, name: str, known: Sequence[str]) -> NotFoundError:
-        """Return the error about a parameter that the node does not have."""
-        hint = describe_known(name, known, "it has")
-        return NotFoundError(f"{self._node.full_name} has no parameter {name!r}; {hint}")
+    def check_known(self, *names: str) -> None:
+        """Check that the node has parameters.
+
+        Raises:
+            NotFoundError: it does not have one; the message names near ones.
+        """
+        known = self.names()
+        for name in names:
+            if name not in known:
+                hint = describe_known(name, known, "it has")
+                raise NotFoundError(f"{self._node.full_name} has no parameter {name!r}; {hint}")
 
     def _call(self, service_class: Any, service: str, request: Any) -> Any:
         name = f"{self._node.full_name}/{service}"

@@ -9,6 +9,7 @@ from typing import Any
 from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
 from arm_cli.errors import UnansweredError, UsageError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.messages.message_filter import add_filter_argument, message_filter
 from arm_cli.output import add_json_argument, print_json
 from arm_cli.qos_options import add_qos_arguments, qos_choice
 from arm_cli.ros import completers
@@ -35,12 +36,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--timeout", type=positive_number, metavar="SECONDS", help="end after so many seconds"
     )
     parser.add_argument("--field", metavar="PATH", help="only a part, such as pose.position")
-    parser.add_argument(
-        "--filter", metavar="EXPRESSION", help="only messages m for which this Python is true"
-    )
+    add_filter_argument(parser)
     parser.add_argument(
         "-i", "--include-message-info", action="store_true", help="also when it was sent and came"
     )
+    # What they are about goes without saying here; but lines written for ros2 have them.
+    for option in ("--use-sim-time", "--no-lost-messages"):
+        parser.add_argument(option, action="store_true", help=argparse.SUPPRESS)
     _add_format_arguments(parser)
     add_qos_arguments(parser, "what fits the topic's publishers")
 
@@ -114,20 +116,10 @@ def _printer(options: argparse.Namespace) -> "MessagePrinter":
             options.no_str,
         ),
         path=FieldPath.parse(options.field) if options.field else None,
-        accepts=_filter(options.filter),
+        accepts=message_filter(options.filter or "True"),
         with_info=options.include_message_info,
         limit=1 if options.once else options.times,
     )
-
-
-def _filter(expression: str | None) -> Callable[[Any], bool]:
-    if expression is None:
-        return lambda _: True
-    try:
-        code = compile(expression, "--filter", "eval")
-    except SyntaxError as error:
-        raise UsageError(f"--filter {expression!r} is no Python expression") from error
-    return lambda message: bool(eval(code, {"m": message}))
 
 
 @dataclass(slots=True)
