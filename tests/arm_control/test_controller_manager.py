@@ -136,6 +136,13 @@ def test_an_active_controller_is_not_cleaned_up(bench: Any) -> None:
         bench.manager.cleanup_controller("a")
 
 
+def test_a_finalized_controller_is_not_cleaned_up(bench: Any) -> None:
+    bench.configure("a")
+    bench.manager.shutdown()
+    with pytest.raises(ControllerManagerError, match="cleaned-up from 'finalized'"):
+        bench.manager.cleanup_controller("a")
+
+
 def test_unload_cleans_up_shuts_down_and_forgets(bench: Any) -> None:
     bench.configure("a")
     bench.manager.unload_controller("a")

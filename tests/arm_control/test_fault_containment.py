@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from arm_control import ControllerManager, LifecycleState, SwitchRequest
+from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
 from arm_control.hardware import HardwareReturn
 from arm_control.testing import FakeHardware, fake_hardware
 
@@ -163,3 +163,36 @@ def test_observers_hear_of_every_fault(cell: Cell, observer: Any) -> None:
         ("watcher", "deactivate"),
     }
     assert observer.changes > 0
+
+
+@pytest.mark.parametrize("step", ["configure", "activate", "deactivate", "cleanup"])
+def test_a_controller_that_raises_in_a_transition_is_told_and_holds_nothing(
+    bench: Any, step: str
+) -> None:
+    manager, probe = bench.manager, bench.load("a")
+    probe.raises.add(step)
+    said: list[str] = []
+    try:
+        manager.configure_controller("a", probe.parameters_type(("j0/position",)))
+        said.append(manager.switch_controller(SwitchRequest(("a",))).message)
+        said.append(manager.switch_controller(SwitchRequest((), ("a",))).message)
+        manager.cleanup_controller("a")
+    except ControllerManagerError as error:
+        said.append(str(error))
+    reasons = (f"a broke in {step}", f"Unable to {step} controllers: [ a ]")
+    assert any(reason in message for reason in reasons for message in said), said
+    assert bench.states() == {"a": "inactive" if step == "cleanup" else "unconfigured"}
+    assert manager.resources.claimant("j0/position") is None
+
+
+def test_a_thousand_switches_leave_one_holder(bench: Any) -> None:
+    names = ["a", "b"]
+    for name in names:
+        bench.configure(name, commands=("j0/position",))
+    for _ in range(1000):
+        started, stopped = names
+        assert bench.manager.switch_controller(SwitchRequest((started,), (stopped,))).ok
+        bench.tick()
+        assert bench.manager.resources.claimant("j0/position") == started
+        names.reverse()
+    assert bench.states() == {"a": "inactive", "b": "active"}

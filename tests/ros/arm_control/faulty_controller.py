@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from arm_control import Controller, ControllerContext, InterfaceConfiguration, ReturnType, parameter
 
+SLOW_START_S = 1.2
+"""More than the manager waits by default until a switch has begun."""
+
 BLOCKED_S = 0.15
 """Fifteen periods: far too long, and short enough for everybody else to get a word in."""
 
@@ -15,7 +18,7 @@ class FaultyParameters:
 
     joints: tuple[str, ...] = parameter((), "Joints whose position it commands")
     fault: str = parameter(
-        "none", "What its update does", one_of=("none", "raise", "error", "block")
+        "none", "What it does", one_of=("none", "raise", "error", "block", "start slowly")
     )
 
 
@@ -41,6 +44,10 @@ class FaultyController(Controller[FaultyParameters]):
 
     def update_parameters(self, parameters: FaultyParameters) -> None:
         self._parameters = parameters
+
+    def on_activate(self) -> None:
+        if self._parameters.fault == "start slowly":
+            threading.Event().wait(SLOW_START_S)
 
     def update(self, time_s: float, period_s: float) -> ReturnType:
         match self._parameters.fault:

@@ -119,6 +119,17 @@ def test_a_blocking_controller_overruns_and_everybody_is_still_answered(
     assert control.switch([], ["faulty"]).ok
 
 
+def test_a_switch_to_a_controller_that_starts_slowly_is_answered_with_what_came_of_it(
+    control: Any, set_parameter: Any
+) -> None:
+    assert control.load("bystander")
+    assert set_parameter("/bystander", "fault", "start slowly").successful
+    assert control.configure("bystander")
+    answer = control.switch(["bystander"])
+    assert (answer.ok, answer.message) == (True, "Successfully switched controllers!")
+    assert control.states() == {"bystander": "active"}
+
+
 @pytest.mark.parametrize(
     ("order", "hardware", "line"),
     [
