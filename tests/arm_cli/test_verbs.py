@@ -53,6 +53,63 @@ def test_a_family_without_a_verb_lists_its_verbs(capsys):
 
 
 @pytest.mark.parametrize(
+    "line",
+    [
+        "topic list -t -c -v --include-hidden-topics --no-daemon --spin-time 2",
+        "topic echo /x --qos-profile sensor_data --qos-depth 5 --qos-history keep_last "
+        "--qos-reliability reliable --qos-durability volatile --csv -n 2 --field a --filter m.a",
+        "topic echo /x --flow-style --no-arr --no-str -f -l 5 --timeout 3 --include-message-info "
+        "--no-lost-messages --use-sim-time --raw --once",
+        "topic hz /x -w 5 --wall-time --filter m.a",
+        "topic bw /x --window 5",
+        "topic delay /x --window 5",
+        "topic pub -t 3 -r 2 -p 2 -w 1 --keep-alive 1 --max-wait-time-secs 2 -n me "
+        "--qos-liveliness automatic /x std_msgs/msg/String",
+        "topic find std_msgs/msg/String -c --include-hidden-topics",
+        "node list -a -c",
+        "node info /x --include-hidden",
+        "param list /x --filter a --param-type --param-prefixes a b",
+        "param list --include-hidden-nodes",
+        "param get /x a --hide-type --include-hidden-nodes",
+        "param dump /x --print --output-dir .",
+        "param load /x f.yaml --no-use-wildcard",
+        "param describe /x a b",
+        "param delete /x a",
+        "service list -t -c --include-hidden-services",
+        "service find std_srvs/srv/Empty -c",
+        "service call /x std_srvs/srv/Empty {} -r 1",
+        "action list -t -c",
+        "action info /x -t -c",
+        "action find control_msgs/action/GripperCommand -c",
+        "action send_goal /x control_msgs/action/GripperCommand {} -f",
+        "interface list -m -s -a",
+        "interface packages --only-msgs",
+        "interface package std_msgs -m",
+        "interface show std_msgs/msg/String --all-comments",
+        "interface proto std_msgs/msg/String --no-quotes",
+        "lifecycle nodes -a -c",
+        "lifecycle list /x -a",
+        "pkg prefix x --share",
+        "pkg executables x --full-path",
+        "pkg xml x -t version",
+        "bag record -a -s mcap -o d -b 5 -d 5 --max-cache-size 9 --exclude-regex a "
+        "--exclude-topics /a /b --include-hidden-topics --no-discovery -p 100 --use-sim-time "
+        "--compression-mode file --compression-format zstd --storage-preset-profile zstd_fast "
+        "--node-name me --qos-profile-overrides-path f.yaml --disable-keyboard-controls",
+        "bag record --topics /a /b -e c",
+        "bag info . -s mcap -v -t --sort count",
+        "bag play . -s mcap -r 2 -l --start-offset 1 --playback-duration 2 --clock 50 -d 1 "
+        "--topics /a --exclude-topics /b -e c -x d -m /a:=/b --read-ahead-queue-size 9 "
+        "--qos-profile-overrides-path f.yaml --disable-keyboard-controls",
+    ],
+)
+def test_ros2_s_flags_are_known(line):
+    words = line.split()
+    verb = dict(leaves())[f"arm {words[0]} {words[1]}"]
+    assert verb.parser("arm").parse_words(words[2:])
+
+
+@pytest.mark.parametrize(
     ("words", "sentence"),
     [
         (["topic", "ech"], "arm topic: no verb 'ech'; did you mean 'echo'?"),

@@ -17,6 +17,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sort", choices=SORTINGS, default="name", help="order of the topics (default name)"
     )
+    # It is about services, of which a bag has none; but lines written for ros2 have it.
+    parser.add_argument("-v", "--verbose", action="store_true", help=argparse.SUPPRESS)
     add_json_argument(parser)
 
 

@@ -18,6 +18,8 @@ def add_node_argument(parser: argparse.ArgumentParser) -> None:
     complete_with(
         parser.add_argument("node_name", help="such as /arm_controller_node"), completers.nodes
     )
+    # A node that is named may always be a hidden one; but lines written for ros2 say so.
+    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
 
 
 @contextmanager
