@@ -22,6 +22,7 @@ SCRIPTS = (
     "camera_rate.py",
     "load_time.py",
     "world_changes.py",
+    "physics_speed.py",
     "bag_recording.py",
     "page.py",
 )
