@@ -3,7 +3,7 @@
 import threading
 from dataclasses import dataclass
 
-from arm_control import Controller, ControllerContext, InterfaceConfiguration, ReturnType, parameter
+from arm_control import Controller, InterfaceConfiguration, ReturnType, parameter
 
 SLOW_START_S = 1.2
 """More than the manager waits by default until a switch has begun."""
@@ -27,30 +27,20 @@ class FaultyController(Controller[FaultyParameters]):
 
     parameters_type = FaultyParameters
 
-    def __init__(self, context: ControllerContext) -> None:
-        super().__init__(context)
-        self._parameters = FaultyParameters()
-
     def command_interface_configuration(self) -> InterfaceConfiguration:
         return InterfaceConfiguration.individual(
-            f"{joint}/position" for joint in self._parameters.joints
+            f"{joint}/position" for joint in self.parameters.joints
         )
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
         return InterfaceConfiguration.none()
 
-    def on_configure(self, parameters: FaultyParameters) -> None:
-        self._parameters = parameters
-
-    def update_parameters(self, parameters: FaultyParameters) -> None:
-        self._parameters = parameters
-
     def on_activate(self) -> None:
-        if self._parameters.fault == "start slowly":
+        if self.parameters.fault == "start slowly":
             threading.Event().wait(SLOW_START_S)
 
     def update(self, time_s: float, period_s: float) -> ReturnType:
-        match self._parameters.fault:
+        match self.parameters.fault:
             case "raise":
                 raise RuntimeError("out of order")
             case "error":
