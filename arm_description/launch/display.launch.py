@@ -1,6 +1,14 @@
 """Any robot without physics: its frames, and the page in the browser whose sliders move it."""
 
-from launch_py import DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
+import os
+from pathlib import Path
+
+from launch_py import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    LaunchDescription,
+)
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
@@ -11,6 +19,13 @@ def describe(model: str, camera: str) -> str:
     from arm_description.xacro_expansion import expand_xacro
 
     return expand_xacro(model, {"camera": camera})
+
+
+def own_folders(model: str) -> str:
+    """Return where the page finds the meshes of a model that is not installed."""
+    from arm_description.resources import folders_of
+
+    return os.pathsep.join(map(str, folders_of(Path(model))))
 
 
 def sliders(viewer: str) -> str:
@@ -39,6 +54,9 @@ def generate_launch_description() -> LaunchDescription:
                 default_value="true",
                 description="open the page in the browser; false: joint_state_publisher instead",
                 choices=["true", "false"],
+            ),
+            AppendEnvironmentVariable(
+                "GZ_SIM_RESOURCE_PATH", Call(own_folders, LaunchConfiguration("model"))
             ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(

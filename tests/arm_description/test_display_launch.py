@@ -20,3 +20,16 @@ def test_one_publishes_joint_states_or_none(capsys, arguments, started):
 
     assert main([*line, *arguments]) == 0
     assert NODES & set(capsys.readouterr().out.splitlines()) == started
+
+
+def test_the_page_looks_for_meshes_where_the_model_is(capsys, tmp_path):
+    model = tmp_path / "arm_x" / "urdf" / "arm.urdf"
+    model.parent.mkdir(parents=True)
+    model.write_text('<robot name="r"><link name="a"/></robot>')
+    (tmp_path / "arm_x" / "package.xml").write_text("<package><name>arm_x</name></package>")
+    assert (
+        main(["launch", "arm_description", "display.launch.py", "--print", f"model:={model}"]) == 0
+    )
+    page = capsys.readouterr().out.partition("\narm_viewer_node\n")[2]
+    (folders,) = (line for line in page.splitlines() if "GZ_SIM_RESOURCE_PATH=" in line)
+    assert str(tmp_path) in folders.partition("=")[2].split(":")
