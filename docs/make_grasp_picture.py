@@ -47,7 +47,7 @@ def take_picture() -> Image:
     while not pictures:
         rclpy.spin_once(node)
     node.destroy_node()
-    rclpy.try_shutdown()
+    rclpy.shutdown()
     return pictures[-1]
 
 

@@ -91,29 +91,24 @@ def take_camera_picture(path: Path) -> None:
     launcher = subprocess.Popen([sys.executable, "-m", "arm_cli", "launch", "world:=objects"])
     rclpy.init()
     node = Node("make_pictures")
-    latest: dict[str, Image | JointState] = {}
-    node.create_subscription(JointState, "/joint_states", lambda m: latest.update(states=m), 10)
-    node.create_subscription(Image, "/videocamera", lambda m: latest.update(image=m), 10)
+    states: list[JointState] = []
+    images: list[Image] = []
+    node.create_subscription(JointState, "/joint_states", states.append, 10)
+    node.create_subscription(Image, "/videocamera", images.append, 10)
     commands = node.create_publisher(Float64MultiArray, "/position_controller/commands", 10)
     command = Float64MultiArray(data=INTO_THE_VIEW)
     node.create_timer(0.5, lambda: commands.publish(command))
 
-    def there() -> bool:
-        states = latest.get("states")
-        return isinstance(states, JointState) and np.allclose(
-            states.position, INTO_THE_VIEW, atol=0.01
-        )
-
-    while not there():
+    while not (states and np.allclose(states[-1].position, INTO_THE_VIEW, atol=0.01)):
         rclpy.spin_once(node)
-    latest.pop("image", None)
-    while "image" not in latest:
+    images.clear()
+    while not images:
         rclpy.spin_once(node)
-    image = latest["image"]
+    image = images[-1]
     pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
     cv2.imwrite(str(path), cv2.cvtColor(pixels, cv2.COLOR_RGB2BGR))
     node.destroy_node()
-    rclpy.try_shutdown()
+    rclpy.shutdown()
     launcher.send_signal(signal.SIGINT)
     launcher.wait(30)
 

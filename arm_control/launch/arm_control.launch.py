@@ -1,5 +1,7 @@
 """The controllers of a world that is already up: one spawner after the other, each when ready."""
 
+from typing import Any
+
 from launch_py import DeclareLaunchArgument, LaunchDescription, ProcessExited
 from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.ros import FindPackageShare, Node
@@ -22,7 +24,7 @@ def generate_launch_description() -> LaunchDescription:
         is_ros1, if_value="/arm/controller_manager", else_value="/controller_manager"
     )
 
-    def spawner(*names: str, **options: object) -> Node:
+    def spawner(*names: str, **options: Any) -> Node:
         return Node(
             package="arm_control",
             executable="spawner",

@@ -4,6 +4,7 @@ import os
 import shutil
 
 from launch_py import (
+    Action,
     DeclareLaunchArgument,
     ExecuteProcess,
     IncludeLaunchDescription,
@@ -63,7 +64,7 @@ def publisher(name: str, condition: IfCondition | None = None) -> Node:
     )
 
 
-def rviz(context: LaunchContext) -> list:
+def rviz(context: LaunchContext) -> list[Action]:
     """Return RViz."""
     words = context.launch_configurations
     frame = ("-f", words["fixed_frame"]) if words["fixed_frame"] else ()

@@ -4,8 +4,10 @@ import os
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from launch_py import (
+    Action,
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
     ExecuteProcess,
@@ -79,7 +81,7 @@ NODE_ARGUMENTS = {
 }
 
 
-def declared(arguments: dict) -> list[DeclareLaunchArgument]:
+def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
     """Return the declarations of a table of arguments."""
     return [
         DeclareLaunchArgument(
@@ -100,7 +102,7 @@ def take_gz_args(context: LaunchContext) -> None:
         context.launch_configurations.setdefault(name, value)
 
 
-def simulate(context: LaunchContext) -> list:
+def simulate(context: LaunchContext) -> list[Action]:
     """Return the nodes of a robot, or of several, and what was made up for them."""
     # Here, so that --show-args needs nothing but this file.
     from arm_gazebo.display import check_display
@@ -129,14 +131,14 @@ def simulate(context: LaunchContext) -> list:
     ]
 
 
-def simulate_several(path: str) -> list:
+def simulate_several(path: str) -> list[Action]:
     """Return the nodes of the robots that a file names, in one world."""
     from arm_gazebo.controllers_file import controllers_below
     from arm_gazebo.placed_description import placed
     from arm_gazebo.robot_setup import set_up_robot
     from arm_gazebo.robots_file import read_robots_file
 
-    settings: dict = {}
+    settings: dict[str, Any] = {}
     controllers, others = [], []
     for name, robot in read_robots_file(path).items():
         setup = set_up_robot(
@@ -160,7 +162,7 @@ def files_findable(folders: Iterable[Path]) -> AppendEnvironmentVariable:
     return AppendEnvironmentVariable(MODEL_PATH, os.pathsep.join(map(str, folders)))
 
 
-def simulation(settings: dict, controllers: list, namespace: str = "") -> Node:
+def simulation(settings: dict[str, Any], controllers: list[Any], namespace: str = "") -> Node:
     """Return the node that simulates; `settings` are what its arguments do not tell."""
     every = {**settings, **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS}}
     return Node(

@@ -3,6 +3,7 @@
 import shutil
 
 from launch_py import (
+    Action,
     DeclareLaunchArgument,
     IncludeLaunchDescription,
     LaunchDescription,
@@ -47,7 +48,7 @@ ARGUMENTS = {
 }
 
 
-def choose_controllers(context: LaunchContext) -> list:
+def choose_controllers(context: LaunchContext) -> list[Action]:
     """Return the setting of which controllers start; sliders and a broadcaster exclude each other.
 
     Raises:
@@ -92,7 +93,7 @@ def simulation() -> IncludeLaunchDescription:
     )
 
 
-def argument(name: str) -> list:
+def argument(name: str) -> list[str | LaunchConfiguration]:
     """Return a word for xacro that passes on one of this file's arguments."""
     return [f"'{name}:=", LaunchConfiguration(name), "' "]
 

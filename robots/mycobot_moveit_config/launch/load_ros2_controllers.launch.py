@@ -1,5 +1,7 @@
 """The myCobot's controllers, in a simulation that is up: one after the other, each when ready."""
 
+from typing import Any
+
 from launch_py import DeclareLaunchArgument, LaunchDescription, ProcessExited
 from launch_py.conditions import IfCondition
 from launch_py.ros import Node
@@ -9,7 +11,7 @@ from launch_py.substitutions import LaunchConfiguration
 def generate_launch_description() -> LaunchDescription:
     """Return the spawners of the broadcaster, the arm and the gripper."""
 
-    def spawner(controller: str, **options: object) -> Node:
+    def spawner(controller: str, **options: Any) -> Node:
         return Node(
             package="arm_control",
             executable="spawner",

@@ -1,6 +1,7 @@
 """A world without a robot, by Gazebo's own words: gz_args:="shapes.sdf"."""
 
 from launch_py import (
+    Action,
     DeclareLaunchArgument,
     IncludeLaunchDescription,
     LaunchDescription,
@@ -16,7 +17,7 @@ from launch_py.substitutions import PathJoinSubstitution
 RUN = "-r"
 
 
-def run_at_once(context: LaunchContext) -> list:
+def run_at_once(context: LaunchContext) -> list[Action]:
     """Take words without -r, too: a world in which nobody does anything need not wait for it."""
     words = context.launch_configurations["gz_args"]
     if not words.strip() or RUN in words.split():
