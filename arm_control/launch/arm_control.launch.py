@@ -12,63 +12,63 @@ from launch_py.substitutions import (
     PathJoinSubstitution,
 )
 
+IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+
+
+def spawner(*names: str, **options: Any) -> Node:
+    """Return what starts controllers in the manager that the arguments name."""
+    return Node(
+        package="arm_control",
+        executable="spawner",
+        exec_name=f"spawner_{names[0]}",
+        arguments=[
+            *names,
+            "--controller-manager",
+            LaunchConfiguration("controller_manager"),
+            "--param-file",
+            LaunchConfiguration("controllers"),
+        ],
+        ready=ProcessExited(),
+        **options,
+    )
+
+
+def arguments() -> list[DeclareLaunchArgument]:
+    """Return the declarations."""
+    file = IfElseSubstitution(
+        IS_ROS1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
+    )
+    return [
+        DeclareLaunchArgument(
+            "interface",
+            default_value="ros2",
+            choices=["ros2", "ros1"],
+            description="one controller of all joints, or as in ROS 1 one for each under /arm",
+        ),
+        DeclareLaunchArgument(
+            "controllers",
+            default_value=PathJoinSubstitution([FindPackageShare("arm_control"), "config", file]),
+            description="parameter file of the controllers",
+        ),
+        DeclareLaunchArgument(
+            "controller_manager",
+            default_value=IfElseSubstitution(
+                IS_ROS1, if_value="/arm/controller_manager", else_value="/controller_manager"
+            ),
+            description="the controller manager's node",
+        ),
+    ]
+
 
 def generate_launch_description() -> LaunchDescription:
     """Return the spawners of the broadcaster and of what commands positions."""
-    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
-    file = IfElseSubstitution(
-        is_ros1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
-    )
-    controllers = PathJoinSubstitution([FindPackageShare("arm_control"), "config", file])
-    manager = IfElseSubstitution(
-        is_ros1, if_value="/arm/controller_manager", else_value="/controller_manager"
-    )
-
-    def spawner(*names: str, **options: Any) -> Node:
-        return Node(
-            package="arm_control",
-            executable="spawner",
-            exec_name=f"spawner_{names[0]}",
-            arguments=[
-                *names,
-                "--controller-manager",
-                LaunchConfiguration("controller_manager"),
-                "--param-file",
-                LaunchConfiguration("controllers"),
-            ],
-            ready=ProcessExited(),
-            **options,
-        )
-
     broadcaster = spawner("joint_state_broadcaster")
     position = spawner(
-        "position_controller", depends_on=broadcaster, condition=UnlessCondition(is_ros1)
+        "position_controller", depends_on=broadcaster, condition=UnlessCondition(IS_ROS1)
     )
     single = spawner(
         *(f"j{i}p_controller" for i in range(4)),
         depends_on=broadcaster,
-        condition=IfCondition(is_ros1),
+        condition=IfCondition(IS_ROS1),
     )
-    return LaunchDescription(
-        [
-            DeclareLaunchArgument(
-                "interface",
-                default_value="ros2",
-                choices=["ros2", "ros1"],
-                description="one controller of all joints, or as in ROS 1 one for each under /arm",
-            ),
-            DeclareLaunchArgument(
-                "controllers",
-                default_value=controllers,
-                description="parameter file of the controllers",
-            ),
-            DeclareLaunchArgument(
-                "controller_manager",
-                default_value=manager,
-                description="the controller manager's node",
-            ),
-            broadcaster,
-            position,
-            single,
-        ]
-    )
+    return LaunchDescription([*arguments(), broadcaster, position, single])

@@ -8,19 +8,20 @@ from launch_py.ros import Node
 from launch_py.substitutions import LaunchConfiguration
 
 
+def spawner(controller: str, **options: Any) -> Node:
+    """Return what starts a controller in the manager that the arguments name."""
+    return Node(
+        package="arm_control",
+        executable="spawner",
+        exec_name=f"spawner_{controller}",
+        arguments=[controller, "--controller-manager", LaunchConfiguration("manager")],
+        ready=ProcessExited(),
+        **options,
+    )
+
+
 def generate_launch_description() -> LaunchDescription:
     """Return the spawners of the broadcaster, the arm and the gripper."""
-
-    def spawner(controller: str, **options: Any) -> Node:
-        return Node(
-            package="arm_control",
-            executable="spawner",
-            exec_name=f"spawner_{controller}",
-            arguments=[controller, "--controller-manager", LaunchConfiguration("manager")],
-            ready=ProcessExited(),
-            **options,
-        )
-
     broadcaster = spawner("joint_state_broadcaster")
     arm = spawner("arm_controller", depends_on=broadcaster)
     gripper = spawner(
