@@ -60,7 +60,8 @@ def find_package(
     """
     tried: dict[Path, None] = {}
     for folder in package_folders(name, search_path, environ):
-        if folder.is_dir():
+        # os.path.isdir, unlike Path.is_dir, takes names that no folder can have.
+        if os.path.isdir(folder):
             return folder
         tried[folder] = None
     raise ResourceNotFoundError(f"no package '{name}'; tried {', '.join(map(str, tried))}")
@@ -151,7 +152,7 @@ def _model_folders(environ: Mapping[str, str]) -> list[Path]:
 
 def _folders_in(folder: Path) -> list[Path]:
     try:
-        return sorted(path for path in folder.iterdir() if path.is_dir())
+        return sorted(path for path in folder.iterdir() if os.path.isdir(path))
     except OSError:
         return []
 

@@ -119,6 +119,8 @@ def test_what_names_no_file_is_said(uri, message):
 def test_names_that_no_file_can_have_are_not_found(name):
     with pytest.raises(ResourceNotFoundError, match="no file for"):
         resolve_uri(f"package://robot/{name}")
+    with pytest.raises(ResourceNotFoundError, match="no package"):
+        find_package(name)
 
 
 @pytest.mark.parametrize("uri", ["package://robot/../other/a.stl", "model://robot/x/../../a.stl"])

@@ -32,6 +32,7 @@ class Arm:
     dynamics: str = ""
     thickness: float = 0.15
     bodies: tuple[str, ...] = field(default=())
+    kinds: tuple[str, ...] = field(default=())
 
     def urdf(self) -> str:
         """Return the description, without a <ros2_control> block."""
@@ -41,13 +42,14 @@ class Arm:
             radius = self.thickness * length + 0.005
             across = mass * (3 * radius**2 + length**2) / 12
             body = self.bodies[index] if self.bodies else ""
+            kind = self.kinds[index] if self.kinds else "revolute"
             parts.append(
                 f'<link name="l{index}"><inertial><origin xyz="0 0 {length / 2}"/>'
                 f'<mass value="{mass}"/><inertia ixx="{across}" iyy="{across}" '
                 f'izz="{mass * radius**2 / 2}" ixy="0" ixz="0" iyz="0"/></inertial>{body}</link>'
             )
             parts.append(
-                f'<joint name="j{index}" type="revolute"><parent link="{parent}"/>'
+                f'<joint name="j{index}" type="{kind}"><parent link="{parent}"/>'
                 f'<child link="l{index}"/><origin xyz="0 0 {height}"/><axis xyz="{axis}"/>'
                 f'<limit lower="-2.9" upper="2.9" effort="{self.efforts[index]}" '
                 f'velocity="{self.speeds[index]}"/>{self.dynamics}</joint>'
@@ -100,6 +102,30 @@ ARMS = {
         (5.8, 6.4, 3.5, 3.5, 3.5, 1.8, 1.2),
         (320, 320, 176, 176, 110, 40, 40),
         (1.7, 1.7, 1.7, 2.2, 2.4, 3.1, 3.1),
+    ),
+    "on a rail": Arm(
+        (X, *PARALLEL),
+        (0.1, *UR["lengths"]),
+        (25.0, *UR["masses"]),
+        (2000, 150, 150, 150, 28, 28, 28),
+        (1.0, *(3.1,) * 6),
+        kinds=("prismatic", *("revolute",) * 6),
+    ),
+    "seven joints, every other one without end": Arm(
+        SEVEN,
+        (0.28, 0.21, 0.21, 0.21, 0.21, 0.1, 0.06),
+        (1.4, 1.2, 1.2, 0.9, 0.7, 0.7, 0.4),
+        (39, 39, 39, 39, 9, 9, 9),
+        (1.4, 1.4, 1.4, 1.4, 1.2, 1.2, 1.2),
+        kinds=("continuous", "revolute") * 3 + ("continuous",),
+    ),
+    "a quill at the end": Arm(
+        (Z, Z, Z, Z),
+        (0.1, 0.1, 0.3, 0.03),
+        (9.0, 6.5, 1.2, 0.4),
+        (120, 70, 250, 8),
+        (6.9, 10.5, 1.1, 26.0),
+        kinds=("revolute", "revolute", "prismatic", "revolute"),
     ),
     "tiny": Arm(SPHERICAL, **TINY, efforts=(1.5, 1.5, 1.5, 0.5, 0.5, 0.5), speeds=(3,) * 6),
     "tiny, far too strong": Arm(SPHERICAL, **TINY, efforts=(56,) * 6, speeds=(2.8,) * 6),
