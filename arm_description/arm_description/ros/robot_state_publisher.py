@@ -147,7 +147,11 @@ class RobotStatePublisher(Node):
             return
         self._stamp_clock.hear(state.stamp_ns)
         if self._throttle.went_back(self.get_clock().now().nanoseconds):
-            self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
+            # Throttled: with a second /clock about, this is so at every other message.
+            self.get_logger().warning(
+                "Moved backwards in time, re-publishing joint transforms!",
+                throttle_duration_sec=COMPLAINT_INTERVAL_S,
+            )
         outlet = self._outlet(state.names)
         if not outlet.names:
             return

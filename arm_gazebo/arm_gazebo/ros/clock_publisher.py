@@ -18,6 +18,8 @@ class RosClockPublisher:
     """
 
     def __init__(self, node: Node) -> None:
+        self._node = node
+        self._known_publishers = 1
         self._publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
         self._message = MessageTemplate(Clock())
         self._time_s = 0.0
@@ -31,3 +33,19 @@ class RosClockPublisher:
         self._time_s = time_s
         self._message.set_stamps(round(time_s * 1e9))
         self._message.publish(self._publisher)
+
+    def take_warning(self) -> str | None:
+        """Return that others publish the time as well, where there are more than the last time.
+
+        Executor's thread.
+        """
+        topic = self._publisher.topic_name
+        known, self._known_publishers = self._known_publishers, self._node.count_publishers(topic)
+        if self._known_publishers <= max(known, 1):
+            return None
+        infos = self._node.get_publishers_info_by_topic(topic)
+        nodes = ", ".join(f"{i.node_namespace.rstrip('/')}/{i.node_name}" for i in infos)
+        return (
+            f"{topic} has {self._known_publishers} publishers: {nodes}; time jumps to and fro. "
+            "Does another simulation run? End it, or give one of them another ROS_DOMAIN_ID"
+        )

@@ -94,7 +94,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         for feed in feeds:
             feed.start(built.model)
         hardware = [component for robot in robots for component in robot.hardware]
-        _supervise(node, pacer, simulation, hardware, feeds)
+        _supervise(node, clock, pacer, simulation, hardware, feeds)
         starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
         server = starter.submit(
             _serve, simulation, loop, entries, hardware, feeds, settings.world, process.stop
@@ -184,6 +184,7 @@ def _sensor_feed(
 
 def _supervise(
     node: Node,
+    clock: RosClockPublisher,
     pacer: Pacer,
     simulation: Simulation,
     hardware: Sequence[SimulatedHardware],
@@ -195,6 +196,9 @@ def _supervise(
         for component in hardware:
             for warning in component.take_warnings():
                 logger.warning("%s", warning)
+        warning = clock.take_warning()
+        if warning is not None:
+            logger.warning("%s", warning)
         for failure in simulation.take_failures():
             logger.error("%s", failure)
         for feed in feeds:
