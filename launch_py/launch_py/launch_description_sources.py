@@ -75,7 +75,9 @@ def read_launch_file(path: Path) -> LaunchDescription:
     except LaunchError:
         raise
     except Exception as error:
-        raise LaunchFileError(f"{_where(error, path)}: {type(error).__name__}: {error}") from error
+        # A SyntaxError's text names file and line once more.
+        what = error.msg if isinstance(error, SyntaxError) else error
+        raise LaunchFileError(f"{_where(error, path)}: {type(error).__name__}: {what}") from error
     if not isinstance(description, LaunchDescription):
         raise LaunchFileError(
             f"generate_launch_description() of {path} returns "

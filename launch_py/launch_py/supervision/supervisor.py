@@ -284,7 +284,7 @@ class Supervisor:
             for trigger in step.after
         )
         if member.step.ready or needed or not member.was_started:
-            missing = f", before it was ready: {member.missing()}" if member.step.ready else ""
+            missing = f", before it was ready: {member.missing()}" if member.missing() else ""
             code = member.exit_code or EXIT_NOT_READY
             self._fail(Failure(text + missing, code))
             self.stop(f"{member.name} ended before it was ready")
