@@ -1,9 +1,13 @@
 """`arm doctor` beside a running simulation, which is then broken in every way that is cheap."""
 
 import json
+from collections.abc import Iterator
 
+import psutil
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray, String
 from trajectory_msgs.msg import JointTrajectory
@@ -72,23 +76,63 @@ def test_a_controller_at_rest_and_a_command_that_goes_nowhere(doctor, run, clien
     assert mended["commands"]["sentence"] == "commands come on /position_controller/commands"
 
 
-def test_a_command_by_the_wall_clock(doctor, client):
-    trajectories = client.node.create_publisher(JointTrajectory, "/late/joint_trajectory", 10)
-    client.node.create_subscription(JointTrajectory, "/late/joint_trajectory", lambda _: None, 10)
+@pytest.fixture
+def send_trajectories(client):
+    """Return a function that sends trajectories again and again, stamped by a clock."""
 
-    def send() -> None:
-        message = JointTrajectory()
-        message.header.stamp = client.node.get_clock().now().to_msg()
-        trajectories.publish(message)
+    def begin(stamp) -> None:
+        trajectories = client.node.create_publisher(JointTrajectory, "/c/joint_trajectory", 10)
+        client.node.create_subscription(JointTrajectory, "/c/joint_trajectory", lambda _: None, 10)
 
-    client.node.create_timer(0.05, send)
+        def send() -> None:
+            message = JointTrajectory()
+            message.header.stamp = stamp().to_msg()
+            trajectories.publish(message)
+
+        client.node.create_timer(0.05, send)
+
+    return begin
+
+
+def test_a_command_by_the_wall_clock_and_a_second_clock(doctor, client, send_trajectories):
+    send_trajectories(client.node.get_clock().now)
+    client.node.create_publisher(Clock, "/clock", 10)
     found = doctor(lambda f: f["commands"]["severity"] == "error", code=1)
     assert "ahead of the simulation's time" in found["commands"]["sentence"]
     assert "use_sim_time" in found["commands"]["fix"]
+    assert found["duplicate publishers"]["sentence"].startswith("/clock is published by ")
+
+
+def process_of(simulation, name: str) -> psutil.Process:
+    [process] = [p for p in simulation.descendants() if name in str(p.cmdline())]
+    return process
+
+
+@pytest.fixture
+def without_description(simulation) -> Iterator[None]:
+    """Stop the state publisher."""
+    node = process_of(simulation, "robot_state_publisher")
+    node.suspend()
+    yield
+    node.resume()
+
+
+@pytest.mark.usefixtures("without_description")
+def test_hardware_description_and_an_old_command(doctor, run, send_trajectories):
+    component = "HardwareInterface_MuJoCo"
+    run(f"arm control set_hardware_component_state {component} inactive")
+    send_trajectories(lambda: Time(nanoseconds=1))
+    broken = ("hardware", "description", "commands")
+    found = doctor(lambda f: all(f[name]["severity"] == "error" for name in broken), code=1)
+    assert found["hardware"]["sentence"].startswith(f"{component} is inactive")
+    assert "/robot_description" in found["description"]["sentence"]
+    assert "is stale: it was over " in found["commands"]["sentence"]
+    # The fix beside it mends it.
+    assert run(found["hardware"]["fix"]).startswith(f"Successfully set {component} to state ")
 
 
 def test_a_simulation_that_is_stuck(doctor, simulation):
-    [node] = [p for p in simulation.descendants() if "arm_gazebo_node" in str(p.cmdline())]
+    node = process_of(simulation, "arm_gazebo_node")
     node.suspend()
     try:
         found = doctor(lambda f: f.get("joint states", {}).get("severity") == "error", code=1)

@@ -59,8 +59,8 @@ def test_a_parameter_moves_the_arm(run, arrives):
 
 
 def test_parameters_go_to_a_file_and_back(run, start):
-    run("arm param dump /arm_controller_node > params.yaml")
-    text = start("cat params.yaml")
+    run("mkdir folder && arm param dump /arm_controller_node --output-dir folder")
+    text = start("cp folder/arm_controller_node.yaml params.yaml && cat params.yaml")
     text.wait()
     assert text.out.startswith("/arm_controller_node:\n  ros__parameters:\n")
     loaded = run("arm param load /arm_controller_node params.yaml", code=1)

@@ -66,6 +66,10 @@ LINES = {
         r"^  Action Servers:\n\n  Action Clients:\n$",
     ],
     "arm param list /arm_controller_node": [r"^  desired_param$"],
+    "arm param list --filter desired": [r"^/arm_controller_node:\n  desired_param\n/"],
+    "timeout -s INT 30 arm topic hz /joint_states --wall-time --filter 'm.name' | head -n 1": [
+        r"^average rate: \d+\.\d{3}$"
+    ],
     "arm param describe /arm_controller_node print_period": [r"^  Type: double$"],
     "arm service type /controller_manager/list_controllers": [
         r"^controller_manager_msgs/srv/ListControllers$"
