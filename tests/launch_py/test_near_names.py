@@ -1,0 +1,21 @@
+"""What is said of a name that does not exist."""
+
+import pytest
+
+from launch_py.near_names import MAX_LISTED, describe_known
+
+MANY = [f"/topic_{n}" for n in range(MAX_LISTED + 1)]
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "hint"),
+    [
+        ("ech", ["echo", "hz"], "did you mean 'echo'?"),
+        ("states", ["/left/joint_states", "/tf"], "did you mean '/left/joint_states'?"),
+        ("zzz", ["b", "a", "b"], "it has a, b"),
+        ("zzz", [], "it has none"),
+        ("zzz", MANY, f"none of the {len(MANY)} is named like it"),
+    ],
+)
+def test_near_names_come_first_then_a_list_that_is_not_too_long(name, known, hint):
+    assert describe_known(name, known, "it has") == hint
