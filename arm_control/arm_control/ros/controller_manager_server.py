@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from controller_manager_msgs.msg import ControllerManagerActivity
-from rclpy.executors import Executor, MultiThreadedExecutor
+from rclpy.executors import Executor
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
@@ -21,6 +21,7 @@ from arm_control.ros.convert import activity_message
 from arm_control.ros.description_topic import LATCHED_QOS, DescriptionTopic
 from arm_control.ros.manager_services import ManagerServices
 from arm_control.ros.node_arguments import controller_arguments
+from arm_control.ros.service_executor import ServiceExecutor
 from arm_node.executor_thread import ExecutorThread
 
 SERVICE_THREADS = 2
@@ -82,7 +83,7 @@ class ControllerManagerServer:
         # every subscription meanwhile; a coroutine would not help, because rclpy's executors sleep
         # on while a future that a coroutine awaits is completed elsewhere.
         self._thread = ExecutorThread(
-            "controller manager services", MultiThreadedExecutor(SERVICE_THREADS)
+            "controller manager services", ServiceExecutor(SERVICE_THREADS)
         )
         self._thread.executor.add_node(node)
         self._thread.start()
