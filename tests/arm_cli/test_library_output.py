@@ -49,14 +49,14 @@ def test_a_captured_stdout_stays_captured(capsys):
 def test_a_reader_who_goes_ends_it_as_usual():
     code = (
         "import sys\n"
-        "from arm_cli import main\n"
+        "from arm_cli import main, verbs\n"
         "from arm_cli.ros.library_output import library_output_on_stderr\n"
         "class Talk:\n"
         "    def run(self, *_):\n"
         "        with library_output_on_stderr():\n"
         "            while True:\n"
         "                print('on and on')\n"
-        "main.ARM = Talk()\n"
+        "verbs.ARM = Talk()\n"
         "sys.exit(main.main(['talk']))\n"
     )
     line = '"$0" -c "$1" | head -1; echo ${PIPESTATUS[0]}'
