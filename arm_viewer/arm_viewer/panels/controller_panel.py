@@ -93,7 +93,7 @@ class _Row:
         self._shown = controller
         self._text.content = _describe(controller)
         self._button.visible = controller.state in BUTTONS
-        self._button.label = f"{BUTTONS.get(controller.state, '')} {controller.name}"
+        self._button.label = BUTTONS.get(controller.state, "")
         self._button.color = "gray" if controller.state == "active" else None
 
     def remove(self) -> None:
@@ -117,11 +117,13 @@ def _next_step(controller: Controller) -> Request:
 
 def _describe(controller: Controller) -> str:
     colour = COLOURS.get(controller.state, OTHER_COLOUR)
+    # A long type is broken where its parts meet.
+    kind = escape(controller.type).replace("/", "/<wbr/>")
     claimed = f"<br/>{escape(', '.join(controller.claimed))}" if controller.claimed else ""
     return (
         '<div style="font-size:0.8rem;padding:0.5em 0.75em 0.25em;line-height:1.35;'
         'overflow-wrap:anywhere">'
         f"<b>{escape(controller.name)}</b> "
         f'<span style="color:{colour};float:right">{escape(controller.state)}</span><br/>'
-        f'<span style="opacity:0.65">{escape(controller.type)}{claimed}</span></div>'
+        f'<span style="opacity:0.65">{kind}{claimed}</span></div>'
     )

@@ -9,6 +9,8 @@ from viser import GuiApi
 from arm_description.robot import Joint
 from arm_viewer.snapshot import JointReading
 
+NUMBER = "text-align:right;vertical-align:top;white-space:nowrap;padding-left:1em"
+
 
 class FollowerTable:
     """A line for each mimicking joint: its leader, and where it is."""
@@ -23,8 +25,7 @@ class FollowerTable:
         """Show where the followers are."""
         rows = "".join(
             f'<tr><td>{escape(name)}<span style="opacity:0.6"> follows {escape(leader)}</span></td>'
-            f'<td style="text-align:right;padding-left:1em">{_position(readings.get(name))}</td>'
-            "</tr>"
+            f'<td style="{NUMBER}">{_position(readings.get(name))}</td></tr>'
             for name, leader in self._leaders.items()
         )
         text = (

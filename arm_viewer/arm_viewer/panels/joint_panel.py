@@ -103,6 +103,7 @@ class _JointSlider:
             max=joint.upper,
             step=joint.step,
             initial_value=joint.centre,
+            marks=tuple((end, f"{end:.2f}") for end in (joint.lower, joint.upper)),
         )
         self._handle.on_update(self._moved)
 

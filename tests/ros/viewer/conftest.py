@@ -72,6 +72,11 @@ class Visitor:
         """Return a button."""
         return self.page.get_by_role("button", name=label, exact=True)
 
+    def controller_button(self, controller: str, label: str):
+        """Return the button below a controller's name, where it says `label`."""
+        button = f"//b[.='{controller}']/following::button[1][normalize-space(.)='{label}']"
+        return self.page.locator(f"xpath={button}")
+
     def slider(self, label: str):
         """Return the handle of a slider."""
         return self.page.locator(f"xpath=//label[.='{label}']/following::*[@role='slider'][1]")

@@ -107,11 +107,11 @@ def test_controllers_are_deactivated_and_activated(visitor, client):
 
     assert state() == "active"
     visitor.open_tab("Control")
-    visitor.button("Deactivate position_controller").click()
+    visitor.controller_button("position_controller", "Deactivate").click()
     visitor.wait_until(lambda: state() == "inactive", "the manager deactivates the controller")
-    visitor.button("Activate position_controller").click()
+    visitor.controller_button("position_controller", "Activate").click()
     visitor.wait_until(lambda: state() == "active", "the manager activates the controller")
-    visitor.button("Deactivate position_controller").wait_for()
+    visitor.controller_button("position_controller", "Deactivate").wait_for()
     visitor.open_tab("Robot")
 
 

@@ -109,9 +109,13 @@ def test_a_loaded_controller_is_configured_then_activated(visitor, client):
     visitor.open_tab("Control")
     service = "/left/controller_manager/load_controller"
     assert client.call(LoadController, service, LoadController.Request(name="spare")).ok
-    visitor.button("Configure spare").click()
-    visitor.button("Activate spare").click()
-    visitor.page.get_by_text("spare").filter(has_text="shoulder").first.wait_for()
+    visitor.controller_button("spare", "Configure").click()
+    visitor.controller_button("spare", "Activate").wait_for()
+    # It has the joint that the spare one wants; that it let go must be heard of first.
+    visitor.controller_button("arm_controller", "Deactivate").first.click()
+    visitor.controller_button("arm_controller", "Activate").wait_for()
+    visitor.controller_button("spare", "Activate").click()
+    visitor.controller_button("spare", "Deactivate").wait_for()
     visitor.open_tab("Robot")
 
 
