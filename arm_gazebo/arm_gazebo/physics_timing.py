@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from arm_gazebo.errors import TimingError
 
 LARGEST_STEP_S = 0.002
+SHORTEST_STEP_S = 1e-6
+"""A shorter one is a slip of the pen, and simulates nothing within a lifetime."""
 DIVIDES_WITHIN = 1e-6
 """Relative error up to which a step counts as a divisor: decimal steps are rounded."""
 
@@ -41,16 +43,23 @@ def physics_timing(
         largest_step_s: bound on a step that is free to choose.
 
     Raises:
-        TimingError: a rate that is not above 0, or a fixed step that does not divide the period.
+        TimingError: a rate that is not above 0, a fixed step that does not divide the period, or a
+            step below the shortest.
     """
     if not (math.isfinite(update_rate_hz) and update_rate_hz > 0):
         raise TimingError(f"update_rate must be above 0 Hz, not {update_rate_hz:g}")
+    if fixed_step_s is not None and not (math.isfinite(fixed_step_s) and fixed_step_s > 0):
+        raise TimingError(f"the physics step must be above 0 s, not {fixed_step_s:g}")
     period_s = 1.0 / update_rate_hz
+    if min(period_s, fixed_step_s or period_s) < SHORTEST_STEP_S:
+        what = "update_rate" if fixed_step_s is None else "the physics step"
+        raise TimingError(
+            f"{what} makes physics steps shorter than {SHORTEST_STEP_S:g} s; update_rate is "
+            f"{update_rate_hz:g} Hz"
+        )
     if fixed_step_s is None:
         # The margin keeps 500 Hz at one step of 2 ms, whatever the rounding.
         return PhysicsTiming(period_s, math.ceil(period_s / largest_step_s * (1 - DIVIDES_WITHIN)))
-    if not (math.isfinite(fixed_step_s) and fixed_step_s > 0):
-        raise TimingError(f"the physics step must be above 0 s, not {fixed_step_s:g}")
     steps = max(1, round(period_s / fixed_step_s))
     if abs(steps * fixed_step_s - period_s) > DIVIDES_WITHIN * period_s:
         raise TimingError(

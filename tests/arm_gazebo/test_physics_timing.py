@@ -40,3 +40,12 @@ def test_rate_must_be_positive(rate_hz):
 def test_fixed_step_must_be_positive(step_s):
     with pytest.raises(TimingError, match="physics step must be above 0 s"):
         physics_timing(100, fixed_step_s=step_s)
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "step_s", "what"),
+    [(1e9, None, "update_rate"), (100, 1e-9, "the physics step")],
+)
+def test_a_step_that_takes_for_ever_is_refused(rate_hz, step_s, what):
+    with pytest.raises(TimingError, match=f"{what} makes physics steps shorter than 1e-06 s"):
+        physics_timing(rate_hz, fixed_step_s=step_s)
