@@ -80,7 +80,11 @@ class ControlPlane:
                 raise ControllerManagerError(
                     f"A controller named '{name}' was already loaded inside the controller manager"
                 )
-            self._check_name(name)
+            if name == self._node.get_name():
+                # Of two such nodes neither's parameters could be reached.
+                raise ControllerManagerError(
+                    f"no controller can be named '{name}', as the controller manager itself is"
+                )
             types = self._node.strings(f"{name}.type")
             if len(types) != 1:
                 raise ControllerManagerError(f"The 'type' param was not defined for '{name}'.")
@@ -218,15 +222,6 @@ class ControlPlane:
                 raise
             # The loop has begun with it: it is too late to call it off, and it ends soon.
             return future.result(LOOP_TIMEOUT_S)
-
-    def _check_name(self, name: str) -> None:
-        """Refuse the name of another node: of two, neither's parameters could be reached."""
-        full_name = f"{self._node.get_namespace().rstrip('/')}/{name}"
-        others = (self._node, *self._executor.get_nodes())
-        if full_name in {node.get_fully_qualified_name() for node in others}:
-            raise ControllerManagerError(
-                f"no controller can be named '{name}': there is a node {full_name} already"
-            )
 
     def _make_node(self, name: str, type_name: str) -> ControllerNode:
         arguments = controller_arguments(

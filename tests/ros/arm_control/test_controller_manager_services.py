@@ -96,8 +96,7 @@ def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(
     ("name", "reason"),
     [
         ("two words", "controller 'two words' cannot be made: InvalidNodeNameException: "),
-        ("controller_manager", "there is a node /controller_manager already"),
-        ("hardwareinterface", "there is a node /hardwareinterface already"),
+        ("controller_manager", "no controller can be named 'controller_manager', as the"),
     ],
 )
 def test_a_name_that_its_node_cannot_have_is_refused(
