@@ -59,6 +59,7 @@ def test_a_parameter_moves_the_arm(run, arrives):
 
 
 def test_parameters_go_to_a_file_and_back(run, start):
+    run('arm param set /arm_controller_node desired_param "[0.2, 0.0, 0.1, 0.0]"')
     run("mkdir folder && arm param dump /arm_controller_node --output-dir folder")
     text = start("cp folder/arm_controller_node.yaml params.yaml && cat params.yaml")
     text.wait()
