@@ -63,6 +63,14 @@ def children() -> list[int]:
     return pids
 
 
+def child_has_ended() -> bool:
+    """Return whether a child waits to be reaped. SIGCHLD also says that one stopped or went on."""
+    try:
+        return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+    except ChildProcessError:
+        return False
+
+
 def reap(pids: list[int]) -> None:
     """Take the exit status of those of these children that have ended."""
     for pid in pids:

@@ -146,6 +146,8 @@ class Session:
         return self._supervisor.done
 
     def _reap(self) -> None:
+        if not linux.child_has_ended():
+            return
         self._supervisor.reap()
         self._probes.reap()
         linux.reap(self._orphans())
