@@ -21,7 +21,8 @@ class LocalRunner:
         environment: what every process gets.
         logs: the folder for generated files.
         probes: watches conditions.
-        before_kill: called before SIGKILL is sent to a process.
+        look_at_segments: called while processes live that may not end in order: when all are
+            ready, and before SIGKILL is sent to one.
     """
 
     def __init__(
@@ -30,13 +31,13 @@ class LocalRunner:
         environment: Mapping[str, str],
         logs: LogFolder,
         probes: ProbeClient,
-        before_kill: Callable[[], None],
+        look_at_segments: Callable[[], None],
     ) -> None:
         self._loop = loop
         self._environment = environment
         self._logs = logs
         self._probes = probes
-        self._before_kill = before_kill
+        self._look_at_segments = look_at_segments
 
     def start(
         self,
@@ -52,7 +53,7 @@ class LocalRunner:
         command = [self._word(step, i, word) for i, word in enumerate(step.command)]
         environment = for_program(command[0], self._merged_environment(step))
         spec = ChildSpec(command, environment, step.cwd, step.emulate_tty)
-        return ChildProcess(self._loop, spec, on_line, on_end, self._before_kill)
+        return ChildProcess(self._loop, spec, on_line, on_end, self._look_at_segments)
 
     def watch(
         self, step: ProcessStep, condition: Probe, on_met: Callable[[], None]
@@ -62,6 +63,7 @@ class LocalRunner:
 
     def settled(self) -> None:
         """End the probes; a later condition starts a new one."""
+        self._look_at_segments()
         self._probes.close()
 
     def _merged_environment(self, step: ProcessStep) -> dict[str, str]:

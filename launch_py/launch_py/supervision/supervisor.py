@@ -150,8 +150,9 @@ class Supervisor:
         self._advance()
         if not self._announced and all(self.members[name].ready for name in self._start_up):
             self._announced = True
-            self._reporter.ready(self._loop.clock() - self._started_s, self._summary)
+            # Before the user knows: from then on anybody may kill a process.
             self._runner.settled()
+            self._reporter.ready(self._loop.clock() - self._started_s, self._summary)
 
     def member_late(self, member: Member, missing: str) -> None:
         """Give up: what depends on the process could never start."""
