@@ -55,7 +55,8 @@ def test_every_executable_is_there(installation):
 @pytest.mark.ros
 def test_an_executable_runs(installation, tmp_path):
     done = installation.run(installation.executable("publisher_terminal"), folder=tmp_path)
-    assert done.stdout.startswith("Enter the 4 Joint Variables to send")
+    # Beside it may stand what Fast DDS says of left-overs in shared memory.
+    assert "Enter the 4 Joint Variables to send" in done.stdout
 
 
 def test_the_wheel_holds_the_packages_and_nothing_else(wheel, project):

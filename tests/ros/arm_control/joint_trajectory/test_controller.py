@@ -117,10 +117,11 @@ def test_the_state_has_what_is_wanted_measured_and_commanded(
     active: Any, send: Any, states: Any
 ) -> None:
     send((0.1, THERE)).result()
-    message = states.wait_until(
-        lambda messages: messages and list(messages[-1].feedback.positions) == list(THERE),
-        "the arm is there",
-    )[-1]
+
+    def arrivals(messages: Any) -> list[Any]:
+        return [m for m in messages if list(m.feedback.positions) == list(THERE)]
+
+    message = arrivals(states.wait_until(arrivals, "the arm is there"))[0]
     assert list(message.reference.positions) == list(THERE)
     assert list(message.reference.velocities) == [0.0] * 4
     assert list(message.reference.accelerations) == [0.0] * 4
