@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import QoSCompatibility, qos_check_compatible
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
@@ -144,7 +145,9 @@ def _wanted_factor(session: Session, graph: Graph) -> float | None:
         values = NodeParameters(session, node, ANSWER_TIMEOUT_S).values([FACTOR])
     except UnansweredError:
         return None
-    return values[0].double_value if values and values[0].type else None
+    # A number without a fraction is an integer parameter.
+    factor = parameter_value_to_python(values[0]) if values else None
+    return float(factor) if isinstance(factor, int | float) else None
 
 
 def _mismatches(graph: Graph, topic: str) -> list[Mismatch]:

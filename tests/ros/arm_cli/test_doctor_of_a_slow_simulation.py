@@ -1,0 +1,26 @@
+"""`arm doctor` beside a simulation that is asked for more than any machine can do."""
+
+import json
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def finding(launch_for_file, run_until):
+    """What the doctor says of the real-time factor, once it had time to look."""
+    launch_for_file("camera:=none", "real_time_factor:=100000").wait_until_ready()
+
+    def factor(text: str) -> dict[str, str]:
+        findings = json.loads(text)["findings"]
+        return next(f for f in findings if f["check"] == "real-time factor")
+
+    # The compilers are not what is looked at here. What is printed on stderr is not JSON.
+    line = "env CC=true CXX=true arm doctor --json 2>/dev/null"
+    return factor(run_until(line, lambda text: factor(text)["severity"] == "warning"))
+
+
+def test_it_is_not_as_fast_as_it_should_be(finding):
+    assert " instead of 100000: the machine is too slow or too busy" in finding["sentence"]
+    assert "end other programs" in finding["fix"]
