@@ -1,7 +1,6 @@
 """effort_controllers/GripperActionController: a gripper that is told how hard to push."""
 
 from collections.abc import Mapping
-from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from arm_control.controller import ControllerContext
 from arm_control.gripper.gripper_controller import GripperController
 from arm_control.gripper.parameters import EffortGripperParameters
-from arm_control.gripper.requests import GripperTarget
+from arm_control.gripper.requests import GripperRequest, GripperTarget
 from arm_control.interface_configuration import InterfaceConfiguration
 from arm_control.joint_trajectory.pid import Pid, PidGains
 from arm_control.parameters import ParameterSpec
@@ -18,8 +17,8 @@ from arm_control.parameters import ParameterSpec
 class EffortGripperController(GripperController[EffortGripperParameters]):
     """Drives the joint with a PID controller, no harder than the goal allows.
 
-    A goal that allows an effort of 0 leaves the limit to the parameter `max_effort`, and that one,
-    where it is 0, to the hardware.
+    As in ros2_control, 0 allows no effort at all. The parameter `max_effort` bounds what holds the
+    joint where there is no goal: after an activation, and after a goal was cancelled.
     """
 
     parameters_type: ClassVar[type[Any]] = EffortGripperParameters
@@ -67,10 +66,17 @@ class EffortGripperController(GripperController[EffortGripperParameters]):
     ) -> float:
         """Command the effort, and return it."""
         error, rate = np.array([target.position - position]), np.array([-velocity])
-        limit = abs(target.max_effort) or self.parameters.max_effort or inf
+        limit = abs(target.max_effort)
         effort = np.clip(self._pid.update(error, rate, period_s), -limit, limit)
         self.commands.write(effort)
         return float(effort[0])
+
+    def _start(self, request: GripperRequest) -> None:
+        super()._start(request)
+        if not self._target.max_effort:
+            self.logger.warning(
+                "The goal allows no effort (its max_effort is 0): the gripper will not be driven"
+            )
 
     def on_deactivate(self) -> None:
         """Abort the goal, and let go of the joint."""

@@ -25,7 +25,7 @@ class GripperParameters:
     joint: str = parameter("", JOINT)
     action_monitor_rate: float = parameter(20.0, MONITOR_RATE)
     goal_tolerance: float = parameter(0.01, "A joint nearer to its goal is there, in rad or m")
-    max_effort: float = parameter(0.0, "Most effort to spend where no goal says more, in N m or N")
+    max_effort: float = parameter(0.0, "Most effort to spend where no goal says how much")
     allow_stalling: bool = parameter(
         False, "A goal on whose way the joint stops succeeds, instead of being aborted"
     )
@@ -56,7 +56,7 @@ class ParallelGripperParameters(GripperParameters):
 
     joint: str = parameter("", JOINT, read_only=True)
     action_monitor_rate: float = parameter(20.0, MONITOR_RATE, read_only=True)
-    max_effort: float = parameter(10.0, "Most effort to spend where no goal says more, in N m or N")
+    max_effort: float = parameter(10.0, "Most effort to spend where no goal says how much")
     state_interfaces: tuple[str, ...] = parameter(
         ("position", "velocity"), "States of the joint to read"
     )

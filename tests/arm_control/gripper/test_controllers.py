@@ -44,7 +44,7 @@ def test_position_limits_the_effort_where_hardware_can(
 
 def effort_rig(make_rig: Any, **parameters: Any) -> Any:
     gains = {f"gains.grip.{name}": value for name, value in {"p": 10.0, "d": 2.0}.items()}
-    return make_rig(EFFORT, **gains, **parameters)
+    return make_rig(EFFORT, **{"max_effort": 100.0, **gains, **parameters})
 
 
 def test_effort_follows_its_gains_and_reports_what_it_commands(make_rig: Any) -> None:
@@ -59,9 +59,10 @@ def test_effort_follows_its_gains_and_reports_what_it_commands(make_rig: Any) ->
 
 
 @pytest.mark.parametrize(
-    ("of_goal", "of_controller", "limit"), [(1.5, 0.0, 1.5), (0.0, 2.5, 2.5), (0.0, 0.0, 5.0)]
+    ("of_goal", "of_controller", "limit"),
+    [(1.5, 0.0, 1.5), (-1.5, 0.0, 1.5), (3.5, 2.5, 3.5), (0.0, 2.5, 0.0), (0.0, 0.0, 0.0)],
 )
-def test_effort_is_bounded_by_the_goal_then_by_the_parameter(
+def test_effort_is_bounded_by_the_goal_and_by_nothing_else(
     make_rig: Any, of_goal: float, of_controller: float, limit: float
 ) -> None:
     rig = effort_rig(make_rig, max_effort=of_controller)
@@ -73,8 +74,38 @@ def test_effort_is_bounded_by_the_goal_then_by_the_parameter(
     assert rig.commanded("effort") == pytest.approx(-limit)
 
 
+@pytest.mark.parametrize("bound", [0.0, 2.5])
+def test_effort_holds_no_harder_than_the_parameter_says(make_rig: Any, bound: float) -> None:
+    rig = effort_rig(make_rig, max_effort=bound)
+    rig.place(0.5)
+    rig.tick()
+    assert rig.commanded("effort") == pytest.approx(-bound)
+    rig.goal(1.0, efforts=4.0)
+    rig.tick()
+    assert rig.commanded("effort") == pytest.approx(4.0)
+    rig.controller.cancel_goal("goal")
+    rig.tick()
+    rig.place(0.0)
+    rig.tick()
+    assert rig.commanded("effort") == pytest.approx(bound)
+
+
+def test_a_goal_that_allows_no_effort_is_warned_of(
+    make_rig: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    rig = effort_rig(make_rig)
+    rig.goal(0.5, "first", efforts=1.0)
+    rig.tick()
+    assert "allows no effort" not in caplog.text
+    rig.goal(0.5, efforts=0.0)
+    rig.run(1.5)
+    assert "allows no effort" in caplog.text
+    assert rig.result.stalled
+
+
 def test_the_integral_is_clamped_and_forgotten_at_activation(make_rig: Any) -> None:
-    rig = make_rig(EFFORT, **{"gains.grip.i": 10.0, "gains.grip.i_clamp": 0.3})
+    gains = {"gains.grip.i": 10.0, "gains.grip.i_clamp": 0.3}
+    rig = make_rig(EFFORT, max_effort=100.0, **gains)
     rig.goal(1.0)
     rig.run(0.5)
     assert rig.commanded("effort") == pytest.approx(0.3)

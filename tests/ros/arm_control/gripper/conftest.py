@@ -22,6 +22,7 @@ effort_gripper:
   ros__parameters:
     joint: j3
     goal_tolerance: 0.05
+    max_effort: 3.0
     stall_timeout: 0.5
     stall_velocity_threshold: 0.02
     gains:
