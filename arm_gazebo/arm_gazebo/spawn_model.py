@@ -23,6 +23,7 @@ from arm_gazebo.link_geometry import LinkGeometry
 from arm_gazebo.mesh_cache import MeshCache
 from arm_gazebo.mesh_library import MeshLibrary
 from arm_gazebo.mimic_joints import add_equalities, followings
+from arm_gazebo.mjcf_files import check_mjcf_files
 from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.sdf_body import WORLD_MASKS, add_model
 from arm_gazebo.sdf_element import SdfElement
@@ -149,7 +150,7 @@ class ModelSource:
         return SpawnModel(spec, _only_body(spec, "SDF"), "sdf", report.findings)
 
     def _read_mjcf(self, text: str, path: Path | None, report: BuildReport) -> SpawnModel:
-        _check_files(text, path)
+        check_mjcf_files(text, path)
         if path is None:
             spec = mujoco.MjSpec.from_string(text)
         else:
@@ -215,22 +216,6 @@ def _is_static(urdf: str) -> bool:
         str(static.text).strip().lower() in ("true", "1")
         for static in parse_xml(urdf).findall("gazebo/static")
     )
-
-
-def _check_files(mjcf: str, path: Path | None) -> None:
-    """Refuse files of an MJCF that lie elsewhere than beside it or below."""
-    for element in parse_xml(mjcf).iter("*"):
-        for name in ("file", "meshdir", "texturedir", "assetdir"):
-            value = element.get(name)
-            if value is None:
-                continue
-            if path is None:
-                problem = "a text has no folder; give a uri instead"
-            elif Path(value).is_absolute() or ".." in Path(value).parts:
-                problem = "it is neither beside the MJCF file nor below it"
-            else:
-                continue
-            raise RefusedError(Refusal.MISSING_ASSETS, f"{name}='{value}' is not read: {problem}")
 
 
 def _too_large(source: str) -> RefusedError:

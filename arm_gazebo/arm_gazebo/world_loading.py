@@ -11,6 +11,7 @@ from arm_description.xml_document import parse_xml
 from arm_gazebo.build_report import BuildReport, Outcome
 from arm_gazebo.built_model import BuiltModel
 from arm_gazebo.errors import GazeboError
+from arm_gazebo.mjcf_files import check_mjcf_files
 from arm_gazebo.model_builder import build_world
 from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.robot_part import RobotInWorld
@@ -80,6 +81,8 @@ class WorldLoader:
                 Refusal.UNSUPPORTED_FORMAT,
                 f"resource_string: <{tag}> is neither <sdf> nor <mujoco>",
             )
+        if tag == "mujoco":
+            check_mjcf_files(text)
         # The readers of worlds go by files, and files named in the text start beside it.
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "resource_string").with_suffix(TEXT_SUFFIXES[tag])

@@ -148,6 +148,20 @@ def test_an_mjcf_file_reads_nothing_from_elsewhere(tmp_path, name):
         SOURCE.read(str(file), "")
 
 
+@pytest.mark.parametrize("included", ["in/a.xml", "loop.xml", "in/b.xml"])
+def test_what_an_mjcf_file_includes_reads_nothing_from_elsewhere_either(tmp_path, included):
+    (tmp_path / "in").mkdir()
+    for name, content in {
+        "thing.xml": f"<include file='{included}'/>",
+        "loop.xml": "<include file='loop.xml'/><include file='in/a.xml'/>",
+        "in/a.xml": "<asset><mesh file='../../x.obj'/></asset>",
+        "in/b.xml": "<include file='in/a.xml'/>",
+    }.items():
+        (tmp_path / name).write_text(f"<mujoco>{content}</mujoco>")
+    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+        SOURCE.read(str(tmp_path / "thing.xml"), "")
+
+
 @settings(max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_spoilt_texts_are_refused_or_can_be_simulated(things, data):

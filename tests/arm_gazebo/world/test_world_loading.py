@@ -60,6 +60,13 @@ def test_a_world_may_be_a_text(loader, text):
     assert named.uri == ""
 
 
+def test_a_text_of_mujoco_reads_no_files(loader, tmp_path):
+    (tmp_path / "secret.png").write_bytes(b"")
+    text = f"<mujoco><asset><texture type='2d' file='{tmp_path}/secret.png'/></asset></mujoco>"
+    with pytest.raises(RefusedError, match=r"secret\.png' is not read: a text has no folder"):
+        loader.load("", text, all_elements=False)
+
+
 def test_unsupported_elements_are_refused_on_demand(loader):
     text = SDF.format(more="<wind><linear_velocity>1 0 0</linear_velocity></wind>")
     loader.load("", text, all_elements=False)
