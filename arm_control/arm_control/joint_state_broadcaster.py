@@ -139,6 +139,7 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
             ordered_joints=self.parameters.joints,
             allowed_joints=self._allowed_joints(),
             extra_joints=self.parameters.extra_joints,
+            left_out=self._find_what_is_no_quantity(),
         )
         if self.sink is not None:
             self.sink.open(self._plan.layout)
@@ -154,6 +155,15 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
     def on_deactivate(self) -> None:
         """Forget the layout."""
         self._plan = None
+
+    def _find_what_is_no_quantity(self) -> set[str]:
+        types = zip(self.states.names, self.states.data_types, strict=True)
+        found = {name: data_type for name, data_type in types if data_type != "double"}
+        for name, data_type in found.items():
+            self.logger.warning(
+                "state interface '%s' is not published: its type is %s, not double", name, data_type
+            )
+        return set(found)
 
     def _allowed_joints(self) -> Collection[str] | None:
         return self._movable_joints if self.parameters.use_urdf_to_filter else None

@@ -59,6 +59,7 @@ def plan_joint_states(
     ordered_joints: Sequence[str] = (),
     allowed_joints: Collection[str] | None = None,
     extra_joints: Sequence[str] = (),
+    left_out: Collection[str] = (),
 ) -> JointStatePlan:
     """Lay out the messages for these state interfaces.
 
@@ -69,9 +70,12 @@ def plan_joint_states(
         allowed_joints: joints to publish in alphabetical order where none are ordered; None for
             all in the order of their interfaces.
         extra_joints: joints without states, at zero, after the others.
+        left_out: full names of states not to publish.
     """
     components: dict[str, dict[str, int | float]] = {}
     for index, full_name in enumerate(states):
+        if full_name in left_out:
+            continue
         name, _, interface = full_name.rpartition("/")
         components.setdefault(name, {})[quantity_of.get(interface, interface)] = index
     joints = [name for name, has in components.items() if not has.keys().isdisjoint(QUANTITIES)]

@@ -15,10 +15,14 @@ class LoanedInterfaces:
     become an index array. Loop thread only.
     """
 
-    __slots__ = ("_array", "_key", "names")
+    __slots__ = ("_array", "_key", "data_types", "names")
 
     def __init__(
-        self, names: Sequence[str], array: NDArray[np.float64], positions: Sequence[int]
+        self,
+        names: Sequence[str],
+        array: NDArray[np.float64],
+        positions: Sequence[int],
+        data_types: Sequence[str] = (),
     ) -> None:
         """Open the window.
 
@@ -26,8 +30,10 @@ class LoanedInterfaces:
             names: full name of each interface.
             array: the manager's array; read-only for states.
             positions: where in `array` each named interface stands.
+            data_types: what the description says that each is; nothing for all double.
         """
         self.names = tuple(names)
+        self.data_types = tuple(data_types) or ("double",) * len(self.names)
         self._array = array
         self._key = _as_slice(positions) or np.asarray(positions, dtype=np.intp)
 
@@ -62,16 +68,20 @@ class ScatteredInterfaces(LoanedInterfaces):
     __slots__ = ("_parts", "_values")
 
     def __init__(
-        self, names: Sequence[str], places: Sequence[tuple[NDArray[np.float64], int]]
+        self,
+        names: Sequence[str],
+        places: Sequence[tuple[NDArray[np.float64], int]],
+        data_types: Sequence[str] = (),
     ) -> None:
         """Open the window.
 
         Args:
             names: full name of each interface.
             places: the array of each named interface, and where in it that stands.
+            data_types: what the description says that each is; nothing for all double.
         """
         self._values = np.full(len(names), np.nan)
-        super().__init__(names, self._values, range(len(names)))
+        super().__init__(names, self._values, range(len(names)), data_types)
         arrays = {id(array): array for array, _ in places}
         self._parts = [
             (
@@ -96,10 +106,12 @@ class ScatteredInterfaces(LoanedInterfaces):
 
 
 def loan(
-    names: Sequence[str], places: Sequence[tuple[NDArray[np.float64], int]]
+    names: Sequence[str],
+    places: Sequence[tuple[NDArray[np.float64], int]],
+    data_types: Sequence[str] = (),
 ) -> LoanedInterfaces:
     """Open the quickest window on these interfaces; see `ScatteredInterfaces`."""
     if len({id(array) for array, _ in places}) > 1:
-        return ScatteredInterfaces(names, places)
+        return ScatteredInterfaces(names, places, data_types)
     array = places[0][0] if places else np.empty(0)
-    return LoanedInterfaces(names, array, [position for _, position in places])
+    return LoanedInterfaces(names, array, [position for _, position in places], data_types)

@@ -120,7 +120,8 @@ class ResourceManager:
 
     def loan_states(self, names: Sequence[str]) -> LoanedInterfaces:
         """Open a read-only window on these states."""
-        return loan(names, [self._state_place(name) for name in names])
+        places = [self._state_place(name) for name in names]
+        return loan(names, places, [self._data_type_of(name) for name in names])
 
     def components_of(self, states: Iterable[str], commands: Iterable[str]) -> frozenset[str]:
         """Names of the components that these interfaces belong to."""

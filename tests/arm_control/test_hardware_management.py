@@ -1,18 +1,21 @@
 """Components in the manager's care: start, states, failures."""
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
 from arm_control import ControllerManager, ControllerManagerError, LifecycleState, SwitchRequest
+from arm_control.controller_switcher import PREPARE_REJECTED
 from arm_control.hardware import HardwareReturn
 from arm_control.hardware_info import HardwareInfo
 from arm_control.manager_policy import ManagerPolicy
 from arm_control.testing import FakeHardware, fake_hardware
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
+MODES = ("position", "velocity")
 
 
 def test_bring_up_activates_all_and_reads_once() -> None:
@@ -227,6 +230,41 @@ def test_the_rate_shown_is_the_one_that_it_runs_at(
     assert component.read_write_rate_hz == given
     assert says in caplog.text
     assert bool(says) is bool(caplog.records)
+
+
+class OneMode(FakeHardware):
+    """Lets a joint be commanded by one interface at a time."""
+
+    def __init__(self) -> None:
+        super().__init__(fake_hardware(("j0", "j1"), command_interfaces=MODES).info)
+        self.held: set[str] = set()
+
+    def prepare_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
+        joints = [name.split("/")[0] for name in (self.held - set(stop)) | set(start)]
+        return len(joints) == len(set(joints))
+
+    def perform_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
+        self.held = self.held - set(stop) | set(start)
+        return super().perform_command_mode_switch(start, stop)
+
+
+def test_a_joint_that_has_one_mode_at_a_time_changes_it_in_one_request(bench: Any) -> None:
+    hardware = OneMode()
+    bench.manager = manager = ControllerManager([hardware], 100)
+    manager.bring_up()
+    for name, interface in (("places", "position"), ("speeds", "velocity")):
+        bench.configure(name, commands=(f"j0/{interface}",))
+    bench.configure("other_joint", commands=("j1/velocity",))
+    both = manager.switch_controller(SwitchRequest(("places", "speeds")))
+    assert (both.ok, both.message) == (False, PREPARE_REJECTED)
+    assert manager.switch_controller(SwitchRequest(("places", "other_joint"))).ok
+    assert manager.switch_controller(SwitchRequest(("speeds",))).message == PREPARE_REJECTED
+    assert manager.switch_controller(SwitchRequest(("speeds",), ("places",))).ok
+    assert manager.switch_controller(SwitchRequest(("places",))).message == PREPARE_REJECTED
+    assert hardware.held == {"j0/velocity", "j1/velocity"}
+    assert manager.switch_controller(SwitchRequest((), ("speeds",))).ok
+    assert manager.switch_controller(SwitchRequest(("places",))).ok
+    assert hardware.held == {"j0/position", "j1/velocity"}
 
 
 def test_interfaces_are_listed_with_the_type_of_the_description() -> None:

@@ -139,11 +139,21 @@ def test_joints_alone_choose_the_joints_of_joint_states(start: Start) -> None:
     assert len(manager.list_controllers()[0].required_state_interfaces) == 12
 
 
-def test_a_missing_interface_fails_the_activation(start: Start) -> None:
-    manager, _ = start(Parameters(joints=("j0", "j9"), interfaces=("position",)), expect=False)
+@pytest.mark.parametrize(
+    ("joints", "interfaces", "missing"),
+    [
+        (("j0", "j9"), ("position",), "j9/position"),
+        (("j0",), ("position", "torque"), "j0/torque"),
+        (("j8", "j9"), ("torque",), "j8/torque"),
+    ],
+)
+def test_a_missing_interface_fails_the_activation(
+    start: Start, joints: tuple[str, ...], interfaces: tuple[str, ...], missing: str
+) -> None:
+    manager, _ = start(Parameters(joints=joints, interfaces=interfaces), expect=False)
     result = manager.switch_controller(SwitchRequest(("jsb",)))
     assert result.message == (
-        "Unable to activate controller 'jsb' since the state interface 'j9/position' "
+        f"Unable to activate controller 'jsb' since the state interface '{missing}' "
         "is not available."
     )
 
@@ -170,6 +180,36 @@ def test_another_interface_can_be_shown_as_position(start: Start) -> None:
     manager.publish(0.0, 0.01)
     assert sink.published[0][1][0] == 3.0
     assert sink.layouts[0].components == (("j0", ("position",)),)
+
+
+def test_an_interface_that_is_no_number_is_left_out(
+    start: Start, caplog: pytest.LogCaptureFixture
+) -> None:
+    switched = InterfaceInfo("switched", data_type="bool")
+    joint = JointInfo("j0", state_interfaces=(switched, InterfaceInfo("position", 0.5)))
+    tool = JointInfo("tool", state_interfaces=(switched,))
+    hardware = FakeHardware(HardwareInfo("H", "system", "x/Y", joints=(joint, tool)))
+    manager, sink = start(hardware=hardware)
+    manager.publish(0.0, 0.01)
+    assert sink.published[0][1][0] == 0.5
+    assert sink.layouts[0].components == (("j0", ("position",)),)
+    said = [r.message for r in caplog.records if "is not published" in r.message]
+    assert said == [
+        f"state interface '{name}/switched' is not published: its type is bool, not double"
+        for name in ("j0", "tool")
+    ]
+
+
+def test_a_read_that_fails_does_not_mix_up_the_joints(start: Start) -> None:
+    positions = {f"j{i}": i / 10 for i in range(4)}
+    hardware = fake_hardware(initial_positions=positions)
+    manager, sink = start(hardware=hardware)
+    manager.read(0.0, 0.01)
+    manager.publish(0.0, 0.01)
+    hardware.states[hardware.state_interfaces.index("j2/position")] = np.nan
+    manager.publish(0.01, 0.01)
+    np.testing.assert_array_equal(sink.published[0][1][:4], [0.0, 0.1, 0.2, 0.3])
+    np.testing.assert_array_equal(sink.published[1][1][:4], [0.0, 0.1, np.nan, 0.3])
 
 
 def test_the_standard_interface_wins_where_both_are_listed(
