@@ -33,6 +33,7 @@ ARRAY = "std_msgs/msg/Float64MultiArray"
             "no field 'position' (fields: command)",
         ),
         (["param", "load", "/n", "/no/such.yaml"], "no parameter file /no/such.yaml"),
+        (["sim", "step", "0"], "the number of steps is 0; 1 is the least"),
     ],
 )
 def test_it_is_one_sentence_and_rclpy_is_not_even_imported(words, sentence):

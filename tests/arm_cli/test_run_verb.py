@@ -90,3 +90,17 @@ def test_pkg_prefix(capsys):
     assert capsys.readouterr().out == f"{prefix}/share/arm_cli\n"
     assert main(["pkg", "prefix", "arm_cl"]) == 1
     assert "did you mean 'arm_cli'" in capsys.readouterr().err
+
+
+def test_view_becomes_the_page(monkeypatch):
+    called = {}
+
+    def take_over(_program, command, _environment):
+        called.update(command=command)
+        raise OSError(2, "gone")
+
+    monkeypatch.setattr(os, "execvpe", take_over)
+    assert main(["view", "--port", "8123", "--publish-joint-states"]) == 2
+    assert "arm_viewer_node" in " ".join(called["command"])
+    parameters = ["-p", "port:=8123", "-p", "publish_joint_states:=true"]
+    assert called["command"][-5:] == ["--ros-args", *parameters]

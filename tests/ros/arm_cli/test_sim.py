@@ -1,0 +1,42 @@
+"""`arm sim` beside a running simulation: what it holds, what comes and goes, and its time."""
+
+import json
+import re
+
+import pytest
+
+pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+
+CAN = """<sdf version="1.9"><model name="tin"><static>true</static><link name="l">
+<collision name="c"><geometry><cylinder><radius>0.03</radius><length>0.1</length></cylinder>
+</geometry></collision></link></model></sdf>"""
+
+
+def entities(text: str) -> dict[str, dict]:
+    return {entity["name"]: entity for entity in json.loads(text)["entities"]}
+
+
+def test_a_thing_comes_and_goes(run_until, tmp_path):
+    (tmp_path / "can.sdf").write_text(CAN)
+    # Whether or not an answer is lost on a busy machine, it is done.
+    spawn = "arm sim spawn can.sdf --name can --pose 0.3 0 0.5 0 0 0 >&2; arm sim info --json"
+    text = run_until(spawn, lambda text: "can" in entities(text))
+    report = json.loads(text)
+    assert (report["state"], report["world"]) == ("playing", "empty")
+    assert report["time_s"] > 0.0
+    assert report["real_time_factor"] > 0.0
+    assert report["sensors"]["/videocamera"] == "sensor_msgs/msg/Image"
+    assert entities(text)["arm"]["category"] == "robot"
+    assert entities(text)["can"]["position"] == pytest.approx([0.3, 0.0, 0.5], abs=1e-6)
+    delete = "arm sim delete can; arm sim info --json"
+    run_until(delete, lambda text: entities(text).keys() == {"arm"})
+    run_until("arm sim delete can", lambda text: "'can'" in text, code=1)
+
+
+def test_time_stands_still_and_goes_on(run_until):
+    paused = "arm sim pause; arm sim step 10; arm sim info"
+    text = run_until(paused, lambda text: text.startswith("state: paused\nworld: empty\n"))
+    assert re.search(r"^time: \d+\.\d{3} s, real-time factor 0\.00$", text, re.MULTILINE)
+    assert re.search(r"^entities:\n  arm \[robot\] at ", text, re.MULTILINE)
+    resumed = "arm sim reset; arm sim play; arm sim info"
+    run_until(resumed, lambda text: text.startswith("state: playing\n"))
