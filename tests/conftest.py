@@ -25,8 +25,11 @@ _held_lock: list[int] = []
 
 def pytest_configure(config: pytest.Config) -> None:
     """Give the whole session a ROS domain of its own, before anything imports rclpy."""
-    # A session under nohup ignores SIGHUP, and would hand that on to the programs under test.
+    # A session under nohup ignores SIGHUP, one in a script's background SIGINT and SIGQUIT, and
+    # would hand that on to the programs under test.
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     if "ROS_DOMAIN_ID" not in os.environ:
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
