@@ -1,6 +1,7 @@
 """Mesh files of every format, as links of a model."""
 
 import struct
+import zipfile
 
 import mujoco
 import numpy as np
@@ -58,7 +59,7 @@ def box():
     return trimesh.creation.box(SIZE)
 
 
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "off"])
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "off", "3mf"])
 def test_formats(parts, tmp_path, box, suffix):
     file = tmp_path / f"box.{suffix}"
     box.export(file)
@@ -180,6 +181,7 @@ def test_missing_mesh_is_an_error_when_strict(parts):
         ("a.stl", b"solid x\nvertex 1 2 x\nvertex 1 2 3\nvertex 1 2 3\n", "no number"),
         ("a.obj", b"v 1 2 3\n", ""),
         ("a.dae", b"<COLLADA", ""),
+        ("a.3mf", b"PK", "it is no ZIP file"),
         ("a.step", b"ISO-10303", "'.step' is not one of .stl, .obj"),
     ],
 )
@@ -189,6 +191,34 @@ def test_unreadable_mesh_is_named_with_the_reason(parts, tmp_path, name, content
     [warning] = [str(finding) for finding in built.report.warnings]
     assert f"cannot use the mesh {tmp_path / name}: " in warning
     assert reason in warning
+
+
+BOMB = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "boom"}">' for n in range(10))
+
+
+@pytest.mark.parametrize("entity", [f"{BOMB}<!ENTITY e '&e9;'>", "<!ENTITY e SYSTEM '{secret}'>"])
+def test_entities_of_a_collada_file_neither_multiply_nor_read_files(parts, tmp_path, entity):
+    (tmp_path / "secret").write_text("known")
+    doctype = f"<!DOCTYPE COLLADA [{entity.format(secret=tmp_path / 'secret')}]>"
+    head, _, rest = COLLADA.partition("\n")
+    (tmp_path / "a.dae").write_text(
+        f"{head}{doctype}{rest.replace('<up_axis>', '<title>&e;</title><up_axis>')}"
+    )
+    built = parts.build(robot_with(shape(tmp_path / "a.dae")))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert f"cannot use the mesh {tmp_path / 'a.dae'}: " in warning
+    assert "known" not in warning
+
+
+def test_a_packed_mesh_that_unpacks_beyond_all_bounds_is_not_read(parts, tmp_path, monkeypatch):
+    monkeypatch.setattr("arm_description.mesh_file.LARGEST_BYTES", 100_000)
+    with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("a", "b"):
+            archive.writestr(name, bytes(60_000))
+    assert (tmp_path / "a.3mf").stat().st_size < 1_000
+    built = parts.build(robot_with(shape(tmp_path / "a.3mf")))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert "it has 120000 bytes; at most 100000 are read" in warning
 
 
 def test_flat_visual_is_drawn(parts, tmp_path):
