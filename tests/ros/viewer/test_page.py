@@ -1,5 +1,6 @@
 """The page in a real browser, beside a simulation: one of each for the file."""
 
+import re
 from urllib.parse import urlsplit
 
 import numpy as np
@@ -112,6 +113,23 @@ def test_controllers_are_deactivated_and_activated(visitor, client):
     visitor.controller_button("position_controller", "Activate").click()
     visitor.wait_until(lambda: state() == "active", "the manager activates the controller")
     visitor.controller_button("position_controller", "Deactivate").wait_for()
+    visitor.open_tab("Robot")
+
+
+def test_time_rates_and_the_node_graph_are_shown(visitor):
+    visitor.open_tab("Control")
+    factor = visitor.page.locator("tr", has_text="Real-time factor")
+    visitor.wait_until(lambda: re.search(r"\d\.\d\d$", factor.inner_text()), "the time's factor")
+    visitor.open_tab("System")
+    visitor.tick("Rates")
+    states = visitor.page.locator("tr", has_text="/joint_states")
+    visitor.wait_until(lambda: re.search(r"\d\.\d Hz$", states.inner_text()), "a topic's rate")
+    visitor.tick("Rates")
+    visitor.tick("Node graph")
+    node = visitor.page.locator("svg text", has_text="/joint_state_broadcaster").first
+    node.wait_for()
+    visitor.tick("Node graph")
+    node.wait_for(state="hidden")
     visitor.open_tab("Robot")
 
 
