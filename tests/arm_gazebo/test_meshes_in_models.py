@@ -210,6 +210,31 @@ def test_entities_of_a_collada_file_neither_multiply_nor_read_files(parts, tmp_p
     assert "known" not in warning
 
 
+def used(times, node):
+    return f'<instance_node url="#{node}"/>' * times
+
+
+@pytest.mark.parametrize(
+    ("innermost", "depth", "reason"),
+    [
+        ('<instance_geometry url="#g"/>', 9, "it draws more than 10000 geometries"),
+        ('<instance_geometry url="#g"/>', 2000, "its nodes use each other more than 100 deep"),
+        (used(1, "n9"), 9, "uses itself"),
+    ],
+)
+def test_nodes_of_a_collada_file_do_not_multiply_either(parts, tmp_path, innermost, depth, reason):
+    nodes = "".join(f'<node id="n{n}">{used(10, f"n{n - 1}")}</node>' for n in range(1, depth + 1))
+    library = f'<library_nodes><node id="n0">{innermost}</node>{nodes}</library_nodes>'
+    text = COLLADA.replace(
+        '<node id="n"><instance_geometry url="#g"/>', f'<node id="n">{used(1, f"n{depth}")}'
+    )
+    text = text.replace("<library_visual_scenes>", f"{library}<library_visual_scenes>")
+    (tmp_path / "a.dae").write_text(text)
+    built = parts.build(robot_with(shape(tmp_path / "a.dae")))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert reason in warning
+
+
 def test_a_packed_mesh_that_unpacks_beyond_all_bounds_is_not_read(parts, tmp_path, monkeypatch):
     monkeypatch.setattr("arm_description.mesh_file.LARGEST_BYTES", 100_000)
     with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
