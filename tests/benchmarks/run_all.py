@@ -16,6 +16,7 @@ import harness
 FOLDER = Path(__file__).parent
 SCRIPTS = (
     "start_up.py",
+    "command_line.py",
     "control_loop.py",
     "trajectory_control.py",
     "as_fast_as_possible.py",
