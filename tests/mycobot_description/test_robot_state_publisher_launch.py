@@ -1,5 +1,7 @@
 """robot_state_publisher.launch.py: which processes its arguments come to, without starting any."""
 
+import os
+
 import pytest
 
 from arm_cli.main import main
@@ -18,6 +20,28 @@ PUBLISHERS = {"robot_state_publisher", "joint_state_publisher", "joint_state_pub
 def test_one_publishes_joint_states_or_none(capsys, arguments, started):
     assert main(["launch", *FILE, "--print", "use_rviz:=false", *arguments]) == 0
     assert PUBLISHERS & set(capsys.readouterr().out.splitlines()) == started
+
+
+@pytest.mark.parametrize(
+    ("arguments", "frame"),
+    [
+        ((), "base_link"),
+        (("prefix:=left_", "use_gripper:=false"), "left_base_link"),
+        (("base_link:=foot",), "foot"),
+    ],
+)
+def test_rviz_looks_from_a_frame_that_the_robot_has(
+    capsys, tmp_path, monkeypatch, arguments, frame
+):
+    program = tmp_path / "rviz2"
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+
+    words = ("--print", "use_rviz:=true", "jsp_gui:=false", *arguments)
+    assert main(["launch", *FILE, *words]) == 0
+    printed = capsys.readouterr().out.split()
+    assert printed[printed.index("-f") + 1] == frame
 
 
 def test_a_switch_that_is_none_is_refused(capsys):
