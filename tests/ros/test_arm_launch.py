@@ -48,7 +48,10 @@ def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
     clock_ns = [m.clock.sec * 10**9 + m.clock.nanosec for m in ticks]
     state_ns = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in samples]
     assert all(b > a for a, b in itertools.pairwise(clock_ns))
-    assert {b - a for a, b in itertools.pairwise(state_ns)} == {10_000_000}
+    steps_ns = [b - a for a, b in itertools.pairwise(state_ns)]
+    # A subscription may miss one on a busy machine.
+    assert min(steps_ns) == 10_000_000
+    assert not any(step % 10_000_000 for step in steps_ns)
     assert set(state_ns) & set(clock_ns)
     # What the manager tells of itself goes by the same clock.
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
