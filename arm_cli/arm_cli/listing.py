@@ -1,9 +1,15 @@
 """Names with their types: what `list` and `find` of topics, services and actions have in common."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
+from arm_cli.interfaces.index import InterfaceIndex
 from arm_cli.output import add_json_argument, print_json
+from arm_cli.ros.connection import connect
+
+if TYPE_CHECKING:
+    from arm_cli.ros.graph import Graph
 
 
 def add_list_arguments(parser: argparse.ArgumentParser, kind: str) -> None:
@@ -49,10 +55,30 @@ def print_list(found: Mapping[str, Sequence[str]], options: argparse.Namespace) 
 
 
 def print_those_of(
-    type_name: str, found: Mapping[str, Sequence[str]], options: argparse.Namespace
+    type_name: str,
+    kind: str,
+    names_of: Callable[["Graph"], Mapping[str, Sequence[str]]],
+    options: argparse.Namespace,
 ) -> None:
-    """Print the names of one type, or by `add_count_argument` only their number."""
-    names = [name for name, types in found.items() if type_name in types]
+    """Print the names of one type, or by `add_count_argument` only their number.
+
+    Args:
+        type_name: as the user wrote it, with or without its middle part.
+        kind: of the type: "msg", "srv" or "action".
+        names_of: looks up names with their types.
+        options: as parsed.
+
+    Raises:
+        NotFoundError: there is no such type.
+    """
+    wanted = InterfaceIndex().find(type_name, (kind,)).full_name
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(session)
+        graph.settle()
+        found = names_of(graph)
+    names = [name for name, types in found.items() if wanted in types]
     if options.count:
         print(len(names))
     else:

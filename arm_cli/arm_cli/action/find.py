@@ -2,9 +2,7 @@
 
 import argparse
 
-from arm_cli.interfaces.index import InterfaceIndex
 from arm_cli.listing import add_count_argument, print_those_of
-from arm_cli.ros.connection import connect
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,11 +17,4 @@ def run(options: argparse.Namespace) -> None:
     Raises:
         NotFoundError: there is no such type.
     """
-    wanted = InterfaceIndex().find(options.action_type, ("action",)).full_name
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
-        found = graph.actions()
-    print_those_of(wanted, found, options)
+    print_those_of(options.action_type, "action", lambda graph: graph.actions(), options)

@@ -2,9 +2,7 @@
 
 import argparse
 
-from arm_cli.interfaces.index import InterfaceIndex
 from arm_cli.listing import add_count_argument, add_hidden_argument, print_those_of
-from arm_cli.ros.connection import connect
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,11 +18,6 @@ def run(options: argparse.Namespace) -> None:
     Raises:
         NotFoundError: there is no such type.
     """
-    wanted = InterfaceIndex().find(options.service_type, ("srv",)).full_name
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
-        found = graph.services(options.hidden)
-    print_those_of(wanted, found, options)
+    print_those_of(
+        options.service_type, "srv", lambda graph: graph.services(options.hidden), options
+    )

@@ -2,9 +2,7 @@
 
 import argparse
 
-from arm_cli.interfaces.index import InterfaceIndex
 from arm_cli.listing import add_count_argument, add_hidden_argument, print_those_of
-from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with, message_names
 
 
@@ -23,11 +21,4 @@ def run(options: argparse.Namespace) -> None:
     Raises:
         NotFoundError: there is no such type.
     """
-    wanted = InterfaceIndex().find(options.topic_type, ("msg",)).full_name
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
-        found = graph.topics(options.hidden)
-    print_those_of(wanted, found, options)
+    print_those_of(options.topic_type, "msg", lambda graph: graph.topics(options.hidden), options)
