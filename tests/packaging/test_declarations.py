@@ -122,6 +122,13 @@ def test_colcon_builds_it_as_a_python_package(package):
     assert manifest(package).findtext("export/build_type") == "ament_python"
 
 
+@pytest.mark.parametrize("package", MODULE_PACKAGES)
+def test_setuptools_finds_every_folder_of_modules(package):
+    """colcon leaves out what find_packages does not see: a folder without __init__.py."""
+    folders = {path.parent for path in (FOLDERS[package] / package).rglob("*.py")}
+    assert [str(path) for path in folders if not (path / "__init__.py").exists()] == []
+
+
 def test_no_setup_file_has_a_group_of_entry_points_that_the_root_lacks(project):
     groups = {
         group
