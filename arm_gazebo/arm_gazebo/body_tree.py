@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from arm_description.robot import Inertial, Joint, Link, Pose, Robot
 from arm_gazebo.build_report import BuildReport
+from arm_gazebo.errors import ModelError
 from arm_gazebo.inertia_repair import (
     LARGEST_GYRATION_M2,
     PrincipalInertia,
@@ -18,6 +19,10 @@ from arm_gazebo.inertia_repair import (
 from arm_gazebo.link_geometry import LinkGeometry, wxyz
 
 WORLD_LINK = "world"
+DEEPEST = 1000
+"""Links below each other; MuJoCo takes 1023 bodies, after minutes of work for many more."""
+MOST_MOVING = 1000
+"""Joints that move, whose inertia matrix is dense where drives are sized: 8 MB in each pose."""
 LOCKED_RANGE = 1e-4
 """Half width, in rad or m, of the range of a joint whose two limits are equal."""
 HINGE = mujoco.mjtJoint.mjJNT_HINGE
@@ -46,6 +51,9 @@ class BodyTree:
     """Adds the links of a robot to a specification, each a body of its own.
 
     Fixed joints are not fused: every link keeps its frame. A link called `world` is the world.
+
+    Raises:
+        ModelError: the robot is too large to be simulated.
     """
 
     def __init__(
@@ -56,8 +64,10 @@ class BodyTree:
         options: TreeOptions,
         report: BuildReport,
     ) -> None:
+        _check_size(robot)
         self._spec = spec
         self._robot = robot
+        self._laden = _laden_links(robot)
         self._geometry = geometry
         self._step_s = options.step_s
         self._default = options.default
@@ -109,7 +119,7 @@ class BodyTree:
             inertia = repair_inertia(inertial, self._doubtful_box(inertial, link))
             for remark in inertia.remarks:
                 self._report.repair(f"link '{link.name}'", remark, link.line)
-        elif moves and not self._carries_mass(link.name):
+        elif moves and link.name not in self._laden:
             box = self._geometry.bounds(link)
             inertia = missing_inertia(box)
             reason = "it has no shape to go by" if box is None else "going by its size"
@@ -127,14 +137,6 @@ class BodyTree:
         trace = inertial.inertia[0] + inertial.inertia[3] + inertial.inertia[5]
         doubtful = trace > LARGEST_GYRATION_M2 * inertial.mass
         return self._geometry.bounds(link) if doubtful else None
-
-    def _carries_mass(self, name: str) -> bool:
-        """Return whether something with mass is fixed to a link."""
-        fixed = [j.child for j in self._robot.children(name) if j.type == "fixed"]
-        links = [self._robot.link(child) for child in fixed]
-        return any(link.inertial is not None and link.inertial.mass > 0 for link in links) or any(
-            self._carries_mass(child) for child in fixed
-        )
 
     def _add_joints(self, body: mujoco.MjsBody, joint: Joint) -> None:
         match joint.type:
@@ -185,6 +187,35 @@ class BodyTree:
             joint.line,
         )
         return lower - LOCKED_RANGE, lower + LOCKED_RANGE
+
+
+def _check_size(robot: Robot) -> None:
+    """Refuse a robot that would take minutes or all memory before anything is made of it."""
+    moving = sum(joint.type != "fixed" for joint in robot.joints)
+    if moving > MOST_MOVING:
+        raise ModelError(
+            f"robot '{robot.name}' has {moving} joints that move; at most {MOST_MOVING} are "
+            "simulated"
+        )
+    depths = {robot.root: 0}
+    for joint in robot.joints_in_tree_order:
+        depths[joint.child] = depths[joint.parent] + 1
+        if depths[joint.child] > DEEPEST:
+            raise ModelError(
+                f"line {joint.line}: link '{joint.child}' hangs on '{robot.root}' over more than "
+                f"{DEEPEST} joints, which is deeper than MuJoCo goes"
+            )
+
+
+def _laden_links(robot: Robot) -> frozenset[str]:
+    """Return the links to which something with mass is fixed."""
+    laden: set[str] = set()
+    for joint in reversed(robot.joints_in_tree_order):
+        inertial = robot.link(joint.child).inertial
+        heavy = inertial is not None and inertial.mass > 0
+        if joint.type == "fixed" and (heavy or joint.child in laden):
+            laden.add(joint.parent)
+    return frozenset(laden)
 
 
 def _set_inertia(body: mujoco.MjsBody, inertia: PrincipalInertia) -> None:

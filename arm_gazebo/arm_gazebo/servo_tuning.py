@@ -123,19 +123,18 @@ def tune(
     efforts = np.array([joint.effort for joint in joints])
     rotor = _rotor(efforts, model.opt.timestep)
     gears = _gear(model, coupling, dofs, rotor)
-    inertias, own, gravities = _sample(model, joints, coupling, qpos)
-    largest = inertias.diagonal(axis1=1, axis2=2).max(axis=0) + gears
+    inertia, own, gravity = _sample(model, joints, coupling, qpos)
+    largest = inertia.diagonal() + gears
     limp_armature = ARMATURE_SHARE * largest
     armature = np.maximum(limp_armature, rotor)
     model.dof_armature[dofs] = limp_armature
     mujoco.mj_setConst(model, mujoco.MjData(model))
-    gravity = gravities.max(axis=0)
     damping = 2.0 * armature / model.opt.timestep
     speeds = np.array([joint.velocity for joint in joints])
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
     jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], USUAL_ACCELERATION)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
-    worst = np.abs(inertias).max(axis=0) + np.diag(armature + gears)
+    worst = inertia + np.diag(armature + gears)
     braking = _shared_accelerations(worst, spare, jerkless)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
@@ -147,7 +146,7 @@ def tune(
         braking_efforts=worst @ braking,
         jerkless=jerkless,
         gravity=gravity,
-        followers=largest - own.max(axis=0),
+        followers=largest - own,
         coupling=coupling,
     )
 
@@ -232,11 +231,11 @@ def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:
 def _sample(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], coupling: Array, qpos: Array
 ) -> tuple[Array, Array, Array]:
-    """Return what the driven joints feel in random poses.
+    """Return the most that the driven joints feel in random poses.
 
     Returns:
-        Inertia matrices with whatever moves along, shape (poses, n, n); inertias of the joints
-        alone, shape (poses, n); absolute efforts against gravity, shape (poses, n).
+        Absolute inertia matrix with whatever moves along, shape (n, n); inertias of the joints
+        alone, shape (n,); absolute efforts against gravity, shape (n,).
     """
     data = mujoco.MjData(model)
     random = np.random.default_rng(POSE_SEED)
@@ -244,7 +243,12 @@ def _sample(
     lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
     addresses = [joint.qpos_address for joint in joints]
     dofs = [joint.dof_address for joint in joints]
-    inertias, own, gravities = [], [], []
+    # A product with the few rows of the followers, not with thousands of zeros and ones.
+    others = coupling.copy()
+    others[dofs, range(len(dofs))] -= 1.0
+    followers = np.flatnonzero(others.any(axis=1))
+    ratios = others[followers]
+    inertia, own, gravity = np.zeros((len(dofs),) * 2), np.zeros(len(dofs)), np.zeros(len(dofs))
     data.qpos[:] = qpos
     for _ in range(POSES):
         data.qpos[addresses] = random.uniform(lower, upper)
@@ -254,10 +258,12 @@ def _sample(
         mujoco.mj_fullM(model, data, full)
         mujoco.mj_comVel(model, data)
         mujoco.mj_rne(model, data, 0, efforts)
-        inertias.append(coupling.T @ full @ coupling)
-        own.append(full[dofs, dofs])
-        gravities.append(np.abs(coupling.T @ efforts))
-    return np.array(inertias), np.array(own), np.array(gravities)
+        columns = full[:, dofs] + full[:, followers] @ ratios
+        felt = columns[dofs] + ratios.T @ columns[followers]
+        np.maximum(inertia, np.abs(felt), out=inertia)
+        np.maximum(own, full[dofs, dofs], out=own)
+        np.maximum(gravity, np.abs(coupling.T @ efforts), out=gravity)
+    return inertia, own, gravity
 
 
 def _range(joint: RobotJoint) -> tuple[float, float]:

@@ -306,3 +306,28 @@ def test_physics_takes_stiff_drives(parts):
     model = parts.build(parts.arm(), step_s=0.001).model
     assert model.opt.timestep == 0.001
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+
+
+def chain(parts, kind, count):
+    """Return a URDF of links without mass, each joined to the one before; the first one moves."""
+    links, joints = [parts.link("l0"), parts.link("l1")], [parts.joint("j1", "l0", "l1")]
+    for index in range(2, count + 1):
+        links.append(parts.link(f"l{index}"))
+        joints.append(parts.joint(f"j{index}", f"l{index - 1}", f"l{index}", kind))
+    return parts.robot(*links, *joints)
+
+
+def test_a_thousand_links_without_mass_may_hang_below_each_other(parts):
+    built = parts.build(chain(parts, "fixed", 1000))
+    assert built.bodies["l1000"] == 1001
+    assert "it moves but has no mass" in str(built.report.findings[0])
+
+
+def test_links_deeper_than_mujoco_goes_are_refused(parts):
+    with pytest.raises(ModelError, match=r"'l1001' hangs on 'l0' over more than 1000 joints"):
+        parts.build(chain(parts, "fixed", 1001))
+
+
+def test_more_joints_than_can_be_driven_are_refused(parts):
+    with pytest.raises(ModelError, match="has 1001 joints that move; at most 1000 are simulated"):
+        parts.build(chain(parts, "revolute", 1001))
