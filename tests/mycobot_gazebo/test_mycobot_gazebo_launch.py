@@ -25,11 +25,11 @@ def processes(**arguments: str) -> dict[str, ProcessStep]:
 
 def parameters(**arguments: str) -> dict[str, Any]:
     """Return the parameters that the simulation's process gets, by node."""
-    files = [
-        yaml.safe_load(word.text)
-        for word in processes(**arguments)["arm_gazebo_node"].command
-        if isinstance(word, GeneratedFile)
-    ]
+    return parameters_of(processes(**arguments)["arm_gazebo_node"])
+
+
+def parameters_of(process: ProcessStep) -> dict[str, Any]:
+    files = [yaml.safe_load(w.text) for w in process.command if isinstance(w, GeneratedFile)]
     return {node: entry["ros__parameters"] for file in files for node, entry in file.items()}
 
 
@@ -78,7 +78,9 @@ def test_sliders_beside_a_broadcaster_are_refused_with_the_way_out():
 def test_the_simulation_s_own_choices_are_passed_on():
     chosen = parameters(real_time_factor="3", headless="true")["/arm_gazebo"]
     assert chosen["real_time_factor"] == 3
-    assert {"arm_viewer_node"} == set(processes(viewer="true")) - set(processes())
+    shown = processes(viewer="true", viewer_port="8090")
+    assert {"arm_viewer_node"} == set(shown) - set(processes())
+    assert parameters_of(shown["arm_viewer_node"])["/**"]["port"] == 8090
 
 
 @pytest.mark.parametrize("given", [{}, {"prefix": "left_"}])
@@ -87,9 +89,6 @@ def test_the_pick_goes_by_the_simulation_s_clock_and_the_robot_s_names(given):
     description = read_launch_file(file)
     steps = expand_description(description, given, dict(os.environ), file).steps
     [node] = [s for s in steps if isinstance(s, ProcessStep) and s.name == "mycobot_pick_and_place"]
-    [written] = [
-        yaml.safe_load(word.text) for word in node.command if isinstance(word, GeneratedFile)
-    ]
-    [parameters_of_node] = [entry["ros__parameters"] for entry in written.values()]
+    [written] = parameters_of(node).values()
     prefix = given.get("prefix", "")
-    assert parameters_of_node == {"use_sim_time": True, "prefix": prefix, "hold_time": 5.0}
+    assert written == {"use_sim_time": True, "prefix": prefix, "hold_time": 5.0}

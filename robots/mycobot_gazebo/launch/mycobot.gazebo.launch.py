@@ -39,6 +39,7 @@ ARGUMENTS = {
     "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible", None),
     "headless": ("true", "false opens a window on the simulation", SWITCH),
     "viewer": ("false", "open the page in the browser, to see and move it", SWITCH),
+    "viewer_port": ("8080", "of the page, on 127.0.0.1", None),
     "x": ("0.0", "where base_link is in the world, in m", None),
     "y": ("0.0", "likewise", None),
     "z": ("0.025", "likewise; the underside of the base is 0.025 m lower", None),
