@@ -1,7 +1,6 @@
 """The one thread that owns the hardware (or the simulation) and the controllers."""
 
 import logging
-import os
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -10,6 +9,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
 from arm_control.errors import LoopStoppedError
+from arm_control.loop_priority import LoopPriority
 from arm_control.pacer import Pacer
 
 ResultT = TypeVar("ResultT")
@@ -30,7 +30,7 @@ class ControlLoop:
         pacer: Pacer,
         *,
         on_failure: Callable[[Exception], None] | None = None,
-        fifo_priority: int | None = None,
+        priority: LoopPriority | None = None,
     ) -> None:
         """Prepare the thread; `start` starts it.
 
@@ -38,13 +38,12 @@ class ControlLoop:
             tick: one cycle; if it raises, the loop ends.
             pacer: says when a tick is due; from now on it belongs to the loop thread.
             on_failure: called on the loop thread with what the tick raised, after it was logged.
-            fifo_priority: ask for the SCHED_FIFO scheduler with this priority (1 to 99); where
-                the process lacks the right, the loop says so and runs without.
+            priority: chooses the scheduler of the loop thread; default the ordinary one.
         """
         self.pacer = pacer
         self._tick = tick
         self._on_failure = on_failure
-        self._fifo_priority = fifo_priority
+        self._priority = priority or LoopPriority(0)
         self._calls: SimpleQueue[_Call] = SimpleQueue()
         self._step_requests: deque[_StepRequest] = deque()
         self._paused = False
@@ -123,7 +122,7 @@ class ControlLoop:
         return request.future
 
     def _run(self) -> None:
-        self._raise_priority()
+        self._priority.lower()
         self.pacer.restart()
         try:
             self._loop()
@@ -149,6 +148,7 @@ class ControlLoop:
             pacer.begin()
             self._tick()
             pacer.end()
+            self._priority.note(pacer.period_s, pacer.wall_period_s)
 
     def _idle(self) -> None:
         if not self._step_requests:
@@ -176,12 +176,14 @@ class ControlLoop:
 
     def _pause(self) -> None:
         self._paused = True
+        self._priority.lower()
 
     def _resume(self) -> None:
         self._finish_steps()
         if self._paused:
             self._paused = False
             self.pacer.restart()
+            self._priority.lower()
 
     def _stop(self) -> None:
         self._stopping = True
@@ -204,18 +206,6 @@ class ControlLoop:
             except Empty:
                 return
             call.refuse(error)
-
-    def _raise_priority(self) -> None:
-        if self._fifo_priority is None:
-            return
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._fifo_priority))
-        except OSError as error:
-            logger.warning(
-                "the control loop runs without SCHED_FIFO priority %d: %s",
-                self._fifo_priority,
-                error.strerror,
-            )
 
 
 class _Call:

@@ -44,6 +44,7 @@ class Pacer:
 
     Attributes:
         period_s: time that one tick advances, in seconds of the ticked time.
+        wall_period_s: wall time from one tick to the next; 0 as fast as possible.
         print_warnings: whether it says in the log that ticks come too late.
         runs: the latest ticks, in wall time.
     """
@@ -90,7 +91,7 @@ class Pacer:
                 f"real_time_factor must be 0 (as fast as possible) or positive, not {factor!r}"
             )
         self._real_time_factor = factor
-        self._wall_period_s = self.period_s / factor if factor else 0.0
+        self.wall_period_s = self.period_s / factor if factor else 0.0
         self.restart()
 
     @property
@@ -114,12 +115,12 @@ class Pacer:
 
     def remaining_s(self) -> float:
         """Return how long the next tick is still to wait; 0 or less when it is due."""
-        return self._due_s - self._now_s() if self._wall_period_s else 0.0
+        return self._due_s - self._now_s() if self.wall_period_s else 0.0
 
     def begin(self) -> None:
         """Note that a tick starts, and set the deadline of the next one."""
         self._began_s = now_s = self._now_s()
-        if not self._wall_period_s:
+        if not self.wall_period_s:
             return
         self._lag_s = lag_s = max(0.0, now_s - self._due_s)
         if lag_s > self._window_max_lag_s:
@@ -129,7 +130,7 @@ class Pacer:
             self._window_lost_s += lag_s - self._catch_up_s
             self._lost_s += lag_s - self._catch_up_s
             self._due_s = now_s - self._catch_up_s
-        self._due_s += self._wall_period_s
+        self._due_s += self.wall_period_s
 
     def end(self) -> None:
         """Note that the tick is done."""
@@ -137,7 +138,7 @@ class Pacer:
         self.runs.add(self._began_s, now_s - self._began_s)
         self._ticks += 1
         self._window_ticks += 1
-        if self._wall_period_s and now_s > self._due_s:
+        if self.wall_period_s and now_s > self._due_s:
             self._overruns += 1
             self._window_overruns += 1
         if now_s - self._window_start_s >= WINDOW_S:

@@ -21,6 +21,7 @@ class _Rules:
     description: str
     read_only: bool
     above: float | None = None
+    at_most: float | None = None
     one_of: tuple[str, ...] = ()
 
 
@@ -36,6 +37,7 @@ class ParameterSpec:
         description: for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
         above: what its value must exceed; None for no such bound.
+        at_most: what its value must not exceed; None for no such bound.
         one_of: what its value must be; empty for anything.
     """
 
@@ -46,6 +48,7 @@ class ParameterSpec:
     description: str
     read_only: bool
     above: float | None = None
+    at_most: float | None = None
     one_of: tuple[str, ...] = ()
 
     @property
@@ -53,7 +56,9 @@ class ParameterSpec:
         """What its value must be beyond its type, in words; empty for anything."""
         if self.one_of:
             return f"one of {', '.join(self.one_of)}"
-        return "" if self.above is None else f"above {self.above:g}"
+        lower = [] if self.above is None else [f"above {self.above:g}"]
+        upper = [] if self.at_most is None else [f"at most {self.at_most:g}"]
+        return " and ".join(lower + upper)
 
     def convert(self, value: object) -> Any:
         """Return the value in the parameter's own type; an integer serves as a float.
@@ -79,7 +84,8 @@ class ParameterSpec:
             )
         # Not `value <= above`: a NaN is above nothing.
         too_low = self.above is not None and not value > self.above
-        if too_low or (self.one_of and value not in self.one_of):
+        too_high = self.at_most is not None and not value <= self.at_most
+        if too_low or too_high or (self.one_of and value not in self.one_of):
             raise ParameterError(f"parameter '{name}' must be {self.constraint}, but is {value!r}")
         return value
 
@@ -90,6 +96,7 @@ def parameter(
     *,
     read_only: bool = False,
     above: float | None = None,
+    at_most: float | None = None,
     one_of: tuple[str, ...] = (),
 ) -> Any:
     """Describe a field of a parameters dataclass.
@@ -99,11 +106,12 @@ def parameter(
         description: one line for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
         above: what its value, or each element, must exceed.
+        at_most: what its value, or each element, must not exceed.
         one_of: what its value, or each element, must be.
     """
     return dataclasses.field(
         default=default,
-        metadata={_METADATA_KEY: _Rules(description, read_only, above, one_of)},
+        metadata={_METADATA_KEY: _Rules(description, read_only, above, at_most, one_of)},
     )
 
 
@@ -134,6 +142,7 @@ def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpe
                 rules.description,
                 rules.read_only,
                 rules.above,
+                rules.at_most,
                 rules.one_of,
             )
         )

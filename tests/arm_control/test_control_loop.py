@@ -1,5 +1,6 @@
 """The loop thread: calls between ticks, pause, steps, failure, end."""
 
+import os
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
@@ -9,6 +10,7 @@ import pytest
 
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
+from arm_control.loop_priority import LoopPriority
 from arm_control.pacer import Pacer
 
 TIMEOUT_S = 20.0
@@ -273,16 +275,16 @@ def test_a_tick_that_raises_ends_the_loop_with_its_reason(
         loop.call(lambda: None).result(0)
 
 
-def test_without_the_right_to_a_priority_it_says_so_and_runs(
-    start: Any,
-    ticks: Ticks,
-    caplog: pytest.LogCaptureFixture,
-    monkeypatch: pytest.MonkeyPatch,
+def test_its_thread_is_raised_while_it_paces_and_lowered_while_it_does_not(
+    start: Any, ticks: Ticks
 ) -> None:
-    def refuse(*_: Any) -> None:
-        raise PermissionError(1, "Operation not permitted")
+    asked: list[tuple[int, int]] = []
 
-    monkeypatch.setattr("os.sched_setscheduler", refuse)
-    start(ticks, fifo_priority=50)
-    ticks.wait_for(2)
-    assert "without SCHED_FIFO priority 50: Operation not permitted" in caplog.text
+    def schedule(policy: int, priority: int) -> None:
+        asked.append((policy, threading.get_ident()))
+
+    loop = start(ticks, priority=LoopPriority(50, schedule=schedule, used_s=lambda: 0.0))
+    ticks.wait_for(600)
+    loop.pause().result(TIMEOUT_S)
+    (thread,) = ticks.threads
+    assert asked == [(os.SCHED_FIFO, thread), (os.SCHED_OTHER, thread)]

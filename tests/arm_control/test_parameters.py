@@ -65,6 +65,22 @@ def test_a_wrong_type_is_refused(name: str, value: Any, says: str) -> None:
         build_parameters(Example, {name: value})
 
 
+@dataclass(frozen=True, slots=True)
+class Bounded:
+    share: int = parameter(3, "In percent", above=-1, at_most=99)
+
+
+@pytest.mark.parametrize("value", [0, 99])
+def test_a_value_at_its_bounds_is_taken(value: int) -> None:
+    assert build_parameters(Bounded, {"share": value}) == Bounded(value)
+
+
+@pytest.mark.parametrize("value", [-1, 100])
+def test_a_value_beyond_its_bounds_is_refused(value: int) -> None:
+    with pytest.raises(ParameterError, match=r"must be above -1 and at most 99, but is -?1"):
+        build_parameters(Bounded, {"share": value})
+
+
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
     with pytest.raises(ParameterError, match=r"unknown parameter gain; there is joint, count, on"):
         build_parameters(Example, {"gain": 1.0})

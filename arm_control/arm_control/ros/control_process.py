@@ -15,7 +15,7 @@ from arm_control.clock import SystemClock
 from arm_control.control_cycle import ControlCycle
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
-from arm_control.errors import ArmControlError, HardwareInfoError, ParameterError
+from arm_control.errors import ArmControlError, HardwareInfoError
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.pacer import Pacer
 from arm_control.registry import create_hardware
@@ -32,7 +32,6 @@ from arm_node.process import EXIT_FAILED, NodeProcess
 LISTENING_S = 0.1
 REMINDER_INTERVAL_S = 1.0
 LOOP_JOIN_TIMEOUT_S = 5.0
-HIGHEST_PRIORITY = 99
 CATCH_UP_PERIODS = 0.75
 """A late cycle is made up for, a missed one left out: commands in a burst are of no use."""
 
@@ -152,7 +151,7 @@ def _loop(
         cycle,
         pacer,
         on_failure=lambda _: process.stop(EXIT_FAILED),
-        fifo_priority=_fifo_priority(node),
+        priority=node.loop_priority(),
     )
     loop.start(paused=simulated is not None)
     if simulated is not None:
@@ -164,22 +163,6 @@ def _loop(
             on_set_back=lambda: loop.call(pacer.restart),
         )
     return loop
-
-
-def _fifo_priority(node: ControllerManagerNode) -> int | None:
-    """Return the parameter thread_priority, None where nobody asks for one.
-
-    Unlike ros2_control's 50 there is no default: the loop shares the interpreter with threads
-    of ordinary priority, so the real-time scheduler is for machines where it has been tried.
-    """
-    priority = node.given_parameters().get("thread_priority")
-    if priority is None:
-        return None
-    if type(priority) is not int or not 1 <= priority <= HIGHEST_PRIORITY:
-        raise ParameterError(
-            f"parameter 'thread_priority' must be from 1 to {HIGHEST_PRIORITY}, not {priority!r}"
-        )
-    return priority
 
 
 def _look_at_the_clock() -> None:

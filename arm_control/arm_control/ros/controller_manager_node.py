@@ -11,6 +11,7 @@ from rclpy.parameter import Parameter
 from arm_control.clock import Clock
 from arm_control.controller_switch import Strictness
 from arm_control.errors import ParameterError
+from arm_control.loop_priority import LoopPriority
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
 from arm_control.ros.convert import time_message
 from arm_control.ros.health_publisher import HealthPublisher
@@ -80,6 +81,11 @@ class ControllerManagerNode(ParameterNode):
     def default_strictness(self) -> Strictness:
         """Return the strictness of a switch request that names none."""
         return _STRICTNESS[self.settings.defaults.switch_controller.strictness]
+
+    def loop_priority(self) -> LoopPriority:
+        """Return what chooses the scheduler of the loop that updates the controllers."""
+        insist = "thread_priority" in self.given_parameters()
+        return LoopPriority(self.settings.thread_priority, insist=insist)
 
     def stamp(self) -> Time:
         """Return the time for a message's header; any thread."""

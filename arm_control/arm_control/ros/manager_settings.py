@@ -75,6 +75,13 @@ class ManagerSettings:
     """Parameters of the node /controller_manager."""
 
     update_rate: int = parameter(100, "Control cycles per second", above=0)
+    thread_priority: int = parameter(
+        50,
+        "SCHED_FIFO priority of the control loop where the process may; 0 for the ordinary one",
+        read_only=True,
+        above=-1,
+        at_most=99,
+    )
     enforce_command_limits: bool = parameter(
         False,
         "Clamp every command to the limits that the robot description gives for its joint",

@@ -16,6 +16,7 @@ from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.pacer import Pacer
+from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_gazebo.build_options import BuildOptions
 from arm_gazebo.camera_feed import CameraFeed
 from arm_gazebo.display import check_display
@@ -80,12 +81,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         managers = [robot.manager for robot in robots]
         shown = [*feeds, *_sensor_feed(robots, node, timing)]
         tick = SimulationTick(managers, simulation, clock, shown, timing.period_s)
-        pacer = Pacer(
-            timing.period_s,
-            real_time_factor=settings.real_time_factor,
-            print_warnings=robots[0].node.settings.overruns.print_warnings,
-        )
-        loop = ControlLoop(tick, pacer, on_failure=lambda _: process.stop(EXIT_FAILED))
+        loop = _loop(process, tick, timing, settings, robots[0].node)
         ending.enter_context(_standing_still(loop))
         for robot in robots:
             ending.callback(robot.shutdown)
@@ -94,7 +90,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         for feed in feeds:
             feed.start(built.model)
         hardware = [component for robot in robots for component in robot.hardware]
-        _supervise(node, clock, pacer, simulation, hardware, feeds)
+        _supervise(node, clock, loop.pacer, simulation, hardware, feeds)
         starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
         server = starter.submit(
             _serve, simulation, loop, entries, hardware, feeds, settings.world, process.stop
@@ -118,6 +114,27 @@ def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
     if error is not None:
         logger.error("the services of the simulation failed", exc_info=error)
         process.stop(EXIT_FAILED)
+
+
+def _loop(
+    process: NodeProcess,
+    tick: SimulationTick,
+    timing: PhysicsTiming,
+    settings: SimulationSettings,
+    manager: ControllerManagerNode,
+) -> ControlLoop:
+    """Make the loop that all robots share; the first one's manager says how it runs."""
+    pacer = Pacer(
+        timing.period_s,
+        real_time_factor=settings.real_time_factor,
+        print_warnings=manager.settings.overruns.print_warnings,
+    )
+    return ControlLoop(
+        tick,
+        pacer,
+        on_failure=lambda _: process.stop(EXIT_FAILED),
+        priority=manager.loop_priority(),
+    )
 
 
 @contextmanager
