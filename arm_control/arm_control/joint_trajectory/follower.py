@@ -49,7 +49,8 @@ from arm_control.loaned_interfaces import LoanedInterfaces
 class Follower:
     """Follows one trajectory after the other, and holds still in between.
 
-    Made at activation, thrown away at deactivation. Loop thread only, but for `find_excess`.
+    Made at activation, thrown away at deactivation. Loop thread only, but for `find_excess`
+    and `find_haste`.
 
     Attributes:
         time_s: the controller's time in the last cycle; None before the first.
@@ -206,7 +207,18 @@ class Follower:
         offset_s = trajectory.offset_s(self.time_s or 0.0)
         return limits.find_excess(self._plan(trajectory), trajectory.times_s + offset_s)
 
+    def find_haste(self, trajectory: Trajectory) -> str | None:
+        """Say which joint is too slow for a trajectory that begins now, None for none; any thread.
+
+        It is no reason to refuse it: the joint lags behind, and the tolerances judge that.
+        """
+        offset_s = trajectory.offset_s(self.time_s or 0.0)
+        return self._configuration.model.find_haste(trajectory, self._start()[POSITION], offset_s)
+
     # Motions
+
+    def _start(self) -> NDArray[np.float64]:
+        return self._commanded if self._configuration.starts_from_command else self._measured()
 
     def _begin_next(self, begin: Callable[[], Execution]) -> None:
         self._execution.serves_goal = False
@@ -233,14 +245,12 @@ class Follower:
     def _plan(self, trajectory: Trajectory) -> Plan:
         configuration = self._configuration
         continuous = configuration.model.continuous
-        measured = self._measured()
-        held = measured[POSITION].copy()
+        held = self._measured()[POSITION].copy()
         if configuration.wiring.commands("position"):
             commanded = configuration.wiring.commanded
             held[commanded] = self._commanded[POSITION, commanded]
-        start = self._commanded if configuration.starts_from_command else measured
         join_s = configuration.parameters.smooth_replacement_time
-        return trajectory.plan(self.time_s or 0.0, start, held, continuous, join_s)
+        return trajectory.plan(self.time_s or 0.0, self._start(), held, continuous, join_s)
 
     def _stop(self) -> Execution:
         """Brake where that is configured, else hold at once."""

@@ -93,6 +93,9 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         prepared = self._prepare(goal.trajectory)
         if isinstance(prepared, Refusal):
             return prepared.as_result()
+        haste = self._follower and self._follower.find_haste(prepared)
+        if haste:
+            self.logger.warning("Goal too fast: %s", haste)
         taken = self._inbox.put(GoalStart(goal, prepared))
         return None if taken else NOT_RUNNING.as_result()
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.joint_trajectory.motion import POSITION, VELOCITY
+from arm_control.joint_trajectory.angles import nearest_turn
+from arm_control.joint_trajectory.motion import POSITION, RESOLUTION_S, VELOCITY
 from arm_control.joint_trajectory.plans import Plan
 from arm_control.joint_trajectory.results import ErrorCode, Refusal
+from arm_control.joint_trajectory.trajectory import Trajectory
 from arm_description.robot import Robot
 
 SAMPLES_PER_SEGMENT = 8
@@ -28,6 +30,7 @@ class JointModel:
         joints: their names.
         continuous: which turn without end, shape (n,).
         turns: whether any of them does.
+        units: of their positions, rad or m.
         lower: least positions, shape (n,); -inf where there is no limit.
         upper: greatest positions, shape (n,).
         velocity: greatest speeds, shape (n,); inf where there is no limit.
@@ -36,6 +39,7 @@ class JointModel:
     joints: tuple[str, ...]
     continuous: NDArray[np.bool_]
     turns: bool
+    units: tuple[str, ...]
     lower: NDArray[np.float64]
     upper: NDArray[np.float64]
     velocity: NDArray[np.float64]
@@ -51,9 +55,44 @@ class JointModel:
             tuple(names),
             np.array(continuous),
             any(continuous),
+            tuple("m" if joint and joint.type == "prismatic" else "rad" for joint in joints),
             np.array([limit.lower if limit else -np.inf for limit in limits]),
             np.array([limit.upper if limit else np.inf for limit in limits]),
             np.array([limit.velocity if limit and limit.velocity else np.inf for limit in limits]),
+        )
+
+    def find_haste(
+        self, trajectory: Trajectory, start: NDArray[np.float64], offset_s: float
+    ) -> str | None:
+        """Say which joint cannot keep up with a trajectory, None where none is known to lag.
+
+        Cheap, for what is followed all the same: how fast a joint is at each point, and has to be
+        at least to get there from the one before. A plan may ask for more in between.
+
+        Args:
+            trajectory: what is asked for.
+            start: positions from which it is begun, shape (n,).
+            offset_s: how long from now it starts.
+        """
+        due_s = trajectory.times_s + offset_s
+        coming = due_s > RESOLUTION_S
+        points = trajectory.motions[coming]
+        if not len(points):
+            return None
+        start = nearest_turn(start, points[0, POSITION], self.continuous)
+        ways = np.diff(np.vstack([start, points[:, POSITION]]), axis=0)
+        paces = np.abs(ways) / np.diff(due_s[coming], prepend=0.0)[:, None]
+        # What a point leaves open is NaN: fmax takes the other, and NaN is not greater.
+        speeds = np.fmax(paces, np.abs(points[:, VELOCITY]))
+        excess = np.where(speeds > self.velocity + SLACK, speeds / self.velocity, 0.0)
+        row, i = np.unravel_index(np.argmax(excess), excess.shape)
+        if not excess[row, i]:
+            return None
+        number, unit = np.flatnonzero(coming)[row] + 1, self.units[i]
+        return (
+            f"joint {self.joints[i]} would have to move with {speeds[row, i]:.4g} {unit}/s to be "
+            f"in time at point {number} of {len(due_s)}; its velocity limit is "
+            f"{self.velocity[i]:.4g} {unit}/s"
         )
 
 

@@ -100,3 +100,52 @@ def test_without_a_robot_description_there_are_no_limits(
     rig = make_rig(check_position_limits=True, check_velocity_limits=True)
 
     assert rig.controller.check_goal(make_request([(0.1, [9.0, 9.0, 9.0])])) is None
+
+
+@pytest.fixture
+def haste(
+    make_rig: MakeRig, robot_description: Callable[..., str], caplog: pytest.LogCaptureFixture
+) -> Callable[..., list[str]]:
+    """Say what the log says of a goal that is taken without checks."""
+
+    def find(
+        points: list[Any], joint_type: str = "revolute", joints: Any = ("j0", "j1", "j2"), **o: Any
+    ) -> list[str]:
+        rig = make_rig(robot_description=robot_description(joint_type, LIMIT), **o)
+        rig.goal(points, joints=joints)
+        rig.tick(3)
+        return [r.getMessage() for r in caplog.records if r.levelname == "WARNING"]
+
+    return find
+
+
+def test_a_goal_that_is_too_fast_for_a_joint_is_followed_and_said_once(haste: Callable[..., Any]):
+    assert haste([(0.5, [0.1, 1.0, 0.9])]) == [
+        "Goal too fast: joint j1 would have to move with 2 rad/s to be in time at point 1 of 1; "
+        "its velocity limit is 1.5 rad/s"
+    ]
+
+
+def test_the_point_that_asks_for_most_is_named(haste: Callable[..., Any]):
+    points = [(1.0, [0.0] * 3), (2.0, [1.6, 0.0, 0.0]), (2.1, [1.6, 0.0, -0.4])]
+    (said,) = haste([*points, (9.0, [0.0] * 3)], "prismatic")
+    assert "joint j2 would have to move with 4 m/s to be in time at point 3 of 4" in said
+
+
+def test_a_velocity_of_a_point_counts_as_well(haste: Callable[..., Any]):
+    moving = [(5.0, [0.0] * 3, [0.0, 0.0, -1.6]), (9.0, [0.0] * 3, [0.0] * 3)]
+    (said,) = haste(moving)
+    assert "joint j2 would have to move with 1.6 rad/s" in said
+
+
+def test_a_goal_that_the_joints_can_follow_is_not_spoken_of(haste: Callable[..., Any]):
+    assert haste([(2.0, [1.0, 2.0, -1.0]), (4.0, [0.0] * 3)]) == []
+    # The short way round, joints that are not named, points without positions.
+    assert haste([(1.0, [6.0] * 3)], "continuous") == []
+    partial = {"allow_partial_joints_goal": True, "allow_integration_in_goal_trajectories": True}
+    assert haste([(1.0, [1.0])], joints=("j1",), **partial) == []
+    assert haste([(1.0, [], [1.0] * 3), (2.0, [], [0.0] * 3)], **partial) == []
+
+
+def test_a_point_that_is_due_at_once_is_not_judged(haste: Callable[..., Any]):
+    assert haste([(0.0, [1.0] * 3)]) == []
