@@ -1,19 +1,15 @@
 """What of a COLLADA file must be known before trimesh reads it: its unit, and how much it draws."""
 
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import lxml.etree as etree
 import numpy as np
 
 from arm_description.errors import MeshFileError
+from arm_description.scene_graph import SceneNode, check_scene
 
-MOST_INSTANCES = 10_000
-"""Geometries in the scene, each as often as its nodes are used: they take half a minute."""
 LONGEST_TEXT = 10_000_000
 """What libxml2 takes in one element, in bytes, unless it is told to take anything."""
-DEEPEST = 100
-"""How many nodes may lead to a geometry."""
 
 
 def read_collada_unit(path: Path) -> float:
@@ -52,33 +48,19 @@ def _unit(root: etree._Element) -> float:
 
 
 def _check_instances(root: etree._Element) -> None:
-    """Refuse few nodes that use each other so often that nobody could draw it."""
     nodes = {f"#{node.get('id')}": node for node in root.iter("{*}node") if node.get("id")}
-    counts: dict[str, int] = {}
-    total = sum(_instances(scene, nodes, counts, ()) for scene in root.iter("{*}visual_scene"))
-    if total > MOST_INSTANCES:
-        raise MeshFileError(f"it draws more than {MOST_INSTANCES} geometries")
+    scenes = {f"scene {n}": scene for n, scene in enumerate(root.iter("{*}visual_scene"))}
+
+    def find(name: str) -> SceneNode | None:
+        element = scenes[name] if name in scenes else nodes.get(name)
+        return None if element is None else _scene_node(element)
+
+    check_scene(scenes, find)
 
 
-def _instances(
-    element: etree._Element,
-    nodes: Mapping[str, etree._Element],
-    counts: dict[str, int],
-    above: tuple[str, ...],
-) -> int:
-    """Return how many geometries an element draws; `above` are the nodes that led to it."""
-    total = sum(1 for _ in element.iter("{*}instance_geometry", "{*}instance_controller"))
-    for url in _used_nodes(element):
-        if url in above:
-            raise MeshFileError(f"its node '{url}' uses itself")
-        if len(above) == DEEPEST:
-            raise MeshFileError(f"its nodes use each other more than {DEEPEST} deep")
-        if url in nodes and url not in counts:
-            counts[url] = _instances(nodes[url], nodes, counts, (*above, url))
-        total += counts.get(url, 0)
-    # Bounded, for there are numbers of many pages.
-    return min(total, MOST_INSTANCES + 1)
-
-
-def _used_nodes(element: etree._Element) -> Iterator[str]:
-    return (used.get("url", "") for used in element.iter("{*}instance_node"))
+def _scene_node(element: etree._Element) -> SceneNode:
+    """Return what an element uses, elements within it included."""
+    return SceneNode(
+        sum(1 for _ in element.iter("{*}instance_geometry", "{*}instance_controller")),
+        tuple(used.get("url", "") for used in element.iter("{*}instance_node")),
+    )

@@ -7,18 +7,26 @@ import numpy as np
 
 from arm_description.collada_file import read_collada_unit
 from arm_description.errors import MeshFileError
+from arm_description.gltf_file import check_gltf
 from arm_description.mesh_data import Color, MeshData
+from arm_description.packed_file import check_packed
 
 COLLADA_SUFFIX = ".dae"
+CHECKS = {".gltf": check_gltf, ".glb": check_gltf, ".3mf": check_packed}
+"""What must hold before trimesh reads a file."""
 
 
 def read_scene(path: Path) -> tuple[MeshData, ...]:
     """Return the parts of a mesh file in m, one for each material.
 
     Raises:
-        MeshFileError: trimesh cannot read the file, or it holds no triangles.
+        MeshFileError: trimesh cannot read the file, it would draw more than anybody can, or it
+            holds no triangles.
     """
-    unit = read_collada_unit(path) if path.suffix.lower() == COLLADA_SUFFIX else 1.0
+    suffix = path.suffix.lower()
+    unit = read_collada_unit(path) if suffix == COLLADA_SUFFIX else 1.0
+    if suffix in CHECKS:
+        CHECKS[suffix](path)
     # trimesh takes half a second to import; a robot of STL files does without.
     import trimesh
 

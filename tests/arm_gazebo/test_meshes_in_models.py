@@ -1,5 +1,6 @@
 """Mesh files of every format, as links of a model."""
 
+import json
 import struct
 import zipfile
 
@@ -233,6 +234,76 @@ def test_nodes_of_a_collada_file_do_not_multiply_either(parts, tmp_path, innermo
     built = parts.build(robot_with(shape(tmp_path / "a.dae")))
     [warning] = [str(finding) for finding in built.report.warnings]
     assert reason in warning
+
+
+def warning_of(parts, file):
+    """Return the one thing that is said of a mesh file that cannot be used."""
+    built = parts.build(robot_with(shape(file)))
+    [warning] = [str(finding) for finding in built.report.warnings]
+    assert f"cannot use the mesh {file}: " in warning
+    return warning
+
+
+DRAWS, USES_ITSELF = "it draws more than 10000 geometries", "its node '0' uses itself"
+DEEP = "its nodes use each other more than 100 deep"
+
+
+@pytest.mark.parametrize(
+    ("nodes", "reason"),
+    [
+        ([{"children": [1]}, {"children": [0], "mesh": 0}], USES_ITSELF),
+        ([*({"children": [n + 1] * 10} for n in range(9)), {"mesh": 0}], DRAWS),
+        ([{"children": [*range(1, 10_002)]}, *([{"mesh": 0}] * 10_001)], DRAWS),
+        ([*({"children": [n + 1]} for n in range(3000)), {"mesh": 0}], DEEP),
+    ],
+)
+def test_nodes_of_a_gltf_file_do_not_multiply(parts, tmp_path, nodes, reason):
+    document = {"scenes": [{"nodes": [0]}], "nodes": nodes, "meshes": [{"primitives": [{}]}]}
+    (tmp_path / "a.gltf").write_text(json.dumps(document))
+    assert reason in warning_of(parts, tmp_path / "a.gltf")
+
+
+@pytest.mark.parametrize(
+    ("document", "reason"),
+    [
+        ({"accessors": [{"count": 10**11}] * 2}, "200000000000 of its elements are without data"),
+        ({"buffers": [{"uri": "/dev/zero"}]}, "it names '/dev/zero', which is no file"),
+        ({"images": [{"uri": "a" * 5000}]}, "it names the file 'aaa"),
+        ([], "no glTF: its JSON is not an object"),
+    ],
+)
+def test_a_gltf_file_that_asks_for_everything_is_not_read(parts, tmp_path, document, reason):
+    (tmp_path / "a.gltf").write_text(json.dumps(document))
+    assert reason in warning_of(parts, tmp_path / "a.gltf")
+
+
+def test_brackets_of_a_gltf_file_that_never_end(parts, tmp_path):
+    (tmp_path / "a.gltf").write_text("[" * 100_000)
+    assert "no glTF: " in warning_of(parts, tmp_path / "a.gltf")
+
+
+def components(*ids):
+    inside = "".join(f'<component objectid="{n}"/>' for n in ids)
+    return f"<components>{inside}</components>"
+
+
+@pytest.mark.parametrize(
+    ("objects", "items", "reason"),
+    [
+        ([components(1), components(0)], [0], USES_ITSELF),
+        ([*(components(*([n + 1] * 10)) for n in range(9)), "<mesh/>"], [0], DRAWS),
+        ([components(*([1] * 10)), components(*["elsewhere"] * 1001)], [0], DRAWS),
+        (["<mesh/>"], [0] * 10_001, DRAWS),
+        ([*(components(n + 1) for n in range(3000)), "<mesh/>"], [0], DEEP),
+    ],
+)
+def test_components_of_a_3mf_file_do_not_multiply(parts, tmp_path, objects, items, reason):
+    resources = "".join(f'<object id="{n}">{text}</object>' for n, text in enumerate(objects))
+    build = "".join(f'<item objectid="{n}"/>' for n in items)
+    with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+        model = f"<model><resources>{resources}</resources><build>{build}</build></model>"
+        archive.writestr("3D/3dmodel.model", model)
+    assert reason in warning_of(parts, tmp_path / "a.3mf")
 
 
 def test_a_packed_mesh_that_unpacks_beyond_all_bounds_is_not_read(parts, tmp_path, monkeypatch):
