@@ -5,7 +5,7 @@ is what its pose shows.
 """
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,11 +19,12 @@ from arm_control.gripper import GripperRequest
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
 from arm_control.registry import controller_class
+from arm_controller.arm_gripper_loop import ArmGripperLoop
 from arm_controller.errors import PickError
 from arm_controller.mycobot import JOINTS
 from arm_controller.pick_and_place import Grip, PickAndPlace
 from arm_controller.pick_plan import PickPlan, PickTask, plan_pick
-from arm_controller.way import Way
+from arm_controller.way import Way, WayPoint
 from arm_description.resources import resolve_uri
 from arm_description.robot import Pose
 from arm_description.urdf import parse_urdf
@@ -43,6 +44,8 @@ SPREAD_M = 0.005
 RUNS = 20
 SEED = 280
 LONGEST_S = 30.0
+LOOP_S = 2.0
+PADS = {"gripper_left1", "gripper_right1"}
 ARM, GRIPPER = "arm_controller", "gripper_action_controller"
 
 
@@ -85,14 +88,21 @@ class Results:
 
 @dataclass
 class Track:
-    """Where the object was after every tick: heights above its start (m), and tilts (rad)."""
+    """What happened in all ticks: where the object was, and what the robot touched.
+
+    Attributes:
+        heights: of the object above its start, m.
+        tilts: of the object, rad.
+        touched: links of the robot, each with a thing that it touched.
+    """
 
     heights: list[float]
     tilts: list[float]
+    touched: set[tuple[str, str]]
 
 
 class SteppedRobot:
-    """A `PickingRobot` in the simulation; time passes while it moves.
+    """A `PickingRobot`, and an `ArmWithGripper`, in the simulation; time passes while it moves.
 
     Args:
         setup: the robot.
@@ -112,8 +122,11 @@ class SteppedRobot:
         place = built.model.jnt_qposadr[built.model.body(OBJECT).jntadr[0]]
         qpos = built.qpos.copy()
         qpos[place : place + 2] += offset
+        # Its link `world` is the world itself.
+        self._links = set(built.bodies.values()) - {0}
         self.simulation = Simulation(replace(built, qpos=qpos), timing)
-        self.track = Track([], [])
+        self.track = Track([], [], set())
+        self._places = self.simulation.data.xpos.copy()
         self.during: dict[str, slice] = {}
         parts = [SimulatedHardware(self.simulation, info) for info in hardware]
         self._manager = ControllerManager(parts, RATE_HZ)
@@ -142,6 +155,22 @@ class SteppedRobot:
         body = simulation.data.body(OBJECT)
         self.track.heights.append(body.xpos[2] - START[2])
         self.track.tilts.append(np.arccos(min(1.0, body.xmat[8])))
+        self.track.touched.update(self._touches())
+
+    def _touches(self) -> Iterator[tuple[str, str]]:
+        """Yield what touches the robot now: its link and the other body."""
+        model, contacts = self.simulation.model, self.simulation.data.contact
+        for bodies in model.geom_bodyid[contacts.geom]:
+            ours = [body for body in bodies if body in self._links]
+            others = [body for body in bodies if body not in self._links]
+            if ours and others:
+                yield model.body(ours[0]).name, model.body(others[0]).name
+
+    def moved(self) -> set[str]:
+        """Return the things that are not where they were: a touch between two ticks shows, too."""
+        model, data = self.simulation.model, self.simulation.data
+        ways = np.linalg.norm(data.xpos - self._places, axis=1)
+        return {model.body(i).name for i in np.flatnonzero(ways > 2e-3) if i not in self._links}
 
     @property
     def object_position(self) -> np.ndarray:
@@ -161,6 +190,13 @@ class SteppedRobot:
             GRIPPER, lambda goal: GripperRequest(goal, [position], [max_effort])
         )
         return Grip(result.state.position, result.reached_goal, result.stalled)
+
+    async def move_arm(self, positions: tuple[float, ...]) -> str | None:
+        return await self.follow((WayPoint(LOOP_S, positions, ()),))
+
+    async def move_gripper(self, position: float) -> str | None:
+        grip = await self.grip(position, 5.0)
+        return None if isinstance(grip, Grip) and grip.reached else f"stopped: {grip}"
 
     async def pause(self, seconds: float) -> None:
         before = len(self.track.heights)
@@ -192,6 +228,8 @@ def assert_held_and_put_back(robot: SteppedRobot, task: PickTask) -> None:
     assert max(robot.track.tilts) < np.radians(5.0), "it never fell"
     assert robot.track.tilts[-1] < np.radians(1.0), "it stands again"
     assert robot.object_position == pytest.approx(START, abs=0.012), "where it stood"
+    assert robot.track.touched == {(pad, OBJECT) for pad in PADS}, "nothing else was touched"
+    assert robot.moved() <= {OBJECT}
 
 
 @pytest.mark.parametrize("offset", offsets(), ids=lambda o: f"{o[0] * 1e3:.1f}_{o[1] * 1e3:.1f}mm")
@@ -220,3 +258,19 @@ def test_an_object_that_is_not_there_is_missed(setup, plan):
     with pytest.raises(PickError, match="nothing between the fingers: they closed all the way"):
         asyncio.run(PickAndPlace(robot, plan).run())
     assert max(map(abs, robot.track.heights)) < 1e-3
+
+
+def test_the_loop_of_arm_and_gripper_touches_nothing(setup, caplog):
+    robot = SteppedRobot(setup)
+    caplog.clear()
+    asyncio.run(ArmGripperLoop(robot).run_once())
+    asyncio.run(ArmGripperLoop(robot).run_once())
+    assert caplog.messages == [], "every place was reached"
+    assert robot.track.touched == set()
+    assert robot.moved() == set()
+
+
+def test_a_thing_in_the_way_of_the_loop_is_seen_to_be_hit(setup):
+    robot = SteppedRobot(setup, (-0.48, -0.03))
+    asyncio.run(ArmGripperLoop(robot).run_once())
+    assert robot.moved() == {OBJECT}
