@@ -8,7 +8,7 @@ from arm_cli.errors import NotFoundError
 from arm_cli.frames.frame_log import FrameLog
 from arm_cli.frames.lookup_text import describe_lookup
 from arm_cli.frames.pose import Pose
-from arm_cli.tf.view_frames import frame_graph
+from arm_cli.tf.view_frames import export, frame_graph
 
 HALF = math.sqrt(0.5)
 QUARTER_TURN = (0.0, 0.0, HALF, HALF)
@@ -97,3 +97,33 @@ def test_the_tree_as_a_graph(log):
     (edge,) = (edge for edge in graph.edges if edge.target == "arm")
     assert edge.source == "base"
     assert "Average rate: 10.000\nBuffer length: 0.200" in edge.label
+
+
+def put_dot(folder, monkeypatch, script):
+    """Let a script be the `dot` of graphviz."""
+    (folder / "dot").write_text(f"#!/bin/sh\n{script}\n")
+    (folder / "dot").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
+
+
+def test_the_tree_becomes_a_pdf_where_graphviz_is(log, tmp_path, monkeypatch):
+    draw = '[ "$1 $3" = "-Tpdf -o" ] && grep -q \'"base" -> "arm"\' "$2" && echo %PDF-1.7 > "$4"'
+    put_dot(tmp_path, monkeypatch, draw)
+    assert export(log, tmp_path / "frames_1.2") == f"Exported graph to {tmp_path}/frames_1.2.pdf"
+    assert (tmp_path / "frames_1.2.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_without_graphviz_the_tree_is_svg_and_the_way_to_a_pdf_is_said(log, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    said = export(log, tmp_path / "frames")
+    assert said.startswith(f"Exported graph to {tmp_path}/frames.svg; no PDF, for there is no")
+    assert said.endswith("apt install graphviz")
+    assert "base" in (tmp_path / "frames.svg").read_text()
+
+
+def test_a_graphviz_that_fails_is_said(log, tmp_path, monkeypatch):
+    put_dot(tmp_path, monkeypatch, "exit 1")
+    assert (
+        f"frames.svg; no PDF, for graphviz' dot failed: dot -Tpdf {tmp_path}/frames.gv"
+        in export(log, tmp_path / "frames")
+    )

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 
 from arm_cli.command_parser import positive_number
+from arm_cli.drawing.dot import has_graphviz
 from arm_cli.drawing.picture_file import write_picture
 from arm_cli.frames.frame_log import FrameHistory, FrameLog
 from arm_cli.ros.connection import connect
@@ -43,7 +44,22 @@ def run(options: argparse.Namespace) -> None:
     with connect() as session:
         log = listen(session, options.wait_time)
     print("Generating graph...")
-    print(f"Exported graph to {write_picture(frame_graph(log), Path(stem), downward=True)}")
+    print(export(log, Path(stem)))
+
+
+def export(log: FrameLog, stem: Path) -> str:
+    """Write the tree of frames, and return what is to be said of it.
+
+    Raises:
+        UsageError: the file cannot be written.
+    """
+    picture = write_picture(frame_graph(log), stem, downward=True)
+    said = f"Exported graph to {picture}"
+    if picture.suffix == ".pdf":
+        return said
+    if has_graphviz():
+        return f"{said}; no PDF, for graphviz' dot failed: dot -Tpdf {picture.with_suffix('.gv')}"
+    return f"{said}; no PDF, for there is no graphviz: apt install graphviz"
 
 
 def frame_graph(log: FrameLog) -> Digraph:
