@@ -89,6 +89,14 @@ def test_command_that_complains_fails_unless_told_otherwise(context):
     assert Command(text, on_stderr="ignore").perform(context) == "5"
 
 
+def test_command_whose_parts_run_together_asks_for_the_space(context):
+    with pytest.raises(NotFoundError, match=r"program no-such/arm.urdf .*is there a space missing"):
+        Command(["no-such", "/arm.urdf"]).perform(context)
+    with pytest.raises(NotFoundError, match="no program 'no-such'") as said:
+        Command(["no-such ", "/arm.urdf"]).perform(context)
+    assert "space" not in str(said.value)
+
+
 def test_command_finds_programs_beside_this_python(context):
     context.base_environment = {"PATH": "/nowhere"}
     found = FindExecutable(name=Path(sys.executable).name).perform(context)

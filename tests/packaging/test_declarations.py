@@ -17,6 +17,8 @@ FOLDERS = {
 PACKAGES = sorted(FOLDERS)
 MODULE_PACKAGES = [package for package in PACKAGES if (FOLDERS[package] / package).is_dir()]
 """Those that hold more than data."""
+TOOLS = {"ament_index_python", "xacro"}
+"""Packages of ROS that are used without an import: the index on the disk, a program."""
 DATA_FOLDERS = ("config", "launch", "meshes", "urdf", "worlds")
 
 
@@ -175,15 +177,32 @@ def test_the_data_folders_agree(project, package):
     assert declared == wanted
 
 
-@pytest.mark.parametrize("package", MODULE_PACKAGES)
-def test_the_other_packages_that_are_imported_are_declared(package):
+def imported_in(folder: Path) -> set[str]:
+    """The packages that the Python files in a folder import."""
     imported: set[str] = set()
-    for path in (FOLDERS[package] / package).rglob("*.py"):
+    for path in folder.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
                 imported.add(node.module.split(".")[0])
             elif isinstance(node, ast.Import):
                 imported.update(alias.name.split(".")[0] for alias in node.names)
-    depends = {element.text for element in manifest(package).iter("depend", "exec_depend")}
-    missing = (imported & set(PACKAGES)) - {package} - depends
+    return imported
+
+
+def declared_by(package: str) -> set[str]:
+    return {element.text or "" for element in manifest(package).iter("depend", "exec_depend")}
+
+
+@pytest.mark.parametrize("package", MODULE_PACKAGES)
+def test_the_other_packages_that_are_imported_are_declared(package):
+    imported = imported_in(FOLDERS[package] / package)
+    missing = (imported & set(PACKAGES)) - {package} - declared_by(package)
     assert missing == set()
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_what_is_declared_is_here_or_used(package):
+    used = imported_in(FOLDERS[package])
+    strange = declared_by(package) - set(PACKAGES) - used - TOOLS
+    # What apt calls python3-yaml is imported by another name.
+    assert {name for name in strange if not name.startswith("python3-")} == set()

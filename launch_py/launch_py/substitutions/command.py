@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from launch_py.errors import SubstitutionError
+from launch_py.errors import NotFoundError, SubstitutionError
 from launch_py.programs import find_program
 from launch_py.substitution import Substitution, Text, describe_text, perform_text
 
@@ -65,7 +65,13 @@ class Command(Substitution):
         if not words:
             raise SubstitutionError("Command has no text")
         path = context.environment_variable("PATH") or ""
-        words[0] = find_program(words[0], path)
+        try:
+            words[0] = find_program(words[0], path)
+        except NotFoundError as error:
+            if len(words) > 1 or isinstance(self.command, str):
+                raise
+            hint = "Command joins its parts as they are: is there a space missing, as in 'xacro '?"
+            raise NotFoundError(f"{error}; {hint}") from error
         done = subprocess.run(
             words,
             capture_output=True,
