@@ -19,6 +19,8 @@ HOLLOW_KG_M3 = 300.0
 """Mass of a robot's link over the volume of the box around it: between 200 and 500 in practice."""
 LARGEST_GYRATION_M2 = 4.0
 """Inertia over mass that no link of an arm has: a mesh in millimetres taken for metres has it."""
+LARGEST_MOMENT = 1e300
+"""Larger ones, in kg m2, are nonsense whose sums no float can hold."""
 ROUNDING = 1e-3
 """How far decimals in a URDF may break the triangle inequality without a word."""
 
@@ -73,6 +75,7 @@ def repair_inertia(inertial: Inertial, box: NDArray[np.float64] | None = None) -
         mass = SMALLEST_MASS_KG
     ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
     moments, axes = np.linalg.eigh(np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]))
+    moments = np.clip(moments, -LARGEST_MOMENT, LARGEST_MOMENT)
     axes = rotation_from_rpy(inertial.origin.rpy) @ axes
     if moments[2] > LARGEST_GYRATION_M2 * mass:
         moments, axes = _implausible(mass, moments, axes, box, remarks)

@@ -56,6 +56,16 @@ def test_negative_moment_is_repaired_and_said():
     assert "below 0 (-0.01 kg m2)" in inertia.remarks[0]
 
 
+@pytest.mark.parametrize(
+    "nonsense",
+    [inertial(0.01, 0.01, 0.01, iyz=1e308), inertial(1e308, 1e308, 0.01, ixy=1e308)],
+)
+def test_moments_that_no_float_can_add_up_are_repaired_and_said(nonsense):
+    inertia = repair_inertia(nonsense)
+    assert np.isfinite(inertia.moments).all()
+    assert "its inertia is impossible" in inertia.remarks[-1]
+
+
 def test_no_inertia_at_all_is_said():
     inertia = repair_inertia(inertial(0, 0, 0))
     assert inertia.moments.tolist() == [1e-6] * 3
