@@ -71,6 +71,27 @@ class Picture:
     data: NDArray[np.uint8]
 
 
+@dataclass(frozen=True, slots=True)
+class CameraView:
+    """What a camera sees, as sensor_msgs/msg/CameraInfo says.
+
+    A point (x, y, z) of the frame is seen at the pixel u = fx x / z + cx, v = fy y / z + cy.
+
+    Attributes:
+        frame: the optical one: z looks forward, x to the picture's right, y to its lower edge.
+        width: of the picture, in pixels, as everything that follows.
+        height: likewise.
+        focal_lengths: fx and fy.
+        centre: cx and cy.
+    """
+
+    frame: str
+    width: int
+    height: int
+    focal_lengths: tuple[float, float]
+    centre: tuple[float, float]
+
+
 class MarkerShape(Enum):
     """What a marker is, in a cube with sides of 1 that its scale stretches."""
 
@@ -183,6 +204,7 @@ class Snapshot:
     image_topics: tuple[str, ...] = ()
     pictures: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
     """The newest of the topics that the page wants to see."""
+    cameras: Mapping[str, CameraView] = field(default_factory=lambda: MappingProxyType({}))
     markers: Mapping[str, Marker] = field(default_factory=lambda: MappingProxyType({}))
     """The world's shapes, by a name of their own."""
     displayed: frozenset[str] = frozenset()

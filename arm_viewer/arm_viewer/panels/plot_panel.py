@@ -19,6 +19,8 @@ UNITS = {
     Quantity.VELOCITY: "rad/s, m/s",
     Quantity.EFFORT: "N m, N",
 }
+LEAST_SPANS = {Quantity.POSITION: 0.1, Quantity.VELOCITY: 0.2, Quantity.EFFORT: 0.2}
+"""What a chart shows from bottom to top at least, in UNITS: less is noise of joints at rest."""
 COLOURS = ("#4dabf7", "#ffa94d", "#69db7c", "#ff8787", "#b197fc", "#f783ac", "#ffd43b", "#66d9e8")
 _TEXT, _GRID = "#adb5bd", "#373a40"
 
@@ -68,7 +70,7 @@ class _Chart:
         nothing = np.empty(0)
         self._plot: GuiUplotHandle = gui.add_uplot(
             data=(nothing, nothing),
-            series=(uplot.Series(), uplot.Series()),
+            series=(uplot.Series(), _unseen()),
             title=f"{quantity.value} ({UNITS[quantity]})",
             scales={"x": uplot.Scale(time=False, auto=False, range=(-WINDOW_S, 0.0))},
             axes=(_axis(), _axis()),
@@ -86,11 +88,13 @@ class _Chart:
             return
         if lines != self._lines:
             self._lines = lines
-            self._plot.series = (uplot.Series(label="s"), *map(_series, lines, _colours(lines)))
+            drawn = map(_series, lines, _colours(lines))
+            self._plot.series = (uplot.Series(label="s"), *drawn, _unseen())
         # Until a joint is told something, its dashed line lies on what it did.
         did = unbroken(ages, readings)
         commands = unbroken(ages, np.where(np.isnan(commands), did, commands))
-        self._plot.data = (ages, *did[read], *commands[told])
+        shown = np.concatenate([did[read], commands[told]])
+        self._plot.data = (ages, *shown, extent(shown, LEAST_SPANS[self._quantity]))
 
 
 def unbroken(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -110,12 +114,36 @@ def unbroken(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np
     return filled
 
 
+def extent(rows: NDArray[np.float64], least: float) -> NDArray[np.float64]:
+    """Return a row (m,) that goes to and fro, at least `least` high, around the middle of `rows`.
+
+    A scale of the browser's chart is as high as what it draws, and has no least height of its own.
+
+    Args:
+        rows: what is drawn (n, m), n and m at least 1, without NaN.
+        least: in the rows' unit.
+    """
+    low, high = rows.min(), rows.max()
+    reach = max(high - low, least) / 2.0
+    row = np.full(rows.shape[1], (low + high) / 2.0 - reach)
+    row[1::2] += 2.0 * reach
+    return row
+
+
+def _unseen() -> uplot.Series:
+    """Return what draws nothing, but counts for the scale."""
+    # Without a word of its own the legend would say "Value".
+    return uplot.Series(
+        label="\N{NO-BREAK SPACE}", stroke="transparent", width=0, points={"show": False}
+    )
+
+
 def _axis() -> uplot.Axis:
     return uplot.Axis(
         stroke=_TEXT,
         grid=uplot.Axis_Grid(stroke=_GRID, width=1),
         ticks=uplot.Axis_Ticks(stroke=_GRID, width=1),
-        size=40,
+        size=50,
     )
 
 

@@ -1,6 +1,6 @@
 """What of the robots is shown: the switches, and the robots themselves in the 3D view."""
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Collection, Container, Mapping
 from dataclasses import dataclass
 
 from viser import GuiApi, SceneApi
@@ -8,6 +8,7 @@ from viser import GuiApi, SceneApi
 from arm_description.names import listing
 from arm_description.robot import Robot
 from arm_viewer.panels.note import PROBLEM_COLOUR, note
+from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.markers import Markers
 from arm_viewer.scene.node_name import node_name
@@ -20,6 +21,8 @@ SWITCHES = {
     MASS: ("Centre of mass", "balls of lead of the links' masses"),
     INERTIA: ("Inertia", "solid ellipsoids of the links' masses and inertias"),
 }
+
+LISTED_AT_MOST = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,7 @@ class RobotPanel:
         self._scene = scene
         self._frames = frames
         self._markers = Markers(scene, frames)
+        self._cameras = Cameras(scene, frames)
         self._robots: dict[str, _Shown] = {}
 
     def build(self, gui: GuiApi) -> None:
@@ -50,6 +54,9 @@ class RobotPanel:
             }
             self._axes = gui.add_checkbox("Frames", False, hint="axes: x red, y green, z blue")
             self._names = gui.add_checkbox("Frame names", False)
+            self._views = gui.add_checkbox(
+                "Cameras", True, hint="what they see, from where; by CameraInfo and /tf"
+            )
             self._world = gui.add_checkbox("World", True, hint="what stands around the robots")
         self._shown_problem = ""
         self._problem = gui.add_html("", visible=False)
@@ -61,6 +68,7 @@ class RobotPanel:
         self._frames.show_names(self._names.value)
         self._markers.update(snapshot.markers)
         self._markers.show(self._world.value)
+        self._cameras.update(snapshot.cameras, self._views.value)
         for topic, description in snapshot.descriptions.items():
             self._renew(topic, description)
         layers = {layer for layer, switch in self._layers.items() if switch.value}
@@ -104,11 +112,27 @@ def _places(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, s
     }
 
 
-def _problem(snapshot: Snapshot, robots: Iterable[_Shown], frames: Container[str]) -> str:
+def _problem(snapshot: Snapshot, robots: Collection[_Shown], frames: Container[str]) -> str:
     lines = [description.problem for description in snapshot.descriptions.values()]
     lines += [
         f"No transform on /tf for {listing(missing)} of {shown.description.topic}"
         for shown in robots
         if (missing := [frame for frame in shown.places.values() if frame not in frames])
     ]
+    lines += [
+        f"No transform on /tf for {view.frame}, the frame of {topic}"
+        for topic, view in snapshot.cameras.items()
+        if view.frame not in frames
+    ]
+    for shown in robots:
+        lines += _missing(shown.description.topic, list(shown.model.problems))
     return "\n".join(filter(None, lines))
+
+
+def _missing(topic: str, problems: list[str]) -> list[str]:
+    """Return what to say of a robot that is not whole."""
+    if not problems:
+        return []
+    more = len(problems) - LISTED_AT_MOST
+    rest = [f"and {more} more, which the page's log lists"] if more > 0 else []
+    return [f"Not all of {topic} can be drawn:", *problems[:LISTED_AT_MOST], *rest]

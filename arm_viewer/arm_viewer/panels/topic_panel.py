@@ -47,7 +47,7 @@ def _row(topic: Topic) -> str:
     return (
         '<tr style="border-top:1px solid rgba(128,128,128,0.25)">'
         f'<td style="overflow-wrap:anywhere;padding:0.2em 0">{escape(topic.name)}<br/>'
-        f'<span style="opacity:0.6">{escape(types)} · {topic.publishers} → '
-        f"{topic.subscriptions}</span></td>"
+        f'<span style="opacity:0.6">{escape(types)} · {topic.publishers} pub, '
+        f"{topic.subscriptions} sub</span></td>"
         f'<td style="text-align:right;white-space:nowrap;vertical-align:top">{rate}</td></tr>'
     )

@@ -17,6 +17,7 @@ from arm_viewer.requests import (
     ShowPictures,
     SwitchControllers,
 )
+from arm_viewer.ros.camera_observer import CameraObserver
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver
@@ -52,6 +53,7 @@ class Viewer(Node):
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
         self._images = ImageObserver(self, polled)
+        self._cameras = CameraObserver(self, polled)
         self._markers = MarkerObserver(self, polled)
         self._controllers = ControllerObserver(self)
         self._managers = ManagerCaller(self, self._listed)
@@ -66,6 +68,7 @@ class Viewer(Node):
             self._transforms,
             self._joint_states,
             self._images,
+            self._cameras,
             self._markers,
             self._controllers,
             self._managers,
@@ -111,6 +114,7 @@ class Viewer(Node):
             joint_states=self._joint_states.joint_states,
             image_topics=self._images.topics,
             pictures=self._images.pictures,
+            cameras=self._cameras.views,
             markers=self._markers.markers,
             displayed=frozenset({self._source.namespace} if self._source else ()),
             controllers=self._controllers.controllers,

@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from viser import SceneApi, SceneNodeHandle
 
@@ -12,7 +12,7 @@ from arm_description.robot import Collision, Link, Pose, Visual
 from arm_description.transforms import quaternion_from_rpy
 from arm_viewer.scene.frame_poses import product
 from arm_viewer.scene.inertia_ellipsoid import inertia_ellipsoid
-from arm_viewer.scene.triangles import edges, smooth, triangles
+from arm_viewer.scene.triangles import edges, problem_of, smooth, triangles
 
 VISUAL_COLOR: Color = (0.62, 0.65, 0.69, 1.0)
 COLLISION_COLOR = (255, 176, 64)
@@ -23,13 +23,17 @@ INERTIA_OPACITY = 0.45
 LEAD_DENSITY = 11340.0
 """kg/m^3: a mass is shown as a ball of lead, as in RViz."""
 
+Complain = Callable[[str], None]
+"""Takes a line about what of a link cannot be drawn."""
 Quaternion = tuple[float, float, float, float]
 
 
-def draw_visuals(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHandle]:
+def draw_visuals(
+    scene: SceneApi, path: str, link: Link, complain: Complain
+) -> Iterator[SceneNodeHandle]:
     """Draw what the link looks like; each handle has an opacity, None where it is solid."""
     for i, visual in enumerate(link.visuals):
-        for k, mesh in enumerate(_parts(link, visual)):
+        for k, mesh in enumerate(_parts(link, visual, complain)):
             red, green, blue, alpha = _color(visual) or mesh.rgba or VISUAL_COLOR
             drawn = smooth(mesh)
             yield scene.add_mesh_simple(
@@ -44,10 +48,12 @@ def draw_visuals(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHa
             )
 
 
-def draw_collisions(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHandle]:
+def draw_collisions(
+    scene: SceneApi, path: str, link: Link, complain: Complain
+) -> Iterator[SceneNodeHandle]:
     """Draw the edges of what the link is touched by."""
     for i, collision in enumerate(link.collisions):
-        for k, mesh in enumerate(_parts(link, collision)):
+        for k, mesh in enumerate(_parts(link, collision, complain)):
             yield scene.add_line_segments(
                 f"{path}/collision_{i}_{k}",
                 edges(mesh),
@@ -58,7 +64,9 @@ def draw_collisions(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNod
             )
 
 
-def draw_mass(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHandle]:
+def draw_mass(
+    scene: SceneApi, path: str, link: Link, complain: Complain
+) -> Iterator[SceneNodeHandle]:
     """Draw a ball at the link's centre of mass."""
     if link.inertial is not None and link.inertial.mass > 0.0:
         volume = link.inertial.mass / LEAD_DENSITY
@@ -70,7 +78,9 @@ def draw_mass(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHandl
         )
 
 
-def draw_inertia(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHandle]:
+def draw_inertia(
+    scene: SceneApi, path: str, link: Link, complain: Complain
+) -> Iterator[SceneNodeHandle]:
     """Draw the solid ellipsoid of the link's mass and inertia."""
     ellipsoid = None if link.inertial is None else inertia_ellipsoid(link.inertial)
     if link.inertial is not None and ellipsoid is not None:
@@ -88,11 +98,12 @@ def draw_inertia(scene: SceneApi, path: str, link: Link) -> Iterator[SceneNodeHa
         )
 
 
-def _parts(link: Link, shape: Visual | Collision) -> tuple[MeshData, ...]:
+def _parts(link: Link, shape: Visual | Collision, complain: Complain) -> tuple[MeshData, ...]:
     try:
         return triangles(shape.geometry)
     except DescriptionError as error:
         logging.getLogger(__name__).warning("link '%s' is not whole: %s", link.name, error)
+        complain(f"link '{link.name}': {problem_of(error)}")
         return ()
 
 

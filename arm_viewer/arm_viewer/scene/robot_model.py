@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 
 from viser import MeshHandle, SceneApi, SceneNodeHandle
 
-from arm_description.robot import Robot
+from arm_description.robot import Link, Robot
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.link_layers import (
     draw_collisions,
@@ -44,9 +44,15 @@ class RobotModel:
         self._name = name
         self._robot = robot
         self._places = places
+        self._problems: dict[str, None] = {}
         self._drawn: dict[str, list[SceneNodeHandle]] = {}
         self._opacities: list[tuple[MeshHandle, float | None]] = []
         self._seen_through = False
+
+    @property
+    def problems(self) -> Collection[str]:
+        """What of the links could not be drawn so far, in lines."""
+        return self._problems.keys()
 
     def show(self, layers: Collection[str], seen_through: bool) -> None:
         """Show these layers and hide the others.
@@ -74,15 +80,20 @@ class RobotModel:
         handles = [
             handle
             for link in self._robot.links
-            for handle in LAYERS[layer](
-                self._scene, f"{self._frames.path(self._places[link.name])}/{self._name}", link
-            )
+            for handle in LAYERS[layer](self._scene, self._path(link), link, self._complain)
         ]
         self._drawn[layer] = handles
         if layer == VISUAL:
             meshes = [handle for handle in handles if isinstance(handle, MeshHandle)]
             self._opacities = [(mesh, mesh.opacity) for mesh in meshes]
             self._set_opacities()
+
+    def _path(self, link: Link) -> str:
+        return f"{self._frames.path(self._places[link.name])}/{self._name}"
+
+    def _complain(self, problem: str) -> None:
+        # Once for a mesh that is both seen and touched.
+        self._problems[problem] = None
 
     def _set_opacities(self) -> None:
         for mesh, own in self._opacities:

@@ -7,7 +7,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from arm_description.errors import MeshFileError
+from arm_description.errors import DescriptionError, MeshFileError
 from arm_description.mesh_data import MeshData
 from arm_description.mesh_file import check_mesh_file, read_mesh_file
 from arm_description.resources import resolve_uri
@@ -32,6 +32,11 @@ def triangles(geometry: Geometry) -> tuple[MeshData, ...]:
         return tuple(part.scaled(geometry.scale) for part in _read(resolve_uri(geometry.uri)))
     solid = _solid(geometry)
     return (MeshData(np.asarray(solid.vertices), np.asarray(solid.faces, dtype=np.int32)),)
+
+
+def problem_of(error: DescriptionError) -> str:
+    """Return in one line why `triangles` failed; where a file was looked for is for the log."""
+    return str(error).partition("\n")[0].removesuffix("; tried:")
 
 
 def smooth(mesh: MeshData) -> MeshData:

@@ -140,6 +140,27 @@ def test_images_are_subscribed_to_only_while_they_are_wanted(client, viewer):
     viewer.seen(lambda s: not s.pictures)
 
 
+def test_cameras_are_known_by_their_intrinsics_unless_these_say_nothing(client, viewer):
+    from sensor_msgs.msg import CameraInfo
+
+    from arm_viewer.snapshot import CameraView
+
+    good = CameraInfo(width=4, height=2, k=[3.0, 0.0, 2.0, 0.0, 5.0, 1.0, 0.0, 0.0, 1.0])
+    good.header.frame_id = "optical"
+    told = {"/eye/camera_info": good, "/blind/camera_info": CameraInfo(width=4, height=2)}
+    publishers = {t: client.node.create_publisher(CameraInfo, t, 10) for t in told}
+
+    def tell() -> None:
+        for topic, message in told.items():
+            publishers[topic].publish(message)
+
+    view = viewer.seen(lambda s: s.cameras.get("/eye/camera_info"), tell)
+    assert view == CameraView("optical", 4, 2, (3.0, 5.0), (2.0, 1.0))
+    assert "/blind/camera_info" not in viewer.node.latest().cameras
+    client.node.destroy_publisher(publishers["/eye/camera_info"])
+    viewer.seen(lambda s: "/eye/camera_info" not in s.cameras)
+
+
 def test_markers_come_and_go(client, viewer, latched):
     from geometry_msgs.msg import Vector3
     from visualization_msgs.msg import Marker, MarkerArray

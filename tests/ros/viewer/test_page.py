@@ -81,18 +81,24 @@ def test_the_camera_panel_shows_the_arm_move(visitor, command):
     visitor.wait_until(moved, "the image shows another pose")
 
 
+def test_the_frustum_of_the_camera_can_be_hidden(visitor):
+    visitor.wait_until(lambda: visitor.drawn()["instances"] > 0, "its edges are drawn")
+    visitor.tick("Cameras")
+    visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no edges are drawn")
+
+
 def test_the_collision_switch_shows_wire_frames(visitor):
-    assert visitor.drawn()["instances"] == 0
+    before = visitor.drawn()["instances"]
     visitor.tick("Collision")
-    visitor.wait_until(lambda: visitor.drawn()["instances"] > 0, "wire frames are drawn")
+    visitor.wait_until(lambda: visitor.drawn()["instances"] > before, "wire frames are drawn")
     visitor.tick("Collision")
+    visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no wire frames are drawn")
 
-    def none_more() -> bool:
-        before = visitor.drawn()
-        visitor.wait_until(lambda: visitor.drawn()["triangles"] > before["triangles"], "a frame")
-        return visitor.drawn()["instances"] == before["instances"]
 
-    visitor.wait_until(none_more, "no wire frames are drawn")
+def nothing_but_faces_is_drawn(visitor) -> bool:
+    before = visitor.drawn()
+    visitor.wait_until(lambda: visitor.drawn()["triangles"] > before["triangles"], "a frame")
+    return visitor.drawn()["instances"] == before["instances"]
 
 
 def test_controllers_are_deactivated_and_activated(visitor, client):

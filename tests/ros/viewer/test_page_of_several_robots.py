@@ -30,7 +30,8 @@ arm_controller: {ros__parameters: {joints: ["${p}shoulder"]}}
 gripper: {ros__parameters: {joint: "${p}grip"}}
 spare: {ros__parameters: {joints: ["${p}shoulder"]}}
 """
-DISPLAYED = """<robot name="ghost"><link name="a"/><link name="b"/>
+DISPLAYED = """<robot name="ghost"><link name="a"/><link name="b">
+  <visual><geometry><mesh filename="package://nowhere/b.stl"/></geometry></visual></link>
 <joint name="ghost_turn" type="revolute"><parent link="a"/><child link="b"/>
   <limit lower="1" upper="3" effort="1" velocity="1"/></joint></robot>"""
 
@@ -130,6 +131,7 @@ def test_a_displayed_robot_is_centred_and_put_anywhere(visitor, client, position
     client.node.create_publisher(String, "/robot_description", latched).publish(
         String(data=DISPLAYED)
     )
+    visitor.page.get_by_text("link 'b': no file for 'package://nowhere/b.stl'").wait_for()
     visitor.button("Center").click()
     visitor.wait_until(lambda: positions("", "ghost_turn") == 2.0, "the joint is in its middle")
     visitor.button("Randomize").click()
