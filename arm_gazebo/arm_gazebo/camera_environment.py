@@ -6,6 +6,7 @@ from pathlib import Path
 
 from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri, share_folders
+from arm_node.local_profile import use_general_profile
 
 PROFILE_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 LARGE_PROFILE_URI = "package://arm_gazebo/config/dds_images.xml"
@@ -27,7 +28,8 @@ def camera_environment(environ: Mapping[str, str], shm: str = "/dev/shm") -> dic
     own = {name: value for name, value in environ.items() if name not in NOT_INHERITED}
     # Otherwise importing mujoco loads a window toolkit.
     own["MUJOCO_GL"] = "off"
-    profile = _profile(environ, shm)
+    use_general_profile(own)
+    profile = _profile(own, shm)
     if profile is not None:
         own[PROFILE_VARIABLES[0]] = str(profile)
     return own

@@ -9,6 +9,7 @@ the process is ready (see `arm_node.notify`).
 
 import gc
 import logging
+import os
 import signal
 import sys
 import threading
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from arm_node.discovery import answers_held_back
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
+from arm_node.local_profile import use_local_profile
 from arm_node.notify import notify
 
 if TYPE_CHECKING:
@@ -109,6 +111,7 @@ def run_process(
     with _signals_set(threading.Event()) as stop:
         try:
             prepare_environment()
+            use_local_profile(os.environ)
         except UnusableEnvironmentError as error:
             sys.stderr.write(f"{error}\n")
             return EXIT_USAGE

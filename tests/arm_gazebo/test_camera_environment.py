@@ -45,6 +45,17 @@ def test_the_launchers_profile_is_not_the_users_own(shared_memory):
     assert Path(camera_environment({VARIABLE: general})[VARIABLE]).stem == "dds_images"
 
 
+def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_profile(shared_memory):
+    environment = camera_environment(
+        {
+            VARIABLE: f"{sys.prefix}/share/launch_py/config/dds_localhost.xml",
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+        }
+    )
+    assert Path(environment[VARIABLE]).stem == "dds_images"
+    assert environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+
+
 def test_the_supervisor_is_not_told_of_this_process(shared_memory):
     environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"})
     assert "NOTIFY_SOCKET" not in environment

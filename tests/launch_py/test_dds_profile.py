@@ -10,11 +10,13 @@ from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from launch_py.packages import Packages
 
-PROFILES = (
+GENERAL = (
     "launch_py/config/dds_profile.xml",
     "arm_gazebo/config/dds_images.xml",
     "arm_gazebo/config/dds_images_small.xml",
 )
+TWINS = tuple(name.replace(".xml", "_localhost.xml") for name in GENERAL)
+PROFILES = GENERAL + TWINS
 NAMESPACE = {"d": "http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"}
 
 TALK = """
@@ -31,6 +33,21 @@ while not received:
 node.destroy_node()
 rclpy.shutdown()
 """
+
+
+SEGMENTS = """
+import os, re, rclpy
+from pathlib import Path
+from arm_node.local_profile import use_local_profile
+use_local_profile(os.environ)
+rclpy.init()
+node = rclpy.create_node("counted")
+found = set(re.findall("/dev/shm/fastrtps_[0-9a-f]{16}", Path("/proc/self/maps").read_text()))
+node.destroy_node()
+rclpy.shutdown()
+print(len(found))
+"""
+"""Says how many shared memory segments a participant sends from: one for each such transport."""
 
 
 def profile_path(name: str) -> Path:
@@ -69,3 +86,43 @@ def test_a_profile_is_loaded_without_complaint(name):
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize("name", GENERAL)
+def test_a_twin_is_its_profile_and_what_localhost_means(name):
+    general, twin = (
+        etree.parse(profile_path(path)) for path in (name, name.replace(".xml", "_localhost.xml"))
+    )
+    (builtin,) = twin.iterfind(".//d:builtin", NAMESPACE)
+    (peers,) = builtin.iterfind("d:initialPeersList", NAMESPACE)
+    assert [text for text in peers.itertext() if text.strip()] == ["127.0.0.1"]
+    # A locator without address: the default one, but alone, so that there is none for multicast.
+    (own,) = builtin.iterfind("d:metatrafficUnicastLocatorList", NAMESPACE)
+    assert not [text for text in own.itertext() if text.strip()]
+    builtin.remove(peers)
+    builtin.remove(own)
+    assert contents(twin) == contents(general)
+
+
+def contents(tree) -> list[tuple[str, str]]:
+    """Return the elements in their order, with their texts."""
+    elements = tree.getroot().iter(etree.Element)
+    return [(element.tag, (element.text or "").strip()) for element in elements]
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("name", GENERAL)
+def test_a_process_that_keeps_to_this_host_sends_everything_once(name):
+    done = subprocess.run(
+        [sys.executable, "-c", SEGMENTS],
+        env={
+            **os.environ,
+            "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile_path(name)),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        },
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stdout == "1\n"

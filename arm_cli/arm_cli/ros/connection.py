@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from arm_cli.errors import UsageError
 from arm_cli.ros.library_output import library_output_on_stderr
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
+from arm_node.local_profile import PROFILE, use_local_profile
 from launch_py.child_environment import dds_profile
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import Session
-
-PROFILE_VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 
 
 @contextmanager
@@ -32,7 +31,8 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Se
         raise UsageError(str(error)) from error
     profile = dds_profile(os.environ)
     if profile is not None:
-        os.environ.setdefault(PROFILE_VARIABLE, str(profile))
+        os.environ.setdefault(PROFILE, str(profile))
+        use_local_profile(os.environ)
     from arm_cli.ros.session import open_session
 
     with library_output_on_stderr(), open_session(name, use_sim_time) as session:
