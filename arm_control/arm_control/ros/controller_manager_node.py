@@ -1,8 +1,10 @@
 """The node /controller_manager and its parameters."""
 
 import dataclasses
+import logging
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
 
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import SetParametersResult
@@ -18,6 +20,9 @@ from arm_control.ros.health_publisher import HealthPublisher
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.node_arguments import manager_arguments
 from arm_control.ros.parameter_node import ParameterNode
+
+NEAR = 0.85
+"""Share of letters that a mistyped name has in common with the right one."""
 
 _STRICTNESS = {"best_effort": Strictness.BEST_EFFORT, "strict": Strictness.STRICT}
 
@@ -66,6 +71,7 @@ class ControllerManagerNode(ParameterNode):
         )
         self._specs = tuple(self._adapted(specs_of(ManagerSettings)))
         self.declare_specs(self._specs)
+        self._warn_of_mistyped()
         self.declare_rest()
         self.settings = self._read_settings()
         self.add_on_set_parameters_callback(self._check)
@@ -103,6 +109,21 @@ class ControllerManagerNode(ParameterNode):
                 )
             else:
                 yield spec
+
+    def _warn_of_mistyped(self) -> None:
+        """Name given parameters that are nearly one of the manager's own.
+
+        Any other may belong to a controller, or be one that ros2_control knows.
+        """
+        own = [spec.name for spec in self._specs]
+        for name in set(self.given_parameters()).difference(own):
+            for near in get_close_matches(name, own, 1, NEAR):
+                logging.getLogger(self.get_name()).warning(
+                    "parameter '%s' is not known to %s and has no effect; is it '%s'?",
+                    name,
+                    self.get_name(),
+                    near,
+                )
 
     def _read_settings(self) -> ManagerSettings:
         return build_parameters(ManagerSettings, self.values_of(self._specs))

@@ -145,16 +145,29 @@ def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
         "--start",
         "position_controller",
         parameters={
-            "/**/controller_manager": {"ros__parameters": {"position_controller.type": POSITION}},
+            "/**/controller_manager": {
+                "ros__parameters": {
+                    "position_controller.type": POSITION,
+                    "updaterate": 5,
+                    "hardware_component_initial_state": {"inactive": ["Arm"]},
+                }
+            },
             "/**/position_controller": {
                 "ros__parameters": {"joints": ["j0"], "state_publish_rate": 100.0, "open": True}
             },
         },
         ros_arguments=("-r", "__ns:=/reports"),
     )
-    line = program.wait_for_line("is not known to")
+    line = program.wait_for_line(f"is not known to {POSITION}")
     assert f"parameter 'open', 'state_publish_rate' is not known to {POSITION}" in line
     assert "it knows interface_name, is_async, joints" in line
+    own = "is not known to controller_manager and has no effect; is it"
+    for given, meant in (
+        ("updaterate", "update_rate"),
+        ("hardware_component_initial_state.inactive", "hardware_components_initial_state.inactive"),
+    ):
+        program.wait_for_line(f"parameter '{given}' {own} '{meant}'?")
+    assert program.output.count(own) == 2
 
 
 def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> None:
