@@ -55,6 +55,8 @@ class Simulation:
         model = mujoco.MjModel.from_xml_string(MJCF)
         self._data = mujoco.MjData(model)
         mujoco.mj_forward(model, self._data)
+        # Later on this process maps the camera's as well, to read from it.
+        self._foreign = segments_of(psutil.Process())
         feed.start(model)
         self._thread.start()
 
@@ -73,11 +75,15 @@ class Simulation:
     def kill_child(self, number: int) -> int:
         """End the camera process by a signal, remove its shared memory, return its id."""
         child = self.child
-        segments = own_segments(child)
+        segments = self.segments()
         child.send_signal(number)
         for segment in segments:
             segment.unlink(missing_ok=True)
         return child.pid
+
+    def segments(self) -> set[Path]:
+        """Return the shared memory of the camera process: what was not there before it."""
+        return segments_of(self.child) - self._foreign
 
     def replaced(self, pid: int) -> bool:
         """Look after the camera process; return whether another one has taken its place."""
@@ -91,14 +97,17 @@ class Simulation:
         self.feed.close()
 
 
-def own_segments(process: psutil.Process) -> set[Path]:
-    """Return the shared memory of a process: what it maps, and this process does not share.
+def segments_of(process: psutil.Process) -> set[Path]:
+    """Return the shared memory that a process maps, its own and that of others.
 
-    A port's file belongs to both sides, and goes with the last of them.
+    A port's file is left out: it belongs to both sides, and goes with the last of them.
     """
-    ours = {mapped.path for mapped in psutil.Process().memory_maps()}
-    theirs = {mapped.path for mapped in process.memory_maps()} - ours
-    return {Path(path) for path in theirs if path.startswith("/dev/shm/") and "_port" not in path}
+    paths = (mapped.path for mapped in process.memory_maps())
+    return {
+        Path(path)
+        for path in paths
+        if path.startswith("/dev/shm/fastrtps_") and "_port" not in path
+    }
 
 
 Simulate = Callable[..., Simulation]
@@ -314,7 +323,7 @@ def test_the_end_leaves_no_process_and_no_shared_memory(simulate, client):
     simulation = simulate()
     client.subscribe(Image, "/videocamera").wait_for(2)
     child = simulation.child
-    segments = own_segments(child)
+    segments = simulation.segments()
     assert segments
     simulation.close()
     assert not child.is_running()
