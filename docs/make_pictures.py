@@ -28,8 +28,8 @@ from std_msgs.msg import Float64MultiArray
 from arm_control.hardware_info import parse_hardware_info
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
-from arm_gazebo.build_options import Base, BuildOptions
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.model.builder import build_model
+from arm_gazebo.robot.build_options import Base, BuildOptions
 
 IMAGES = Path(__file__).with_name("images")
 WIDTH, HEIGHT = 960, 720

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from arm_cli.errors import ArmCliError
 
 if TYPE_CHECKING:
-    from arm_gazebo.description_check import DescriptionCheck
+    from arm_gazebo.check.description import DescriptionCheck
 
 EXIT_UNUSABLE = 1
 
@@ -48,11 +48,11 @@ def run(options: argparse.Namespace) -> int:
     from arm_description.errors import DescriptionError
     from arm_description.resources import folders_of
     from arm_description.xacro_expansion import expand_xacro_file
-    from arm_gazebo.build_options import BuildOptions
-    from arm_gazebo.description_check import check_description
+    from arm_gazebo.check.description import check_description
     from arm_gazebo.errors import SettingsError
-    from arm_gazebo.mesh_cache import cache_folder
-    from arm_gazebo.robot_setup import folders, model_arguments, model_file
+    from arm_gazebo.launching.robot_setup import folders, model_arguments, model_file
+    from arm_gazebo.mesh.cache import cache_folder
+    from arm_gazebo.robot.build_options import BuildOptions
 
     try:
         file = model_file(options.file)

@@ -12,15 +12,15 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING
 
-from arm_gazebo.camera_channel import CameraEnd
-from arm_gazebo.camera_settings import EXIT_BACKEND, CameraSettings
+from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, GazeboError
-from arm_gazebo.parent_process import add_parent_arguments, follow_parent
+from arm_gazebo.feed.channel import CameraEnd
+from arm_gazebo.feed.parent_process import add_parent_arguments, follow_parent
 from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
 
 if TYPE_CHECKING:
-    from arm_gazebo.camera_pipeline import CameraPipeline
+    from arm_gazebo.camera.pipeline import CameraPipeline
     from arm_gazebo.rendering.renderer import Renderer
 
 logger = logging.getLogger(__name__)
@@ -58,7 +58,7 @@ def _application(
 ) -> Iterator[None]:
     from rclpy.node import Node
 
-    from arm_gazebo.camera_pipeline import CameraPipeline
+    from arm_gazebo.camera.pipeline import CameraPipeline
     from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
     from arm_gazebo.ros.camera_publisher import CameraPublisher
 

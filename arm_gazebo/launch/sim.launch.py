@@ -96,7 +96,7 @@ def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
 
 def take_gz_args(context: LaunchContext) -> None:
     """Let Gazebo's words stand for the arguments of this file that nobody has given."""
-    from arm_gazebo.gz_arguments import launch_arguments
+    from arm_gazebo.launching.gz_arguments import launch_arguments
 
     for name, value in launch_arguments(context.launch_configurations["gz_args"]).items():
         context.launch_configurations.setdefault(name, value)
@@ -105,8 +105,8 @@ def take_gz_args(context: LaunchContext) -> None:
 def simulate(context: LaunchContext) -> list[Action]:
     """Return the nodes of a robot, or of several, and what was made up for them."""
     # Here, so that --show-args needs nothing but this file.
-    from arm_gazebo.display import check_display
-    from arm_gazebo.robot_setup import set_up_robot
+    from arm_gazebo.launching.robot_setup import set_up_robot
+    from arm_gazebo.window.display import check_display
 
     words = context.launch_configurations
     if words["headless"] == "false":
@@ -133,10 +133,10 @@ def simulate(context: LaunchContext) -> list[Action]:
 
 def simulate_several(path: str) -> list[Action]:
     """Return the nodes of the robots that a file names, in one world."""
-    from arm_gazebo.controllers_file import controllers_below
-    from arm_gazebo.placed_description import placed
-    from arm_gazebo.robot_setup import set_up_robot
-    from arm_gazebo.robots_file import read_robots_file
+    from arm_gazebo.launching.controllers_file import controllers_below
+    from arm_gazebo.launching.robot_setup import set_up_robot
+    from arm_gazebo.launching.robots_file import read_robots_file
+    from arm_gazebo.robot.placed_description import placed
 
     settings: dict[str, Any] = {}
     controllers, others = [], []

@@ -15,7 +15,7 @@ from arm_description import (
     parse_xml,
     resolve_uri,
 )
-from arm_gazebo.camera_reader import parse_cameras
+from arm_gazebo.sensors.camera_reader import parse_cameras
 
 ARM = "package://arm_description/urdf/arm.urdf.xacro"
 JOINTS = ("j0", "j1", "j2", "j3")

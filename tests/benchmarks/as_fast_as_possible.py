@@ -9,7 +9,7 @@ import mujoco
 from arm_control.hardware_info import parse_hardware_info
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.model.builder import build_model
 
 
 def clock_now(seconds: float = 0.05) -> tuple[float, float]:

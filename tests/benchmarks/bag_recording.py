@@ -70,7 +70,7 @@ def publish(seconds: float) -> None:
 
 def record(seconds: float, compression: str) -> harness.Row:
     """Record the robot; compare what is in the bag with what was published."""
-    from arm_gazebo.camera_environment import camera_environment
+    from arm_gazebo.camera.environment import camera_environment
 
     with harness.fresh_domain(), tempfile.TemporaryDirectory() as folder:
         environment = harness.client_environment()

@@ -28,10 +28,10 @@ def simulate(width: int, height: int, noise: float, backend: str) -> None:
     from arm_description.resources import resolve_uri
     from arm_description.urdf import parse_urdf
     from arm_description.xacro_expansion import expand_xacro
-    from arm_gazebo.build_options import BuildOptions
-    from arm_gazebo.camera_feed import CameraFeed
-    from arm_gazebo.camera_reader import parse_cameras
-    from arm_gazebo.model_builder import build_model
+    from arm_gazebo.camera.feed import CameraFeed
+    from arm_gazebo.model.builder import build_model
+    from arm_gazebo.robot.build_options import BuildOptions
+    from arm_gazebo.sensors.camera_reader import parse_cameras
 
     xacro = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")
     urdf = expand_xacro(xacro, {"camera": "side"})

@@ -18,11 +18,11 @@ from arm_control.hardware_info import HardwareInfo, InterfaceInfo, JointInfo
 from arm_description.robot import Robot
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro
-from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.drive_mode import DriveMode
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.drives.mode import DriveMode
+from arm_gazebo.model.builder import build_model
+from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.simulation import Simulation
+from arm_gazebo.robot.build_options import BuildOptions
 
 OWN_ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
 DRIVEN = ("revolute", "continuous", "prismatic")

@@ -12,14 +12,14 @@ from arm_control.controller_switch import Strictness
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.registry import controller_class
 from arm_description.urdf import parse_urdf
-from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.gazebo_tags import parse_gazebo_tags
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.launching.robot_setup import set_up_robot
+from arm_gazebo.model.builder import build_model
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot_setup import set_up_robot
-from arm_gazebo.simulated_hardware import SimulatedHardware
-from arm_gazebo.simulation import Simulation
-from arm_gazebo.simulation_tick import SimulationTick
+from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 
 RATE_HZ = 100
 PACKAGE = "package://gz_ros2_control_demos"

@@ -15,7 +15,7 @@ from arm_description import (
     parse_urdf,
     resolve_uri,
 )
-from arm_gazebo.camera_reader import parse_cameras
+from arm_gazebo.sensors.camera_reader import parse_cameras
 
 MODEL = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 ARM_JOINTS = (

@@ -28,13 +28,13 @@ from arm_controller.way import Way, WayPoint
 from arm_description.resources import resolve_uri
 from arm_description.robot import Pose
 from arm_description.urdf import parse_urdf
-from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.gazebo_tags import parse_gazebo_tags
-from arm_gazebo.model_builder import build_model
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.launching.robot_setup import RobotSetup, set_up_robot
+from arm_gazebo.model.builder import build_model
+from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot_setup import RobotSetup, set_up_robot
-from arm_gazebo.simulated_hardware import SimulatedHardware
-from arm_gazebo.simulation import Simulation
+from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 
 RATE_HZ = 100
 BASE_HEIGHT_M = 0.025

@@ -14,9 +14,9 @@ import numpy as np
 import psutil
 import pytest
 
-from arm_gazebo.camera_feed import CameraFeed
-from arm_gazebo.camera_process import CameraProcess
-from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.camera.feed import CameraFeed
+from arm_gazebo.camera.process import CameraProcess
+from arm_gazebo.sensors.camera import CameraSensor
 
 pytestmark = pytest.mark.ros
 
@@ -335,8 +335,8 @@ def test_the_process_ends_with_a_simulation_that_is_killed():
         [
             *(sys.executable, "-c"),
             "import sys, threading\n"
-            "from arm_gazebo.camera_feed import CameraFeed\n"
-            "from arm_gazebo.camera_sensor import CameraSensor\n"
+            "from arm_gazebo.camera.feed import CameraFeed\n"
+            "from arm_gazebo.sensors.camera import CameraSensor\n"
             "feed = CameraFeed([CameraSensor('eye', 'l', 'f')])\n"
             "feed.start()\n"
             "import psutil\n"

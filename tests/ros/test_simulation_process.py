@@ -41,9 +41,9 @@ def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     "broken",
     [
-        "arm_gazebo.simulation.Simulation.__init__",
+        "arm_gazebo.physics.simulation.Simulation.__init__",
         "arm_control.ros.controller_manager_server.ControllerManagerServer.__init__",
-        "arm_gazebo.camera_feed.CameraFeed.start",
+        "arm_gazebo.camera.feed.CameraFeed.start",
     ],
 )
 def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):

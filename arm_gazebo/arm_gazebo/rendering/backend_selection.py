@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 import mujoco
 import numpy as np
 
-from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import BackendError, CameraError
 from arm_gazebo.rendering.gl_context import EglContext, GlContext, OsmesaContext
 from arm_gazebo.rendering.gl_renderer import GlRenderer
 from arm_gazebo.rendering.raycast_renderer import RaycastRenderer
 from arm_gazebo.rendering.renderer import Renderer
+from arm_gazebo.sensors.camera import CameraSensor
 
 logger = logging.getLogger(__name__)
 

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.rendering.gl_context import GlContext
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
+from arm_gazebo.sensors.camera import CameraSensor
 
 FLOOR_HALF_SIZE = 100.0
 """Half size in m that an infinite plane is drawn with: as far as Gazebo's cameras see. MuJoCo's

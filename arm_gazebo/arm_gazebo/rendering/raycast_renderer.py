@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.rendering.adaptive_sampling import fill_picture
 from arm_gazebo.rendering.lighting import Lighting
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
 from arm_gazebo.rendering.sampling_step import LARGEST_STEP, SamplingStep
 from arm_gazebo.rendering.surface_colours import SurfaceColours
+from arm_gazebo.sensors.camera import CameraSensor
 
 HIDDEN_GROUP = len(VISIBLE_GROUPS) - 1
 MAX_HIDDEN_LAYERS = 4

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import CameraError
+from arm_gazebo.sensors.camera import CameraSensor
 
 VISIBLE_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
 """Geom groups that a camera sees: all but the collision shapes of group 3 and above."""

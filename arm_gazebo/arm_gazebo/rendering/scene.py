@@ -2,8 +2,8 @@
 
 import mujoco
 
-from arm_gazebo.camera_snapshot import CameraSnapshot
 from arm_gazebo.errors import CameraError
+from arm_gazebo.feed.snapshot import CameraSnapshot
 
 
 class Scene:

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from arm_gazebo.camera_pipeline import CameraPipeline
-from arm_gazebo.camera_sensor import CameraSensor
-from arm_gazebo.camera_statistics import CameraReport
+from arm_gazebo.camera.pipeline import CameraPipeline
+from arm_gazebo.camera.statistics import CameraReport
 from arm_gazebo.ros.camera_publisher import CameraPublisher
 from arm_gazebo.ros.image_topic import set_stamp
+from arm_gazebo.sensors.camera import CameraSensor
 
 PERIOD_S = 1.0
 LEAST_SHARE = 0.9

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from arm_gazebo.camera_info import DISTORTION_MODEL, Intrinsics
-from arm_gazebo.camera_sensor import CameraSensor
+from arm_gazebo.camera.info import DISTORTION_MODEL, Intrinsics
 from arm_gazebo.ros.depth_publisher import DepthPublisher
 from arm_gazebo.ros.image_topic import QOS, set_stamp, watched
+from arm_gazebo.sensors.camera import CameraSensor
 
 JPEG_QUALITY = 80
 

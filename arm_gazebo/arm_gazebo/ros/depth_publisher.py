@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import Image, PointCloud2, PointField
 
-from arm_gazebo.camera_sensor import CameraSensor
-from arm_gazebo.depth_image import CHANNELS, PointGrid
+from arm_gazebo.camera.depth_image import CHANNELS, PointGrid
 from arm_gazebo.ros.image_topic import QOS, set_stamp, watched
+from arm_gazebo.sensors.camera import CameraSensor
 
 FLOAT_BYTES = 4
 POINT_FIELDS = ("x", "y", "z", "rgb")

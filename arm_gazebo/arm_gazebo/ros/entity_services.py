@@ -15,7 +15,6 @@ from simulation_interfaces.srv import (
     SpawnEntity,
 )
 
-from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.ros.service_table import ServiceRow, create_services
 from arm_gazebo.ros.world_convert import (
     answer,
@@ -27,7 +26,8 @@ from arm_gazebo.ros.world_convert import (
     state_message,
     twist_of,
 )
-from arm_gazebo.world_keeper import SpawnRequest, WorldKeeper
+from arm_gazebo.world.keeper import SpawnRequest, WorldKeeper
+from arm_gazebo.world.refusal import Refusal, RefusedError
 
 SPAWN_CODES = {
     Refusal.NAME_NOT_UNIQUE: SpawnEntity.Response.NAME_NOT_UNIQUE,

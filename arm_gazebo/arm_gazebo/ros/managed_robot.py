@@ -12,17 +12,17 @@ from arm_control.ros.configured_manager import bring_up, configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.controller_manager_server import ControllerManagerServer
 from arm_description.urdf import parse_urdf
-from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.camera_reader import parse_cameras
-from arm_gazebo.camera_sensor import CameraSensor
 from arm_gazebo.errors import SettingsError
-from arm_gazebo.gazebo_tags import parse_gazebo_tags
-from arm_gazebo.instrument import Instrument
-from arm_gazebo.robot_part import RobotInWorld
+from arm_gazebo.hardware.instrument import Instrument
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.robot.part import RobotInWorld
 from arm_gazebo.ros.robot_settings import RobotSettings
-from arm_gazebo.sensor_reader import parse_link_sensors
-from arm_gazebo.simulated_hardware import SimulatedHardware
-from arm_gazebo.simulation import Simulation
+from arm_gazebo.sensors.camera import CameraSensor
+from arm_gazebo.sensors.camera_reader import parse_cameras
+from arm_gazebo.sensors.reader import parse_link_sensors
 
 
 class ManagedRobot:

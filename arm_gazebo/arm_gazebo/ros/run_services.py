@@ -19,13 +19,13 @@ from simulation_interfaces.srv import (
 
 from arm_control.errors import LoopStoppedError
 from arm_control.ros.executor_bridge import completed
-from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.ros.service_table import ServiceRow, create_services
 from arm_gazebo.ros.world_convert import answer, refuse, world_message
-from arm_gazebo.run_control import RunControl, RunState
-from arm_gazebo.spawn_model import FORMATS
-from arm_gazebo.world_keeper import WorldKeeper
-from arm_gazebo.world_loading import NamedWorld, WorldLoader, available_worlds
+from arm_gazebo.world.keeper import WorldKeeper
+from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
+from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.run_control import RunControl, RunState
+from arm_gazebo.world.spawn_model import FORMATS
 
 STATE_CODES = {
     Refusal.ALREADY_THERE: SetSimulationState.Response.ALREADY_IN_TARGET_STATE,

@@ -10,10 +10,10 @@ from std_msgs.msg import Bool
 
 from arm_control.ros.reading_publisher import ReadingPublisher
 from arm_control.sensor_broadcaster import ReadingSink
-from arm_gazebo.contact_sensor import ContactSensor
-from arm_gazebo.imu_sensor import ImuSensor
-from arm_gazebo.link_sensor import LinkSensor
-from arm_gazebo.sensor_noise import NoiseModel
+from arm_gazebo.sensors.contact import ContactSensor
+from arm_gazebo.sensors.imu import ImuSensor
+from arm_gazebo.sensors.link_sensor import LinkSensor
+from arm_gazebo.sensors.noise import NoiseModel
 
 QOS = QoSProfile(depth=10)
 """Reliable and volatile: default and best-effort subscribers both match."""

@@ -17,22 +17,22 @@ from rclpy.node import Node
 from arm_control.control_loop import ControlLoop
 from arm_control.pacer import Pacer
 from arm_control.ros.controller_manager_node import ControllerManagerNode
-from arm_gazebo.build_options import BuildOptions
-from arm_gazebo.camera_feed import CameraFeed
-from arm_gazebo.display import check_display
+from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.errors import SettingsError
-from arm_gazebo.mesh_cache import cache_folder
-from arm_gazebo.model_builder import build_world
+from arm_gazebo.hardware.sensor_feed import SensorFeed
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.mesh.cache import cache_folder
+from arm_gazebo.model.builder import build_world
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
-from arm_gazebo.robot_part import RobotInWorld
+from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import RobotInWorld
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
-from arm_gazebo.sensor_feed import SensorFeed
-from arm_gazebo.simulated_hardware import SimulatedHardware
-from arm_gazebo.simulation import Simulation
-from arm_gazebo.simulation_tick import SimulationTick
-from arm_gazebo.window_feed import WindowFeed
+from arm_gazebo.window.display import check_display
+from arm_gazebo.window.feed import WindowFeed
 from arm_node.discovery import answers_held_back
 from arm_node.notify import notify
 from arm_node.process import EXIT_FAILED, NodeProcess

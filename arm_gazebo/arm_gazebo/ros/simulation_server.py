@@ -9,18 +9,18 @@ from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
+from arm_gazebo.model.world_file import find_world
+from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics_timing import PhysicsTiming
-from arm_gazebo.refusal import Refusal, RefusedError
-from arm_gazebo.robot_part import RobotInWorld
+from arm_gazebo.robot.part import RobotInWorld
 from arm_gazebo.ros.entity_services import EntityServices
 from arm_gazebo.ros.run_services import RunServices
 from arm_gazebo.ros.world_marker_publisher import WorldMarkerPublisher
-from arm_gazebo.run_control import RunControl
-from arm_gazebo.simulation import Simulation
-from arm_gazebo.spawn_model import ModelSource
-from arm_gazebo.world_file import find_world
-from arm_gazebo.world_keeper import ModelFeed, ModelHolder, WorldKeeper
-from arm_gazebo.world_loading import WorldLoader, named_world
+from arm_gazebo.world.keeper import ModelFeed, ModelHolder, WorldKeeper
+from arm_gazebo.world.loading import WorldLoader, named_world
+from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.run_control import RunControl
+from arm_gazebo.world.spawn_model import ModelSource
 from arm_node.executor_thread import ExecutorThread
 
 ResultT = TypeVar("ResultT")

@@ -19,13 +19,13 @@ from simulation_interfaces.msg import (
 )
 
 from arm_description.transforms import transform
-from arm_gazebo.entity_filter import EntityFilter, Volume
-from arm_gazebo.entity_motion import Box, Motion
-from arm_gazebo.refusal import Refusal, RefusedError
 from arm_gazebo.ros.camera_publisher import set_stamp
-from arm_gazebo.world_changes import Matrix, quaternion_of
-from arm_gazebo.world_entity import WORLD_FRAME, Category, EntityNote
-from arm_gazebo.world_loading import NamedWorld
+from arm_gazebo.world.changes import Matrix, quaternion_of
+from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
+from arm_gazebo.world.entity_filter import EntityFilter, Volume
+from arm_gazebo.world.entity_motion import Box, Motion
+from arm_gazebo.world.loading import NamedWorld
+from arm_gazebo.world.refusal import Refusal, RefusedError
 
 COMMON_CODES = {
     Refusal.UNSUPPORTED: Result.RESULT_FEATURE_UNSUPPORTED,

@@ -12,9 +12,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from arm_gazebo.world_entity import WORLD_FRAME
-from arm_gazebo.world_keeper import WorldKeeper
-from arm_gazebo.world_shapes import Solid, WorldShape, WorldShapes
+from arm_gazebo.world.entity import WORLD_FRAME
+from arm_gazebo.world.keeper import WorldKeeper
+from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
 from arm_node.message_template import MessageTemplate
 
 TOPIC = "world_markers"

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from arm_gazebo.spawn_model import ModelSource
-from arm_gazebo.world_keeper import SpawnRequest, WorldKeeper
+from arm_gazebo.world.keeper import SpawnRequest, WorldKeeper
+from arm_gazebo.world.spawn_model import ModelSource
 
 URDF = """<robot name="crate"><link name="base">
   <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from arm_gazebo.entity_filter import EntityFilter, Volume
-from arm_gazebo.refusal import RefusedError
-from arm_gazebo.world_entity import Category
+from arm_gazebo.world.entity import Category
+from arm_gazebo.world.entity_filter import EntityFilter, Volume
+from arm_gazebo.world.refusal import RefusedError
 
 
 @pytest.fixture

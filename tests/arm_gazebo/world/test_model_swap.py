@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.world_changes import Spawned, WorldChanges, changed_model
+from arm_gazebo.world.changes import Spawned, WorldChanges, changed_model
 
 
 @pytest.fixture
@@ -130,7 +130,7 @@ def test_angles_of_a_spawned_thing_are_its_own(parts, degree):
     """The world's file may count in degrees, the thing's in radians, and the other way round."""
     base = parts.build(parts.pendulum())
     base.spec.compiler.degree = degree
-    from arm_gazebo.spawn_model import ModelSource
+    from arm_gazebo.world.spawn_model import ModelSource
 
     turned = "<robot name='r'><link name='world'/><link name='a'>{m}</link>{j}</robot>".format(
         m="<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"

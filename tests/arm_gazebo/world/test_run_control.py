@@ -2,8 +2,8 @@ import pytest
 
 from arm_control.control_loop import ControlLoop
 from arm_control.pacer import Pacer
-from arm_gazebo.refusal import Refusal, RefusedError
-from arm_gazebo.run_control import RunControl, RunState
+from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.run_control import RunControl, RunState
 
 
 class Run:

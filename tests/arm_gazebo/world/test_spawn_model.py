@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from arm_gazebo.refusal import Refusal, RefusedError
-from arm_gazebo.spawn_model import ModelSource
+from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.spawn_model import ModelSource
 
 SOURCE = ModelSource(0.002)
 NASTY = st.sampled_from(

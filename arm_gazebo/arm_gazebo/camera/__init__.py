@@ -1,0 +1,1 @@
+"""The cameras' pictures, made in a process of their own, and what feeds it."""

@@ -1,0 +1,1 @@
+"""What `arm check` says of a description, without starting anything."""

@@ -1,0 +1,1 @@
+"""The servos of a robot's joints: commands in, efforts out."""

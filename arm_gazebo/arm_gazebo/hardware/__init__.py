@@ -1,0 +1,1 @@
+"""The robot in the simulation as controllers see it: its joints and its sensors."""

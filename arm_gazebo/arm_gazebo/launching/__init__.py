@@ -1,0 +1,1 @@
+"""What launch files need to know before a simulation starts."""

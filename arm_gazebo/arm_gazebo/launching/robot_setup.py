@@ -1,0 +1,186 @@
+"""What a launch file needs to simulate a robot: its description, its controllers, its folders."""
+
+import os
+import shlex
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from arm_description.resources import folders_of, resolve_uri
+from arm_description.xacro_expansion import expand_xacro_file
+from arm_description.xml_document import parse_xml
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.controllers_file import Controllers, fill_in, startable_controllers
+from arm_gazebo.launching.default_control import (
+    COMMANDER,
+    DEFAULT_CONTROLLERS,
+    commandable_joints,
+    default_parameters,
+    has_hardware,
+    with_hardware,
+)
+
+SPAWN_AUTO = "auto"
+"""Start every controller whose joints are free."""
+ASSIGNMENT = ":="
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSetup:
+    """A robot, ready to be simulated.
+
+    Attributes:
+        description: URDF text with a <ros2_control> block.
+        controllers: a parameter file, or the content of one.
+        spawn: controllers to start with the simulation.
+        package_path: folders searched for the description's files.
+        remarks: what was made up, one sentence each.
+    """
+
+    description: str
+    controllers: Controllers
+    spawn: tuple[str, ...]
+    package_path: tuple[Path, ...]
+    remarks: tuple[str, ...]
+
+    def parameters(self) -> dict[str, str]:
+        """Return the parameters of the simulation's node that are about the robot."""
+        return {
+            "robot_description": self.description,
+            "spawn": ",".join(self.spawn),
+            "package_path": os.pathsep.join(map(str, self.package_path)),
+        }
+
+
+def set_up_robot(
+    model: str,
+    model_args: str = "",
+    controllers: str = "",
+    spawn: str = SPAWN_AUTO,
+    package_path: str = "",
+) -> RobotSetup:
+    """Read a robot and complete what it lacks.
+
+    Args:
+        model: URDF or xacro file, also as a package:// URI.
+        model_args: xacro arguments, "a:=1 b:=2".
+        controllers: parameter file, in which ${name} stands for an argument of the model; ""
+            makes one up.
+        spawn: names with commas; "auto" for every controller whose joints are free.
+        package_path: folders with colons.
+
+    Raises:
+        SettingsError: arguments that make no sense; DescriptionError: no such model, or it is no
+            robot.
+    """
+    file = model_file(model)
+    given = folders(package_path)
+    expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
+    description = expansion.text
+    remarks: list[str] = []
+    commanded: tuple[str, ...] | None = None
+    if not has_hardware(description) or not controllers:
+        # Only here: a robot that comes with everything starts without being parsed twice.
+        description, commanded = _completed(description, file, remarks)
+    if controllers:
+        content = fill_in(Path(controllers), expansion.arguments)
+    else:
+        content = default_parameters(commanded or ())
+        remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
+        remarks += (
+            f"the description names some for Gazebo's plugin; to have them: controllers:={file}"
+            for file in _files_for_gazebo(description)
+        )
+    return RobotSetup(
+        description,
+        content,
+        _spawned(spawn, content if controllers else None, commanded or (), remarks),
+        (*given, *folders_of(file)),
+        tuple(remarks),
+    )
+
+
+def model_file(model: str) -> Path:
+    """Return the file that a model is named by; ResourceNotFoundError where there is none."""
+    return resolve_uri(model) if "://" in model else Path(model).expanduser()
+
+
+def model_arguments(words: Iterable[str]) -> dict[str, str]:
+    """Return the xacro arguments of words NAME:=VALUE.
+
+    Raises:
+        SettingsError: a word that is none.
+    """
+    arguments: dict[str, str] = {}
+    for word in words:
+        name, assignment, value = word.partition(ASSIGNMENT)
+        if not (name and assignment):
+            raise SettingsError(f"the xacro argument {word!r} is not NAME:=VALUE")
+        arguments[name] = value
+    return arguments
+
+
+def _words(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise SettingsError(f"model_args {text!r}: {error}") from error
+
+
+def folders(path: str) -> tuple[Path, ...]:
+    """Return the folders of a text that parts them by colons."""
+    return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
+
+
+def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, tuple[str, ...]]:
+    """Return the description with hardware, and the joints that it commands by position."""
+    from arm_control.hardware_info import parse_hardware_info
+    from arm_description.urdf import parse_urdf
+
+    robot = parse_urdf(description, str(file))
+    joints = commandable_joints(robot)
+    if not has_hardware(description):
+        remarks.append(
+            f"robot '{robot.name}' has no <ros2_control> block: one is made up that commands "
+            f"{', '.join(joints) or 'nothing, for no joint can be commanded'}"
+        )
+        return with_hardware(description, robot), joints
+    # Many a block gives interfaces to joints that mimic others, or that are fixed, too.
+    commanded = tuple(
+        joint.name
+        for component in parse_hardware_info(description)
+        for joint in component.joints
+        if joint.name in joints
+        and any(interface.name == "position" for interface in joint.command_interfaces)
+    )
+    return description, commanded
+
+
+def _made_up(joints: tuple[str, ...]) -> str:
+    names = [*DEFAULT_CONTROLLERS] if joints else [*DEFAULT_CONTROLLERS][:1]
+    driven = f"; {COMMANDER} drives {', '.join(joints)}" if joints else ""
+    return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} made up{driven}"
+
+
+def _files_for_gazebo(description: str) -> list[str]:
+    """Return the parameter files that a description hands to gz_ros2_control."""
+    named = parse_xml(description).iterfind("gazebo/plugin/parameters")
+    files = (str(element.text or "").strip() for element in named)
+    return [file for file in files if os.path.isfile(file)]
+
+
+def _spawned(
+    spawn: str,
+    controllers: Controllers | None,
+    commanded: tuple[str, ...],
+    remarks: list[str],
+) -> tuple[str, ...]:
+    if spawn.strip() != SPAWN_AUTO:
+        return tuple(name for name in spawn.replace(",", " ").split())
+    if controllers is None:
+        return tuple(name for name in DEFAULT_CONTROLLERS if commanded or name != COMMANDER)
+    from arm_control.registry import controller_types
+
+    startable = startable_controllers(controllers, frozenset(controller_types()))
+    remarks += startable.remarks
+    return startable.names

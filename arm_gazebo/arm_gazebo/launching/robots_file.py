@@ -1,0 +1,81 @@
+"""A file that names the robots of one world, each with its own namespace."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from arm_description.names import listing
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.robot_setup import SPAWN_AUTO
+
+NAMESPACE = re.compile(r"[A-Za-z]\w*", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRequest:
+    """What the file says about one robot; the words are those of sim.launch.py's arguments.
+
+    Attributes:
+        model: URDF or xacro file.
+        model_args: xacro arguments, "a:=1 b:=2".
+        controllers: parameter file, "" to make one up.
+        spawn: controllers to start.
+        package_path: folders, with colons.
+        base: "fixed" or "free".
+        pose: x y z roll pitch yaw of the root in the world, in m and rad; () for its own.
+    """
+
+    model: str
+    model_args: str = ""
+    controllers: str = ""
+    spawn: str = SPAWN_AUTO
+    package_path: str = ""
+    base: str = "fixed"
+    pose: tuple[float, ...] = ()
+
+
+def read_robots_file(path: Path | str) -> dict[str, RobotRequest]:
+    """Return the robots by namespace; files are sought beside this one.
+
+    Raises:
+        SettingsError: the file cannot be read, or says something that makes no sense.
+    """
+    import yaml  # Only here: a single robot needs no file.
+
+    file = Path(path).expanduser().absolute()
+    try:
+        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SettingsError(f"cannot read the robots' file {file}: {error}") from error
+    except yaml.YAMLError as error:
+        reason = " ".join(str(error).split())
+        raise SettingsError(f"the robots' file {file} is not YAML: {reason}") from error
+    if not isinstance(content, Mapping) or not content:
+        raise SettingsError(f"the robots' file {file} names no robots; it needs NAMESPACE: model:")
+    return {str(name): _request(file, str(name), entry) for name, entry in content.items()}
+
+
+def _request(file: Path, name: str, entry: object) -> RobotRequest:
+    where = f"the robots' file {file}, '{name}'"
+    if not NAMESPACE.fullmatch(name):
+        raise SettingsError(f"{where}: no namespace; it takes letters, digits and underscores")
+    if not isinstance(entry, Mapping) or not entry.get("model"):
+        raise SettingsError(f"{where} has no model: FILE")
+    known = [field.name for field in fields(RobotRequest)]
+    unknown = [str(key) for key in entry if key not in known]
+    if unknown:
+        raise SettingsError(f"{where} has the key '{unknown[0]}'; it takes {listing(known)}")
+    texts = {key: str(value) for key, value in entry.items() if key != "pose"}
+    for key in ("model", "controllers"):
+        if texts.get(key) and "://" not in texts[key]:
+            texts[key] = str(file.parent / Path(texts[key]).expanduser())
+    return RobotRequest(**texts, pose=_pose(where, entry.get("pose", ())))
+
+
+def _pose(where: str, value: Any) -> tuple[float, ...]:
+    try:
+        return tuple(float(number) for number in value)
+    except (TypeError, ValueError) as error:
+        raise SettingsError(f"{where}: pose takes x y z roll pitch yaw, not {value!r}") from error

@@ -1,0 +1,1 @@
+"""Mesh files as assets of a MuJoCo model: read, simplified, kept for the next start."""

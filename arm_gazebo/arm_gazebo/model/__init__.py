@@ -1,0 +1,1 @@
+"""The MuJoCo model: robots put into a world."""

@@ -1,0 +1,122 @@
+"""Robot descriptions, their hardware and their cameras, put into a world: the MuJoCo model.
+
+MuJoCo's own URDF importer drops visuals, cameras and limits and fuses links; this one keeps
+them, and reports whatever it cannot keep.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import mujoco
+
+from arm_control.hardware_info import HardwareInfo
+from arm_description.robot import Robot
+from arm_gazebo.build_report import BuildReport
+from arm_gazebo.errors import ModelError
+from arm_gazebo.model.built_model import BuiltModel
+from arm_gazebo.model.element_names import free_name, name_elements
+from arm_gazebo.model.world_file import check_world, load_world
+from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.collision_policy import MOST_LAYERS, CollisionLayer
+from arm_gazebo.robot.gazebo_tags import GazeboTags
+from arm_gazebo.robot.part import DEFAULT_OPTIONS, NO_TAGS, RobotInWorld, RobotPart
+from arm_gazebo.sensors.camera import CameraSensor
+from arm_gazebo.sensors.link_sensor import LinkSensor
+
+
+def build_model(
+    robot: Robot,
+    hardware: Sequence[HardwareInfo],
+    cameras: Sequence[CameraSensor] = (),
+    world: str | Path = "empty",
+    options: BuildOptions = DEFAULT_OPTIONS,
+    tags: GazeboTags = NO_TAGS,
+    sensors: Sequence[LinkSensor] = (),
+) -> BuiltModel:
+    """Return the model of one robot in a world; see `RobotInWorld` and `build_world`."""
+    return build_world([RobotInWorld(robot, hardware, cameras, options, tags, sensors)], world)
+
+
+def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") -> BuiltModel:
+    """Return the model of robots in a world.
+
+    Args:
+        entries: the robots, at least one; names of links and joints are unique among them all,
+            and their options have the same physics step.
+        world: name of a shipped world or path of a MuJoCo XML or SDF file.
+
+    Raises:
+        WorldError: the world is missing or unusable.
+        ModelError: a robot cannot be simulated as described; MeshError for its meshes.
+    """
+    if len(entries) > MOST_LAYERS:
+        raise ModelError(f"{len(entries)} robots are too many for one world: at most {MOST_LAYERS}")
+    report = BuildReport()
+    spec = load_world(world, report)
+    name_elements(spec)
+    parts = []
+    for index, entry in enumerate(entries):
+        report.add(*entry.tags.findings)
+        parts.append(RobotPart(spec, entry, CollisionLayer(index, len(entries)), report))
+    names = " and ".join(f"robot '{entry.robot.name}'" for entry in entries)
+    _set_physics(spec, entries[0].options.step_s)
+    model = _compile(spec, names, world)
+    qpos = model.qpos0.copy()
+    for part in parts:
+        part.place(model, qpos)
+    touching = [p for p, entry in zip(parts, entries, strict=True) if entry.self_collides]
+    for part in touching:
+        part.leave_out_neighbours(model, qpos)
+    if touching:
+        model = _compile(spec, names, world)
+    _open_clip_planes(model, [camera for entry in entries for camera in entry.cameras])
+    qpos.setflags(write=False)
+    return BuiltModel(
+        model,
+        spec,
+        joints={name: joint for part in parts for name, joint in part.joints(model).items()},
+        bodies={name: body for part in parts for name, body in part.bodies(model).items()},
+        qpos=qpos,
+        report=report,
+        robots=_robots(model, entries, parts),
+    )
+
+
+def _robots(
+    model: mujoco.MjModel, entries: Sequence[RobotInWorld], parts: Sequence[RobotPart]
+) -> dict[str, tuple[str, ...]]:
+    """Return the bodies right below the world of each robot; equal names get a number."""
+    robots: dict[str, tuple[str, ...]] = {}
+    for entry, part in zip(entries, parts, strict=True):
+        roots = dict.fromkeys(model.body_rootid[body] for body in part.bodies(model).values())
+        names = tuple(model.body(root).name for root in roots if root)
+        robots[free_name(entry.robot.name, robots)] = names
+    return robots
+
+
+def _set_physics(spec: mujoco.MjSpec, step_s: float) -> None:
+    spec.option.timestep = step_s
+    # The servos are stiff; this integrator is the cheapest that takes their damping implicitly.
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # Sensors are read from a copy of the state, and only those that somebody listens to.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+    # Every link keeps its frame, its looks and the inertia that it was given.
+    spec.compiler.fusestatic = False
+    spec.compiler.discardvisual = False
+    spec.compiler.balanceinertia = False
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_AUTO
+
+
+def _compile(spec: mujoco.MjSpec, names: str, world: str | Path) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        check_world(world)
+        raise ModelError(f"{names} does not compile: {error}") from error
+
+
+def _open_clip_planes(model: mujoco.MjModel, cameras: Sequence[CameraSensor]) -> None:
+    """Let the renderer see as near and as far as the cameras; MuJoCo counts in extents."""
+    if cameras:
+        model.vis.map.znear = min(camera.near for camera in cameras) / model.stat.extent
+        model.vis.map.zfar = max(camera.far for camera in cameras) / model.stat.extent

@@ -1,0 +1,1 @@
+"""The simulation that runs: MuJoCo's steps and state."""

@@ -1,0 +1,1 @@
+"""A URDF as part of a MuJoCo model: bodies, joints, shapes, actuators."""

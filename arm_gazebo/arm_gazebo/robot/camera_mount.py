@@ -1,0 +1,50 @@
+"""The robot's cameras as cameras of the model."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import mujoco
+import numpy as np
+
+from arm_description.transforms import rotation_from_rpy
+from arm_gazebo.errors import ModelError
+from arm_gazebo.sensors.camera import CameraSensor
+
+FORWARD_TO_MUJOCO = np.array([0.5, 0.5, -0.5, -0.5])
+"""Turns ROS's camera (looks along x, z up) into MuJoCo's (looks along -z, y up), w x y z."""
+SMALLEST_BUFFER = 800
+"""Pixels of the off-screen buffer each way: a renderer may ask for more than a camera does."""
+
+
+def add_cameras(
+    spec: mujoco.MjSpec, bodies: Mapping[str, mujoco.MjsBody], cameras: Sequence[CameraSensor]
+) -> None:
+    """Add each camera to its link's body under the sensor's name, and room to render it.
+
+    Raises:
+        ModelError: a camera's link does not exist, or the world has a camera of its name.
+    """
+    buffer = spec.visual.global_
+    buffer.offwidth = max([SMALLEST_BUFFER, buffer.offwidth, *(c.width for c in cameras)])
+    buffer.offheight = max([SMALLEST_BUFFER, buffer.offheight, *(c.height for c in cameras)])
+    # Four samples a pixel and a shadow map of 4096 make a frame twenty times slower in software.
+    spec.visual.quality.offsamples = 0
+    spec.visual.quality.shadowsize = 512
+    for camera in cameras:
+        if camera.link not in bodies:
+            raise ModelError(
+                f"camera '{camera.name}' is on link '{camera.link}', which does not exist; "
+                f"the robot has {', '.join(bodies)}"
+            )
+        if spec.camera(camera.name) is not None:
+            raise ModelError(f"the world already has a camera '{camera.name}'; rename one of them")
+        orientation, quaternion = np.zeros(4), np.zeros(4)
+        mujoco.mju_mat2Quat(orientation, rotation_from_rpy(camera.rpy).ravel())
+        mujoco.mju_mulQuat(quaternion, orientation, FORWARD_TO_MUJOCO)
+        bodies[camera.link].add_camera(
+            name=camera.name,
+            pos=camera.xyz,
+            quat=quaternion,
+            fovy=math.degrees(camera.vfov),
+            resolution=[camera.width, camera.height],
+        )

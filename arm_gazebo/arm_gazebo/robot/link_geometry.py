@@ -1,0 +1,250 @@
+"""The shapes of links: visuals to be seen, collisions to be touched, and their bounds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.mesh_data import Color
+from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
+from arm_gazebo.build_report import BuildReport
+from arm_gazebo.errors import MeshError
+from arm_gazebo.mesh.library import MeshLibrary
+from arm_gazebo.mesh.part import MeshPart
+from arm_gazebo.quaternion import wxyz
+from arm_gazebo.robot.collision_policy import CollisionMasks, with_self
+from arm_gazebo.robot.gazebo_tags import GazeboTags
+
+VISUAL_GROUP = 2
+COLLISION_GROUP = 3
+"""Groups as in MuJoCo's own models: its viewers show 0 to 2."""
+DEFAULT_COLOR: Color = (0.7, 0.7, 0.7, 1.0)
+STAND_IN_COLOR: Color = (0.9, 0.2, 0.7, 1.0)
+DEFAULT_FRICTION = 1.0
+"""MuJoCo's, and Gazebo's."""
+STAND_IN_SIDE_M = 0.05
+"""Side of the box that stands for a mesh that cannot be had: small, and of no usual colour."""
+THINNEST_M = 1e-4
+SMALLEST_M = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """What a geom needs besides its place: MuJoCo's type and half sizes, or a mesh's name."""
+
+    type: mujoco.mjtGeom
+    size: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    mesh: str = ""
+    rgba: Color | None = None
+
+
+class LinkGeometry:
+    """Adds the shapes of links to bodies.
+
+    Args:
+        meshes: the model's meshes.
+        default: values of what is not set: the world file's own defaults are for the world.
+        tags: what the description says about friction, colours and self-collision.
+        masks: what collisions touch, where the tags say nothing else.
+        strict: whether a mesh that cannot be had is an error.
+        report: gets a warning for every shape that is replaced.
+    """
+
+    def __init__(
+        self,
+        meshes: MeshLibrary,
+        default: mujoco.MjsDefault,
+        tags: GazeboTags,
+        masks: CollisionMasks,
+        strict: bool,
+        report: BuildReport,
+    ) -> None:
+        self._meshes = meshes
+        self._default = default
+        self._tags = tags
+        self._masks = masks
+        self._strict = strict
+        self._report = report
+        self._reported: set[str] = set()
+
+    def add(self, body: mujoco.MjsBody, link: Link) -> None:
+        """Add the visuals and collisions of a link to its body.
+
+        Raises:
+            MeshError: strict, and a mesh cannot be had.
+        """
+        tags = self._tags.link(link.name)
+        masks = with_self(self._masks) if tags.self_collide else self._masks
+        for visual in link.visuals:
+            shapes = tuple(self._shapes(visual.geometry, link))
+            # A file of several colours knows better than the one colour of the URDF.
+            colorful = len({shape.rgba for shape in shapes}) > 1
+            for shape in shapes:
+                geom = self._add_geom(body, visual.origin, shape)
+                geom.group = VISUAL_GROUP
+                geom.contype = geom.conaffinity = 0
+                own = shape.rgba if colorful else _color(visual, shape)
+                geom.rgba = tags.rgba or own or DEFAULT_COLOR
+        for collision in link.collisions:
+            for shape in self._hulls(collision.geometry, link):
+                geom = self._add_geom(body, collision.origin, shape)
+                geom.group = COLLISION_GROUP
+                geom.contype, geom.conaffinity = masks.contype, masks.conaffinity
+                if tags.friction is not None:
+                    _set_friction(geom, tags.friction)
+
+    def bounds(self, link: Link) -> NDArray[np.float64] | None:
+        """Return lowest and highest corner of the link's shapes in its frame, shape (2, 3).
+
+        Meshes that cannot be had do not count; None where nothing is left.
+        """
+        corners = [
+            pose.matrix()[:3, :3] @ corner + pose.xyz
+            for pose, geometry in _shapes_of(link)
+            for corner in self._corners(geometry)
+        ]
+        return np.array([np.min(corners, axis=0), np.max(corners, axis=0)]) if corners else None
+
+    def _corners(self, geometry: Geometry) -> list[NDArray[np.float64]]:
+        try:
+            low, high = self._box(geometry)
+        except MeshError:
+            return []
+        return [np.where(choice, high, low) for choice in np.ndindex(2, 2, 2)]
+
+    def _box(self, geometry: Geometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        match geometry:
+            case Mesh():
+                boxes = [part.bounds for part in self._meshes.parts(geometry)]
+                return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+            case Box(size):
+                half = np.array(size) / 2
+            case Sphere(radius):
+                half = np.full(3, radius)
+            case Cylinder(radius, length):
+                half = np.array([radius, radius, length / 2])
+            case Capsule(radius, length):
+                half = np.array([radius, radius, length / 2 + radius])
+        return -half, half
+
+    def _shapes(self, geometry: Geometry, link: Link) -> Iterator[_Shape]:
+        if not isinstance(geometry, Mesh):
+            yield _primitive(geometry)
+            return
+        try:
+            assets = self._meshes.assets(geometry)
+        except MeshError as error:
+            yield self._stand_in(geometry, error, link)
+            return
+        self._report_simplified(geometry, link)
+        for asset in assets:
+            yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name, rgba=asset.rgba)
+
+    def _hulls(self, geometry: Geometry, link: Link) -> Iterator[_Shape]:
+        """Yield shapes that can be touched: MuJoCo makes a mesh's hull, which a flat one lacks."""
+        if not isinstance(geometry, Mesh):
+            yield _primitive(geometry)
+            return
+        try:
+            parts = self._meshes.parts(geometry)
+        except MeshError as error:
+            yield self._stand_in(geometry, error, link)
+            return
+        for part, asset in zip(parts, self._meshes.hulls(geometry), strict=True):
+            if part.is_flat():
+                self._report.repair(
+                    f"link '{link.name}'",
+                    f"its collision mesh {geometry.uri} is flat; its bounding box is used",
+                    link.line,
+                )
+                yield _box_around(part)
+            else:
+                yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name)
+
+    def _add_geom(self, body: mujoco.MjsBody, origin: Pose, shape: _Shape) -> mujoco.MjsGeom:
+        geom = body.add_geom(
+            self._default,
+            type=shape.type,
+            pos=np.asarray(origin.xyz) + origin.matrix()[:3, :3] @ np.asarray(shape.offset),
+            quat=wxyz(origin.rpy),
+        )
+        if shape.mesh:
+            geom.meshname = shape.mesh
+        else:
+            geom.size = shape.size
+        # Mass comes from the link's inertial alone.
+        geom.mass = 0.0
+        return geom
+
+    def _report_simplified(self, mesh: Mesh, link: Link) -> None:
+        parts = self._meshes.parts(mesh)
+        given, drawn = sum(p.triangles for p in parts), sum(len(p.drawn.faces) for p in parts)
+        if drawn < given and mesh.uri not in self._reported:
+            self._reported.add(mesh.uri)
+            self._report.inform(
+                f"link '{link.name}'",
+                f"its mesh {mesh.uri} has {given} triangles; {drawn} are drawn",
+                link.line,
+            )
+
+    def _stand_in(self, mesh: Mesh, error: MeshError, link: Link) -> _Shape:
+        element = f"link '{link.name}'"
+        if self._strict:
+            raise MeshError(f"{element} (line {link.line}): {error}") from error
+        if mesh.uri not in self._reported:
+            self._reported.add(mesh.uri)
+            self._report.repair(element, f"{error}\na box of 5 cm takes its place", link.line)
+        half = STAND_IN_SIDE_M / 2
+        return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=STAND_IN_COLOR)
+
+
+def _set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
+    """Give a shape its sliding friction; a slippery one slides on whatever it touches.
+
+    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo the higher one, unless
+    one of them has priority.
+    """
+    geom.friction = [friction, *geom.friction[1:]]
+    if friction < DEFAULT_FRICTION:
+        geom.priority = 1
+
+
+def _shapes_of(link: Link) -> Iterator[tuple[Pose, Geometry]]:
+    """Yield the collisions of a link, or its visuals where it has none."""
+    for shape in link.collisions or link.visuals:
+        yield shape.origin, shape.geometry
+
+
+def _primitive(geometry: Box | Cylinder | Sphere | Capsule) -> _Shape:
+    match geometry:
+        case Box((x, y, z)):
+            return _Shape(mujoco.mjtGeom.mjGEOM_BOX, _sizes(x / 2, y / 2, z / 2))
+        case Cylinder(radius, length):
+            return _Shape(mujoco.mjtGeom.mjGEOM_CYLINDER, _sizes(radius, length / 2))
+        case Capsule(radius, length):
+            return _Shape(mujoco.mjtGeom.mjGEOM_CAPSULE, _sizes(radius, length / 2))
+        case Sphere(radius):
+            return _Shape(mujoco.mjtGeom.mjGEOM_SPHERE, _sizes(radius))
+
+
+def _sizes(*sizes: float) -> tuple[float, float, float]:
+    """Return three half sizes, none of them 0: MuJoCo refuses what has no volume."""
+    padded = [max(size, SMALLEST_M) for size in sizes] + [0.0] * (3 - len(sizes))
+    return (padded[0], padded[1], padded[2])
+
+
+def _box_around(part: MeshPart) -> _Shape:
+    low, high = part.bounds
+    half = np.maximum((high - low) / 2, THINNEST_M).tolist()
+    middle = ((low + high) / 2).tolist()
+    return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half[0], half[1], half[2]), tuple(middle))
+
+
+def _color(visual: Visual, shape: _Shape) -> Color | None:
+    """Return a visual's colour: the URDF's, else the file's."""
+    if visual.material is not None and visual.material.rgba is not None:
+        return visual.material.rgba
+    return shape.rgba

@@ -1,0 +1,1 @@
+"""Gazebo's worlds and models as parts of a MuJoCo model."""

@@ -1,0 +1,65 @@
+"""Where the frames of one SDF scope are: the models of a world, or the links of a model."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.names import listing
+from arm_description.robot import Pose
+from arm_gazebo.sdf.element import SdfElement, SdfPose
+
+ROOTS = ("", "world", "__model__")
+"""What the scope's own frame is called."""
+
+
+class SdfFrames:
+    """Resolves `relative_to` by name.
+
+    Args:
+        elements: what has a pose, by name.
+    """
+
+    def __init__(self, elements: Mapping[str, SdfElement]) -> None:
+        self._elements = elements
+
+    def matrix(self, element: SdfElement) -> NDArray[np.float64]:
+        """Return the pose (4, 4) of an element in the scope's frame.
+
+        Raises:
+            WorldError: it is relative to nothing that is there, or in a circle.
+        """
+        return self._resolved(element, element.pose())
+
+    def within(self, owner: SdfElement, part: SdfElement) -> NDArray[np.float64]:
+        """Return the pose (4, 4) of a part of one of the elements in that element's frame."""
+        pose = part.pose()
+        if not pose.relative_to:
+            return pose.matrix
+        return np.linalg.inv(self.matrix(owner)) @ self._resolved(part, pose)
+
+    def _resolved(self, element: SdfElement, pose: SdfPose) -> NDArray[np.float64]:
+        """Follow a pose from frame to frame up to the scope's own."""
+        matrix, passed = pose.matrix, set[str]()
+        while (name := pose.relative_to or element.attribute("attached_to")) not in ROOTS:
+            if name not in self._elements:
+                known = listing(sorted(self._elements))
+                raise element.error(f"is relative to '{name}', not one of {known}")
+            if name in passed:
+                raise element.error(f"is relative to '{name}', and that in a circle to itself")
+            passed.add(name)
+            element = self._elements[name]
+            pose = element.pose()
+            matrix = pose.matrix @ matrix
+        return matrix
+
+
+def pose_of(matrix: NDArray[np.float64]) -> Pose:
+    """Return a (4, 4) transform as translation and roll, pitch, yaw."""
+    (x, y, z), r = matrix[:3, 3].tolist(), matrix[:3, :3]
+    pitch = float(np.arctan2(-r[2, 0], np.hypot(r[0, 0], r[1, 0])))
+    if np.hypot(r[0, 0], r[1, 0]) < 1e-9:
+        # Roll and yaw turn about the same axis: all of it is called roll.
+        return Pose((x, y, z), (float(np.arctan2(-r[1, 2], r[1, 1])), pitch, 0.0))
+    roll, yaw = float(np.arctan2(r[2, 1], r[2, 2])), float(np.arctan2(r[1, 0], r[0, 0]))
+    return Pose((x, y, z), (roll, pitch, yaw))

@@ -1,0 +1,1 @@
+"""The cameras and other sensors of a URDF: what they are, not what they read."""

@@ -1,0 +1,178 @@
+"""The cameras of a URDF, in Gazebo's own tags."""
+
+import logging
+import math
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from arm_description.robot import Pose
+from arm_description.xml_document import parse_xml
+from arm_gazebo.sensors.camera import (
+    DEFAULT_CLIP,
+    DEFAULT_HFOV,
+    DEFAULT_RATE_HZ,
+    DEFAULT_SIZE,
+    SAME_FRAME,
+    CameraSensor,
+)
+from arm_gazebo.sensors.camera_frames import CameraFrames
+from arm_gazebo.sensors.tags import COLOR_FORMATS, TYPES, SensorTags, sensor_elements, sensor_type
+
+logger = logging.getLogger(__name__)
+
+MAX_SIDE = 8192
+"""Widest picture, in pixels: what common GL drivers can render into."""
+FORMATS = (
+    *COLOR_FORMATS,
+    *("L8", "L_INT8", "L16", "L_INT16", "B8G8R8", "BGR_INT8", "R_FLOAT16", "R_FLOAT32"),
+    *("BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8", "BAYER_GRBG8"),
+)
+"""Gazebo's; whatever is asked for, pictures are rgb8, and `leftovers` says so."""
+NOISE_TYPES = ("none", "gaussian", "gaussian_quantized")
+CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
+
+
+def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[CameraSensor, ...]:
+    """Return the cameras of a URDF, in document order.
+
+    A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
+    `depth_camera` or `rgbd_camera`. What a tag leaves out has Gazebo's default.
+
+    Raises:
+        SensorError: a value is nonsense; the message names sensor, element and line.
+        XmlError: the text is not XML.
+    """
+    root = parse_xml(urdf_xml, source)
+    links = [str(link.get("name")) for link in root.findall("link")]
+    cameras: list[CameraSensor] = []
+    taken: dict[str, str] = {}
+    for tags in _camera_tags(root):
+        tags.check_reference("link", links)
+        if any(camera.name == tags.name for camera in cameras):
+            raise tags.error("sensor", "a second camera of this name; each needs a name of its own")
+        camera = _read_camera(tags, root, taken)
+        _take_topics(camera, tags, taken)
+        cameras.append(camera)
+    return tuple(cameras)
+
+
+def _camera_tags(root: Any) -> Iterator[SensorTags]:
+    for link, sensor in sensor_elements(root):
+        kind = sensor_type(sensor)
+        if kind in CAMERA_TYPES:
+            yield SensorTags(sensor, link, "camera")
+        elif kind is None:
+            logger.warning(
+                "sensor %r (line %s) has type %r: it is not simulated, only %s are",
+                *(sensor.get("name"), sensor.sourceline, sensor.get("type")),
+                ", ".join(dict.fromkeys(TYPES.values())),
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class _Topics:
+    """Where what a camera shows goes, by its type.
+
+    Below `<topic>` as Gazebo names it, or where a tag of its own says, which takes the place of
+    what one would tell Gazebo's bridge.
+    """
+
+    image_topics: tuple[str, ...] = ()
+    info_topics: tuple[str, ...] = ()
+    depth_topics: tuple[str, ...] = ()
+    points_topics: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, tags: SensorTags, taken: Container[str]) -> "_Topics":
+        topics, infos = tags.own_topics(), tags.topics("camera_info_topic")
+        if tags.type == "rgbd_camera":
+            return cls(
+                image_topics=tags.topics("image_topic") or _below(topics, "image"),
+                info_topics=infos or _below(topics, "camera_info"),
+                depth_topics=tags.topics("depth_image_topic") or _below(topics, "depth_image"),
+                points_topics=tags.topics("points_topic") or _below(topics, "points"),
+            )
+        infos = infos or _default_info_topics(topics, taken)
+        if tags.type == "depth_camera":
+            points = tags.topics("points_topic") or _below(topics, "points")
+            return cls(info_topics=infos, depth_topics=topics, points_topics=points)
+        return cls(image_topics=topics, info_topics=infos)
+
+
+def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
+    return tuple(f"{topic}/{name}" for topic in topics)
+
+
+def _read_camera(tags: SensorTags, root: Any, taken: Mapping[str, str]) -> CameraSensor:
+    near = tags.number("clip/near", DEFAULT_CLIP[0], lambda v: v > 0, "above 0")
+    far_default = max(DEFAULT_CLIP[1], 2 * near)
+    if tags.type == "camera":
+        tags.choice("image/format", FORMATS)
+    noisy = _noise_type(tags) != "none"
+    topics = _Topics.of(tags, taken)
+    numbers = tags.pose()
+    pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
+    frames = CameraFrames(root, tags.reference)
+    frame = tags.frame(frames.optical())
+    return CameraSensor(
+        name=tags.name,
+        link=tags.reference,
+        optical_frame=frame,
+        width=_pixels(tags, "image/width", DEFAULT_SIZE[0]),
+        height=_pixels(tags, "image/height", DEFAULT_SIZE[1]),
+        hfov=tags.number("horizontal_fov", DEFAULT_HFOV, lambda v: 0 < v < math.pi, "in (0, pi)"),
+        near=near,
+        far=tags.number("clip/far", far_default, lambda v: v > near, f"above near, {near:g}"),
+        # Gazebo reads rate 0 as "every step"; nobody wants 500 pictures a second.
+        rate_hz=tags.rate_hz() or DEFAULT_RATE_HZ,
+        noise_mean=_noise(tags, "mean", -1, "from -1 to 1") if noisy else 0.0,
+        noise_stddev=_noise(tags, "stddev", 0, "from 0 to 1") if noisy else 0.0,
+        image_topics=topics.image_topics,
+        info_topics=topics.info_topics,
+        depth_topics=topics.depth_topics,
+        points_topics=topics.points_topics,
+        xyz=pose.xyz,
+        rpy=pose.rpy,
+        optics_in_frame=_optics_in(frames, frame, pose) if topics.points_topics else SAME_FRAME,
+    )
+
+
+def _noise_type(tags: SensorTags) -> str:
+    # SDF has it as an attribute, too.
+    kind = tags.attribute("noise", "type") or tags.choice("noise/type", NOISE_TYPES)
+    if kind not in NOISE_TYPES:
+        raise tags.error("noise", f"type {kind!r} is not one of {', '.join(NOISE_TYPES)}")
+    return kind
+
+
+def _noise(tags: SensorTags, tag: str, least: float, must_be: str) -> float:
+    return tags.number(f"noise/{tag}", 0.0, lambda v: least <= v <= 1, must_be)
+
+
+def _pixels(tags: SensorTags, tag: str, default: int) -> int:
+    must_be = f"a whole number from 1 to {MAX_SIDE}"
+    return int(tags.number(tag, default, lambda v: v in range(1, MAX_SIDE + 1), must_be))
+
+
+def _default_info_topics(images: tuple[str, ...], taken: Container[str]) -> tuple[str, ...]:
+    """Return both customs: below the image topic, and beside it as Gazebo and ROS drivers do.
+
+    The one beside it is left out where an earlier camera has it: two cameras would mix there.
+    """
+    below = _below(images, "camera_info")
+    beside = ["".join(image.rpartition("/")[:2]) + "camera_info" for image in images]
+    return tuple(dict.fromkeys([*below, *(topic for topic in beside if topic not in taken)]))
+
+
+def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, str]) -> None:
+    for topic in camera.topics:
+        if topic in taken:
+            raise tags.error("topic", f"{topic!r} is taken by camera {taken[topic]!r}")
+        taken[topic] = camera.name
+
+
+def _optics_in(frames: CameraFrames, frame: str, camera: Pose) -> tuple[float, ...]:
+    """Return the camera's optical axes in a frame; one that is not known is taken for optical."""
+    pose = frames.optics_in(frame, camera)
+    return SAME_FRAME if pose is None else tuple(pose[:3].ravel().tolist())

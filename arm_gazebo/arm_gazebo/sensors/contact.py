@@ -1,0 +1,69 @@
+"""A contact sensor: whether anything touches a link, and how hard."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_control.sensor_interfaces import FORCE_TORQUE_INTERFACES
+from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement
+from arm_gazebo.sensors.tags import SensorTags
+
+DATA = mujoco.mjtConDataField
+WANTED = (DATA.mjCONDATA_FOUND, DATA.mjCONDATA_FORCE, DATA.mjCONDATA_TORQUE, DATA.mjCONDATA_POS)
+NET_FORCE = 3
+"""MuJoCo's way to make one of all contacts: the sum of the forces, at their middle."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSensor(LinkSensor):
+    """A contact sensor of all collision shapes of a link.
+
+    A reading is the number of contact points, and the force and torque that others exert on the
+    link, about its origin and in its axes.
+    """
+
+    type: ClassVar[str] = "contact"
+    channels: ClassVar[tuple[str, ...]] = ("contacts", *FORCE_TORQUE_INTERFACES)
+
+    @classmethod
+    def read(cls, tags: SensorTags) -> "ContactSensor":
+        """Return the sensor that the tags describe.
+
+        Raises:
+            SensorError: a value is nonsense.
+        """
+        return cls(
+            name=tags.name,
+            link=tags.reference,
+            frame_id=tags.frame(tags.reference),
+            # Gazebo has it below <contact>; either place counts.
+            topic=tags.own_topics()[0],
+            rate_hz=tags.rate_hz(),
+        )
+
+    def measurements(self) -> Sequence[Measurement]:
+        """Return the net contact, and where the link is and how it is turned."""
+        sensor, body = mujoco.mjtSensor, mujoco.mjtObj.mjOBJ_BODY
+        options = (sum(1 << int(field) for field in WANTED), NET_FORCE, 1)
+        site = mujoco.mjtObj.mjOBJ_SITE
+        return [
+            Measurement("net", sensor.mjSENS_CONTACT, body, self.link, options=options),
+            Measurement("position", sensor.mjSENS_FRAMEPOS, site, self.key),
+            Measurement("turned", sensor.mjSENS_FRAMEQUAT, site, self.key),
+        ]
+
+    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the channels; MuJoCo's force is what the link does to the others."""
+        reading = np.zeros(len(self.channels))
+        reading[0] = measured[0]
+        if measured[0]:
+            force, torque, where = 0.0 - measured[1:4], 0.0 - measured[4:7], measured[7:10]
+            origin, inverse = measured[10:13], measured[13:17] * (1.0, -1.0, -1.0, -1.0)
+            mujoco.mju_rotVecQuat(reading[1:4], force, inverse)
+            torque = torque + np.cross(where - origin, force)
+            mujoco.mju_rotVecQuat(reading[4:7], torque, inverse)
+        return reading

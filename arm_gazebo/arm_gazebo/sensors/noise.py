@@ -1,0 +1,86 @@
+"""Gaussian noise for the numbers of a sensor."""
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.sensors.tags import SensorTags
+
+BANK_SIZE = 1 << 16
+STRIDE = 40503
+"""Odd, so that every start in the bank comes before one comes again; near the golden section."""
+TYPES = ("none", "gaussian", "gaussian_quantized")
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseModel:
+    """What a description says about the noise of one number, in the number's unit.
+
+    Attributes:
+        mean: of what is added anew to each reading.
+        stddev: its standard deviation.
+        bias_mean: of what is drawn once for a run, of either sign.
+        bias_stddev: its standard deviation.
+    """
+
+    mean: float = 0.0
+    stddev: float = 0.0
+    bias_mean: float = 0.0
+    bias_stddev: float = 0.0
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether nothing is ever added."""
+        return self == NoiseModel()
+
+
+SILENT = NoiseModel()
+
+
+def read_noise(tags: SensorTags, where: str) -> NoiseModel:
+    """Return the noise that stands at a path below a sensor, such as `angular_velocity/x`.
+
+    Raises:
+        SensorError: it makes no sense.
+    """
+    tag = f"{where}/noise"
+    kind = tags.attribute(tag, "type") or tags.choice(f"{tag}/type", TYPES)
+    if kind not in TYPES:
+        raise tags.error(tag, f"type {kind!r} is not one of {', '.join(TYPES)}")
+    if kind == "none":
+        return SILENT
+
+    def number(name: str, least: float, must_be: str) -> float:
+        return tags.number(f"{tag}/{name}", 0.0, lambda v: v >= least, must_be)
+
+    return NoiseModel(
+        mean=number("mean", -np.inf, "a number"),
+        stddev=number("stddev", 0.0, "at least 0"),
+        bias_mean=number("bias_mean", -np.inf, "a number"),
+        bias_stddev=number("bias_stddev", 0.0, "at least 0"),
+    )
+
+
+class SensorNoise:
+    """The noise of all numbers of a sensor in one run.
+
+    What is added to a reading depends on the seed, the sensor's name and the number of the state
+    alone, so the same run gives the same readings whoever listens.
+    """
+
+    def __init__(self, models: tuple[NoiseModel, ...], name: str, seed: int) -> None:
+        random = np.random.default_rng((zlib.crc32(name.encode()), seed & (2**64 - 1)))
+        count = len(models)
+        bias = np.array([model.bias_mean for model in models])
+        bias += random.standard_normal(count) * [model.bias_stddev for model in models]
+        sign = random.choice([-1.0, 1.0], count)
+        self._offset = bias * sign + [model.mean for model in models]
+        self._stddev = np.array([model.stddev for model in models])
+        self._bank = random.standard_normal(BANK_SIZE + count)
+
+    def add_to(self, values: NDArray[np.float64], state_number: int) -> None:
+        """Add the noise of one state to the sensor's numbers, in place."""
+        start = state_number * STRIDE % BANK_SIZE
+        values += self._offset + self._stddev * self._bank[start : start + len(values)]

@@ -1,0 +1,1 @@
+"""The world while it runs: what is in it, and how it is changed."""

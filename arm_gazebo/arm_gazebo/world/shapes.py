@@ -1,0 +1,154 @@
+"""The shapes of a world as simple solids that any viewer can draw, robots left out."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.mesh_data import MeshData
+from arm_gazebo.mesh.simplification import simplified
+from arm_gazebo.rendering.surface_colours import flat_colours
+from arm_gazebo.world.entity import WORLD_FRAME, Entities
+
+DRAWN_GROUPS = (0, 1, 2)
+"""Those that MuJoCo's viewers show, and the cameras."""
+ENDLESS_M = 20.0
+"""Side of what stands for a plane without an end."""
+THICKNESS_M = 1e-3
+MOST_TRIANGLES = 2000
+"""Of one mesh: what is seen in a browser needs no more, and a message shall stay small."""
+GEOM = mujoco.mjtGeom
+
+
+class Solid(Enum):
+    """What kinds of solids there are."""
+
+    BOX = "box"
+    BALL = "ball"
+    CYLINDER = "cylinder"
+    TRIANGLES = "triangles"
+
+
+@dataclass(frozen=True, slots=True)
+class WorldShape:
+    """A solid of the world.
+
+    Attributes:
+        owner: the entity, or "world".
+        number: tells it from the others of its owner, in every model that both have.
+        solid: what it is.
+        size: full sides, m, shape (3,); of triangles 1 each.
+        rgba: colour.
+        geom: whose pose it follows.
+        offset: of its middle in the frame of the geom, shape (3,).
+        corners: of triangles, three points each, shape (3 n, 3).
+    """
+
+    owner: str
+    number: int
+    solid: Solid
+    size: tuple[float, float, float]
+    rgba: tuple[float, float, float, float]
+    geom: int
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    corners: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """What identifies it."""
+        return self.owner, self.number
+
+
+class WorldShapes:
+    """All shapes of one model that are not a robot's, and where they are.
+
+    Args:
+        model: the model; is only read.
+        entities: of the model.
+    """
+
+    def __init__(self, model: mujoco.MjModel, entities: Entities) -> None:
+        self.shapes = tuple(_shapes(model, entities))
+        self._geoms = np.array([shape.geom for shape in self.shapes], dtype=np.intp)
+        self._offsets = np.array([shape.offset for shape in self.shapes]).reshape(-1, 3)
+
+    def poses(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return positions and quaternions (x, y, z, w) of the shapes, shape (n, 7).
+
+        Args:
+            positions: of all geoms, shape (ngeom, 3).
+            rotations: of all geoms, shape (ngeom, 9).
+        """
+        poses = np.empty((len(self.shapes), 7))
+        turned = rotations[self._geoms].reshape(-1, 3, 3)
+        poses[:, :3] = positions[self._geoms] + np.einsum("nij,nj->ni", turned, self._offsets)
+        quaternion = np.empty(4)
+        for row, geom in enumerate(self._geoms.tolist()):
+            mujoco.mju_mat2Quat(quaternion, rotations[geom])
+            poses[row, 3:6], poses[row, 6] = quaternion[1:], quaternion[0]
+        return poses
+
+
+def _shapes(model: mujoco.MjModel, entities: Entities) -> Iterator[WorldShape]:
+    owners = {0: WORLD_FRAME}
+    for entity in entities:
+        if not entity.is_robot:
+            owners.update({model.body(root).id: entity.name for root in entity.roots})
+    colours = flat_colours(model)
+    numbers = dict.fromkeys(owners.values(), 0)
+    for geom in range(model.ngeom):
+        owner = owners.get(int(model.body_rootid[model.geom_bodyid[geom]]))
+        rgba = tuple(colours[geom].tolist())
+        if owner is None or model.geom_group[geom] not in DRAWN_GROUPS or not rgba[3]:
+            continue
+        for solid, size, offset, corners in _solids(model, geom):
+            number = numbers[owner]
+            numbers[owner] += 1
+            yield WorldShape(owner, number, solid, size, rgba, geom, offset, corners)
+
+
+_Solid = tuple[Solid, tuple[float, float, float], tuple[float, float, float], NDArray[np.float64]]
+NO_CORNERS = np.empty((0, 3))
+HERE = (0.0, 0.0, 0.0)
+
+
+def _solids(model: mujoco.MjModel, geom: int) -> Iterator[_Solid]:
+    """Yield what makes up a geom; kinds that worlds seldom have yield nothing."""
+    x, y, z = model.geom_size[geom].tolist()
+    match GEOM(int(model.geom_type[geom])):
+        case GEOM.mjGEOM_BOX:
+            yield Solid.BOX, (2 * x, 2 * y, 2 * z), HERE, NO_CORNERS
+        case GEOM.mjGEOM_SPHERE:
+            yield Solid.BALL, (2 * x, 2 * x, 2 * x), HERE, NO_CORNERS
+        case GEOM.mjGEOM_ELLIPSOID:
+            yield Solid.BALL, (2 * x, 2 * y, 2 * z), HERE, NO_CORNERS
+        case GEOM.mjGEOM_CYLINDER:
+            yield Solid.CYLINDER, (2 * x, 2 * x, 2 * y), HERE, NO_CORNERS
+        case GEOM.mjGEOM_CAPSULE:
+            yield Solid.CYLINDER, (2 * x, 2 * x, 2 * y), HERE, NO_CORNERS
+            for end in (y, -y):
+                yield Solid.BALL, (2 * x, 2 * x, 2 * x), (0.0, 0.0, end), NO_CORNERS
+        case GEOM.mjGEOM_PLANE:
+            sides = (2 * x or ENDLESS_M, 2 * y or ENDLESS_M, THICKNESS_M)
+            yield Solid.BOX, sides, (0.0, 0.0, -THICKNESS_M / 2), NO_CORNERS
+        case GEOM.mjGEOM_MESH:
+            corners = _corners(model, int(model.geom_dataid[geom]))
+            if len(corners):
+                yield Solid.TRIANGLES, (1.0, 1.0, 1.0), HERE, corners
+
+
+def _corners(model: mujoco.MjModel, mesh: int) -> NDArray[np.float64]:
+    """Return the corners of a mesh's triangles, three by three, shape (3 n, 3)."""
+    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    vertices = model.mesh_vert[first : first + count].astype(np.float64)
+    first, count = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    faces = model.mesh_face[first : first + count].astype(np.int32)
+    if not len(faces):
+        return NO_CORNERS
+    drawn = simplified(MeshData(vertices, faces, None), MOST_TRIANGLES)
+    return drawn.vertices[drawn.faces].reshape(-1, 3)

@@ -1,0 +1,73 @@
+"""The environment of a camera process."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from arm_gazebo.camera import environment as module
+from arm_gazebo.camera.environment import camera_environment
+
+VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+
+
+@pytest.fixture
+def shared_memory(monkeypatch):
+    def free(mebibytes: int) -> None:
+        monkeypatch.setattr(module, "_free_bytes", lambda _folder: mebibytes << 20)
+
+    free(1000)
+    return free
+
+
+@pytest.mark.parametrize(("mebibytes", "name"), [(1000, "dds_images"), (64, "dds_images_small")])
+def test_the_profile_fits_the_shared_memory(shared_memory, mebibytes, name):
+    shared_memory(mebibytes)
+    profile = Path(camera_environment({})[VARIABLE])
+    assert profile.stem == name
+    assert profile.is_file()
+
+
+def test_a_missing_shared_memory_folder_means_none(tmp_path):
+    profile = camera_environment({}, shm=str(tmp_path / "none"))[VARIABLE]
+    assert Path(profile).stem == "dds_images_small"
+
+
+@pytest.mark.parametrize("variable", [VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE"])
+def test_a_profile_of_the_users_own_stays(shared_memory, variable):
+    environment = camera_environment({variable: "/home/me/dds.xml"})
+    assert environment[variable] == "/home/me/dds.xml"
+    assert set(environment) == {variable, "MUJOCO_GL"}
+
+
+def test_the_launchers_profile_is_not_the_users_own(shared_memory):
+    general = f"{sys.prefix}/share/launch_py/config/dds.xml"
+    assert Path(camera_environment({VARIABLE: general})[VARIABLE]).stem == "dds_images"
+
+
+def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_profile(shared_memory):
+    environment = camera_environment(
+        {
+            VARIABLE: f"{sys.prefix}/share/launch_py/config/dds_localhost.xml",
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+        }
+    )
+    assert Path(environment[VARIABLE]).stem == "dds_images"
+    assert environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+
+
+def test_the_supervisor_is_not_told_of_this_process(shared_memory):
+    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"})
+    assert "NOTIFY_SOCKET" not in environment
+    assert environment["HOME"] == "/home/me"
+
+
+@pytest.mark.parametrize("name", ["dds_images", "dds_images_small"])
+def test_the_profiles_say_what_makes_discovery_quick(name):
+    from lxml import etree
+
+    text = (Path(sys.prefix) / "share/arm_gazebo/config" / f"{name}.xml").read_bytes()
+    values = {e.tag.rpartition("}")[2]: e.text for e in etree.fromstring(text).iter()}
+    assert values["count"] == "40"
+    assert values["maxInitialPeersRange"] == "64"
+    assert values["useBuiltinTransports"] == "false"

@@ -1,0 +1,92 @@
+"""Which controllers of a file start together."""
+
+import pytest
+
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.controllers_file import fill_in, startable_controllers
+
+TYPES = frozenset({"a/Broadcaster", "a/Position", "a/Trajectory"})
+CONTENT = """
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    states: {type: a/Broadcaster}
+    arm: {type: a/Trajectory}
+    position: {type: a/Position}
+    hand: {type: a/Position}
+    force: {type: b/Unheard}
+arm: {ros__parameters: {joints: [j0, j1]}}
+position: {ros__parameters: {joints: [j1]}}
+hand: {ros__parameters: {joint: finger}}
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "controllers.yaml"
+
+
+def test_controllers_whose_joints_are_free_start_in_order(file):
+    file.write_text(CONTENT)
+    assert startable_controllers(file, TYPES).names == ("states", "arm", "hand")
+
+
+def test_each_that_waits_is_named_with_the_reason(file):
+    file.write_text(CONTENT)
+    assert startable_controllers(file, TYPES).remarks == (
+        "position does not start: arm holds 'j1'",
+        "force does not start: its type b/Unheard is not known here",
+    )
+
+
+@pytest.mark.parametrize("key", ["/left/controller_manager", "/**/controller_manager"])
+def test_a_namespace_before_the_managers_name_is_passed_over(file, key):
+    file.write_text(f"{key}:\n  ros__parameters:\n    states.type: a/Broadcaster\n")
+    assert startable_controllers(file, TYPES).names == ("states",)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("", "names no controllers"),
+        ("- 1", "names no controllers"),
+        ("controller_manager: {ros__parameters: {update_rate: 100}}", "names no controllers"),
+        ("a: [", "is not YAML"),
+    ],
+)
+def test_a_file_without_controllers_is_refused(file, content, reason):
+    file.write_text(content)
+    with pytest.raises(SettingsError, match=reason):
+        startable_controllers(file, TYPES)
+
+
+def test_a_missing_file_is_named(file):
+    with pytest.raises(SettingsError, match=r"cannot read .*controllers\.yaml"):
+        startable_controllers(file, TYPES)
+
+
+def test_a_single_joint_is_held_too(file):
+    file.write_text(CONTENT + "force: {ros__parameters: {joint: finger}}\n")
+    types = TYPES | {"b/Unheard"}
+    assert startable_controllers(file, types).remarks[-1] == (
+        "force does not start: hand holds 'finger'"
+    )
+
+
+def test_arguments_of_the_robot_take_their_places(file):
+    file.write_text(CONTENT.replace("[j0, j1]", "['${prefix}j0', '${ prefix }${tool}']"))
+    content = fill_in(file, {"prefix": "left_", "tool": "gun", "other": ""})
+    assert not isinstance(content, type(file))
+    assert content["arm"] == {"ros__parameters": {"joints": ["left_j0", "left_gun"]}}
+    assert startable_controllers(content, TYPES).names == ("states", "arm", "position", "hand")
+
+
+def test_a_file_without_places_stays_a_file(file):
+    file.write_text(CONTENT)
+    assert fill_in(file, {"prefix": "left_"}) == file
+
+
+def test_a_place_for_no_argument_is_refused_with_those_that_are(file):
+    file.write_text(CONTENT.replace("j0", "${side}j0"))
+    with pytest.raises(SettingsError, match=r"\$\{side\}, which is no argument .*; it has base, p"):
+        fill_in(file, {"p": "", "base": "fixed"})

@@ -1,0 +1,82 @@
+"""Hardware and controllers made up for a robot without."""
+
+import pytest
+
+from arm_control.hardware_info import parse_hardware_info
+from arm_description.urdf import parse_urdf
+from arm_gazebo.launching.default_control import (
+    commandable_joints,
+    default_parameters,
+    has_hardware,
+    with_hardware,
+)
+
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def joint(name, kind, child, more=LIMIT):
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="base"/><child link="{child}"/>'
+        f"{more}</joint>\n"
+    )
+
+
+URDF = (
+    '<robot name="r">\n'
+    + "".join(f'<link name="{name}"/>' for name in ("base", "a", "b", "c", "d", "e"))
+    + joint("turn", "revolute", "a")
+    + joint("spin", "continuous", "b", "")
+    + joint("slide & co", "prismatic", "c").replace("&", "&amp;")
+    + joint("finger", "revolute", "d", LIMIT + '<mimic joint="turn"/>')
+    + joint("glue", "fixed", "e", "")
+    + "</robot>"
+)
+
+
+def test_every_joint_that_can_move_by_itself_is_commanded():
+    robot = parse_urdf(URDF)
+    assert commandable_joints(robot) == ("turn", "spin", "slide & co")
+    [component] = parse_hardware_info(with_hardware(URDF, robot))
+    assert [j.name for j in component.joints if j.command_interfaces] == list(
+        commandable_joints(robot)
+    )
+
+
+def test_a_mimicking_joint_shows_its_states():
+    [component] = parse_hardware_info(with_hardware(URDF, parse_urdf(URDF)))
+    finger = next(joint for joint in component.joints if joint.name == "finger")
+    assert [state.name for state in finger.state_interfaces] == ["position", "velocity", "effort"]
+
+
+def test_lines_keep_their_numbers():
+    robot = parse_urdf(URDF)
+    again = parse_urdf(with_hardware(URDF, robot))
+    assert [joint.line for joint in again.joints] == [joint.line for joint in robot.joints]
+
+
+@pytest.mark.parametrize(
+    ("text", "has"),
+    [
+        (URDF, False),
+        (URDF.replace("</robot>", "<!-- <ros2_control/>\n --></robot>"), False),
+        (URDF.replace("</robot>", '<ros2_control name="x"/></robot>'), True),
+        (URDF.replace("</robot>", '<!-- a --><ros2_control name="x"/><!-- b --></robot>'), True),
+    ],
+)
+def test_a_comment_is_no_hardware(text, has):
+    assert has_hardware(text) is has
+
+
+def test_parameters_have_the_form_of_a_file():
+    content = default_parameters(("turn", "spin"))
+    assert content["position_controller"] == {"ros__parameters": {"joints": ["turn", "spin"]}}
+    manager = content["controller_manager"]["ros__parameters"]
+    assert manager["position_controller"] == {
+        "type": "position_controllers/JointGroupPositionController"
+    }
+
+
+def test_a_robot_without_joints_gets_no_controller_for_them():
+    content = default_parameters(())
+    assert list(content) == ["controller_manager"]
+    assert "position_controller" not in content["controller_manager"]["ros__parameters"]

@@ -1,0 +1,167 @@
+"""A robot's description, controllers and folders, completed where they lack something."""
+
+from pathlib import Path
+
+import pytest
+
+from arm_description.errors import XacroError
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.default_control import has_hardware
+from arm_gazebo.launching.robot_setup import folders, model_arguments, set_up_robot
+
+
+@pytest.fixture
+def bare(tmp_path, parts):
+    """The file of a robot without <ros2_control>."""
+    file = tmp_path / "bare.urdf"
+    file.write_text(
+        parts.robot(
+            parts.link("base"),
+            parts.link("a", 1.0),
+            parts.link("b", 1.0),
+            parts.joint("j0", "base", "a"),
+            parts.joint("j1", "a", "b"),
+        )
+    )
+    return file
+
+
+def test_hardware_and_controllers_are_made_up_and_said(bare):
+    setup = set_up_robot(str(bare))
+    assert has_hardware(setup.description)
+    assert setup.spawn == ("joint_state_broadcaster", "position_controller")
+    assert not isinstance(setup.controllers, Path)
+    assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["j0", "j1"]
+    assert "no <ros2_control> block: one is made up that commands j0, j1" in setup.remarks[0]
+    assert "position_controller drives j0, j1" in setup.remarks[1]
+
+
+def test_a_file_that_the_description_hands_to_gazebos_plugin_is_named(bare, tmp_path):
+    (tmp_path / "own.yaml").touch()
+    plugins = "".join(
+        f"<gazebo><plugin filename='x' name='y'><parameters>{tmp_path}/{name}</parameters>"
+        "</plugin></gazebo>"
+        for name in ("own.yaml", "none.yaml")
+    )
+    bare.write_text(bare.read_text().replace("</robot>", f"{plugins}</robot>"))
+    *_, remark = set_up_robot(str(bare)).remarks
+    assert remark.endswith(f"to have them: controllers:={tmp_path}/own.yaml")
+    assert "made up" in set_up_robot(str(bare)).remarks[-2]
+
+
+def test_made_up_controllers_leave_out_joints_that_cannot_be_commanded(tmp_path, parts):
+    """As in the blocks of grippers, which often list all of their joints."""
+    file = tmp_path / "gripper.urdf"
+    names = ["left", "right", "tip", "missing"]
+    file.write_text(
+        parts.robot(
+            *(parts.link(name, 1.0) for name in ("base", "a", "b", "c")),
+            parts.joint("left", "base", "a"),
+            parts.joint("right", "base", "b", more='<mimic joint="left" multiplier="-1"/>'),
+            parts.joint("tip", "a", "c", kind="fixed", limit=""),
+            parts.ros2_control(names),
+        )
+    )
+    setup = set_up_robot(str(file))
+    assert not isinstance(setup.controllers, Path)
+    assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["left"]
+
+
+def test_made_up_controllers_take_the_joints_that_the_hardware_commands_by_position(
+    tmp_path, parts
+):
+    file = tmp_path / "arm.urdf"
+    velocity_only = parts.ros2_control(["j1"], commands=["velocity"]).replace("sim", "other")
+    file.write_text(
+        parts.robot(
+            parts.link("base"),
+            parts.link("a", 1.0),
+            parts.link("b", 1.0),
+            parts.joint("j0", "base", "a"),
+            parts.joint("j1", "a", "b"),
+            parts.ros2_control(["j0"]),
+            velocity_only,
+        )
+    )
+    setup = set_up_robot(str(file))
+    assert not isinstance(setup.controllers, Path)
+    assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["j0"]
+    assert len(setup.remarks) == 1
+
+
+def test_given_controllers_stand(bare, tmp_path):
+    file = tmp_path / "controllers.yaml"
+    file.write_text(
+        "controller_manager: {ros__parameters: {"
+        "states: {type: joint_state_broadcaster/JointStateBroadcaster}}}"
+    )
+    setup = set_up_robot(str(bare), controllers=str(file))
+    assert setup.controllers == file
+    assert setup.spawn == ("states",)
+
+
+def test_places_in_the_controllers_are_filled_with_the_models_arguments(tmp_path, parts):
+    text = parts.robot(parts.link("$(arg side)base")).replace(
+        ">",
+        ' xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="side" default="left_"/>',
+        1,
+    )
+    (tmp_path / "arm.urdf.xacro").write_text(text)
+    file = tmp_path / "controllers.yaml"
+    file.write_text(
+        "controller_manager: {ros__parameters: {"
+        "${side}states: {type: joint_state_broadcaster/JointStateBroadcaster}}}"
+    )
+
+    def spawned(model_args: str) -> tuple[str, ...]:
+        return set_up_robot(str(tmp_path / "arm.urdf.xacro"), model_args, str(file)).spawn
+
+    assert spawned("") == ("left_states",)
+    assert spawned("side:=right_") == ("right_states",)
+
+
+def test_spawn_names_controllers(bare):
+    assert set_up_robot(str(bare), spawn="a, b c").spawn == ("a", "b", "c")
+    assert set_up_robot(str(bare), spawn="").spawn == ()
+
+
+def test_a_statue_needs_no_position_controller(tmp_path, parts):
+    file = tmp_path / "statue.urdf"
+    file.write_text(parts.robot(parts.link("base", 1.0)))
+    setup = set_up_robot(str(file))
+    assert setup.spawn == ("joint_state_broadcaster",)
+    assert "no joint can be commanded" in setup.remarks[0]
+
+
+def test_files_beside_the_model_and_in_its_package_are_found(bare, tmp_path):
+    setup = set_up_robot(str(bare), package_path=f"{tmp_path / 'x'}:{tmp_path / 'y'}")
+    assert setup.package_path[:2] == (tmp_path / "x", tmp_path / "y")
+    assert setup.package_path[2:] == (tmp_path, tmp_path.parent, tmp_path.parent.parent)
+
+
+def test_xacro_arguments_are_passed_on(tmp_path):
+    file = tmp_path / "a.urdf.xacro"
+    file.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="side" '
+        'default="left"/><link name="$(arg side)_hand"/></robot>'
+    )
+    assert "a hand" in set_up_robot(str(file), "side:='a hand'").description.replace("_", " ")
+
+
+def test_arguments_are_words_of_name_and_value():
+    assert model_arguments(["a:=1", "b:=two words", "c:="]) == {"a": "1", "b": "two words", "c": ""}
+
+
+@pytest.mark.parametrize("words", ["a", "a=1", ":=1", "a:='1"])
+def test_what_is_no_argument_is_refused(bare, words):
+    with pytest.raises(SettingsError, match=r"NAME:=VALUE|No closing quotation"):
+        set_up_robot(str(bare), words)
+
+
+def test_a_missing_model_is_named():
+    with pytest.raises(XacroError, match=r"cannot read /no/such\.urdf"):
+        set_up_robot("/no/such.urdf")
+
+
+def test_folders_are_parted_by_colons():
+    assert folders("/a:/b c::~") == (Path("/a"), Path("/b c"), Path.home())

@@ -1,0 +1,61 @@
+"""The file that names the robots of one world."""
+
+import pytest
+
+from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.controllers_file import controllers_below
+from arm_gazebo.launching.robots_file import RobotRequest, read_robots_file
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "robots.yaml"
+
+
+def test_robots_by_namespace_with_files_beside_the_file(file, tmp_path):
+    file.write_text(
+        "left: {model: arm.urdf, controllers: c.yaml, pose: [0, 1, 0, 0, 0, 1.5]}\n"
+        "right: {model: /a/arm.urdf, model_args: 'prefix:=right_', base: free}\n"
+        "third: {model: package://a/arm.urdf}\n"
+    )
+    robots = read_robots_file(file)
+    assert robots["left"] == RobotRequest(
+        model=str(tmp_path / "arm.urdf"),
+        controllers=str(tmp_path / "c.yaml"),
+        pose=(0.0, 1.0, 0.0, 0.0, 0.0, 1.5),
+    )
+    assert robots["right"] == RobotRequest("/a/arm.urdf", "prefix:=right_", base="free")
+    assert robots["third"].model == "package://a/arm.urdf"
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("", "names no robots"),
+        ("- 1", "names no robots"),
+        ("a: [", "is not YAML"),
+        ("left: 1", "'left' has no model"),
+        ("left: {}", "'left' has no model"),
+        ("a/b: {model: x}", "'a/b': no namespace"),
+        ("left: {model: x, modelargs: y}", "has the key 'modelargs'; it takes model, model_args"),
+        ("left: {model: x, pose: here}", "pose takes x y z roll pitch yaw, not 'here'"),
+    ],
+)
+def test_nonsense_is_a_sentence(file, content, sentence):
+    file.write_text(content)
+    with pytest.raises(SettingsError, match=sentence):
+        read_robots_file(file)
+
+
+def test_a_missing_file_is_named(file):
+    with pytest.raises(SettingsError, match=r"cannot read .*robots\.yaml"):
+        read_robots_file(file)
+
+
+def test_nodes_of_a_controllers_file_go_below_the_namespace(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_text(
+        "controller_manager: {ros__parameters: {a: {type: x/Y}}}\n"
+        "/elsewhere/a: {ros__parameters: {joints: [j]}}\n"
+    )
+    assert list(controllers_below("left", path)) == ["/left/controller_manager", "/elsewhere/a"]

@@ -1,0 +1,125 @@
+import numpy as np
+import pytest
+
+from arm_description.robot import Inertial, Pose
+from arm_gazebo.robot.inertia_repair import missing_inertia, repair_inertia
+
+
+def inertial(ixx, iyy, izz, ixy=0.0, ixz=0.0, iyz=0.0, mass=1.0, origin=Pose()):  # noqa: B008
+    return Inertial(mass, origin, (ixx, ixy, ixz, iyy, iyz, izz))
+
+
+def tensor(inertia):
+    """Return the inertia matrix in the link's frame, shape (3, 3)."""
+    w, x, y, z = inertia.quaternion
+    axes = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return axes @ np.diag(inertia.moments) @ axes.T
+
+
+def test_possible_inertia_is_kept_to_the_digit():
+    inertia = repair_inertia(inertial(0.02, 0.03, 0.04, 0.002, -0.001, 0.003))
+    expected = [[0.02, 0.002, -0.001], [0.002, 0.03, 0.003], [-0.001, 0.003, 0.04]]
+    assert tensor(inertia) == pytest.approx(np.array(expected))
+    assert inertia.remarks == ()
+
+
+def test_origin_turns_and_moves_the_inertia():
+    origin = Pose((0.1, 0.2, 0.3), (0.0, 0.0, np.pi / 2))
+    inertia = repair_inertia(inertial(0.02, 0.03, 0.04, origin=origin))
+    assert tensor(inertia) == pytest.approx(np.diag([0.03, 0.02, 0.04]))
+    assert inertia.position.tolist() == [0.1, 0.2, 0.3]
+
+
+def test_triangle_inequality_is_repaired_and_said():
+    inertia = repair_inertia(inertial(0.001, 0.001, 0.01))
+    assert sorted(inertia.moments) == pytest.approx([0.005, 0.005, 0.01])
+    assert (
+        "0.01 kg m2 about one principal axis is more than about the other two" in inertia.remarks[0]
+    )
+
+
+def test_rounded_decimals_are_no_remark():
+    inertia = repair_inertia(inertial(0.005, 0.0049999, 0.01))
+    assert inertia.remarks == ()
+    assert inertia.moments[0] + inertia.moments[1] >= inertia.moments[2]
+
+
+def test_negative_moment_is_repaired_and_said():
+    inertia = repair_inertia(inertial(-0.01, 0.01, 0.01))
+    assert inertia.moments.min() > 0
+    assert "below 0 (-0.01 kg m2)" in inertia.remarks[0]
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    [inertial(0.01, 0.01, 0.01, iyz=1e308), inertial(1e308, 1e308, 0.01, ixy=1e308)],
+)
+def test_moments_that_no_float_can_add_up_are_repaired_and_said(nonsense):
+    inertia = repair_inertia(nonsense)
+    assert np.isfinite(inertia.moments).all()
+    assert "its inertia is impossible" in inertia.remarks[-1]
+
+
+def test_no_inertia_at_all_is_said():
+    inertia = repair_inertia(inertial(0, 0, 0))
+    assert inertia.moments.tolist() == [1e-6] * 3
+    assert "it has no inertia" in inertia.remarks[0]
+
+
+def test_mass_of_zero_is_said():
+    inertia = repair_inertia(inertial(0.01, 0.01, 0.01, mass=0.0))
+    assert inertia.mass == 1e-3
+    assert "a mass of 0 kg is not above 0" in inertia.remarks[0]
+
+
+def test_inertia_in_the_wrong_unit_is_used_with_a_warning():
+    inertia = repair_inertia(inertial(1e8, 1e8, 1e8, mass=0.1))
+    assert inertia.moments == pytest.approx([1e8] * 3)
+    assert "looks like a mesh in millimetres" in inertia.remarks[0]
+
+
+def test_inertia_in_the_wrong_unit_is_taken_from_the_shapes_where_there_are_any():
+    box = np.array([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]])
+    inertia = repair_inertia(inertial(1e8, 1e8, 1e8, mass=0.1), box)
+    assert inertia.moments == pytest.approx([0.1 * 0.2**2 / 6] * 3)
+    assert "that of its bounding box is used" in inertia.remarks[0]
+
+
+def test_missing_mass_goes_by_size():
+    inertia = missing_inertia(np.array([[0, 0, 0], [0.1, 0.1, 1.0]]))
+    assert inertia.mass == pytest.approx(3.0)
+    assert inertia.position == pytest.approx([0.05, 0.05, 0.5])
+
+
+def test_mere_frame_gets_next_to_nothing():
+    inertia = missing_inertia(None)
+    assert inertia.mass == 1e-3
+    assert inertia.moments.tolist() == [1e-6] * 3
+
+
+def test_links_are_repaired_in_a_model(parts):
+    cube = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    urdf = parts.robot(
+        parts.link("base"),
+        f'<link name="moving">{cube}</link>',
+        '<link name="frame"/>',
+        '<link name="tool"/>',
+        parts.link("weight", 2.0),
+        parts.joint("j", "base", "moving"),
+        parts.joint("k", "moving", "frame"),
+        parts.joint("l", "moving", "tool"),
+        parts.joint("m", "tool", "weight", "fixed"),
+    )
+    built = parts.build(urdf)
+    assert built.model.body("moving").mass[0] == pytest.approx(0.3)
+    assert built.model.body("frame").mass[0] == pytest.approx(1e-3)
+    # What is fixed to it gives the tool its mass.
+    assert built.model.body("tool").mass[0] == 0
+    remarks = [str(finding) for finding in built.report.warnings]
+    assert [remark.partition(" (")[0] for remark in remarks] == ["link 'moving'", "link 'frame'"]

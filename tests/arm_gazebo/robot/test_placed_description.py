@@ -1,0 +1,32 @@
+"""Where the description of one of several robots has its root."""
+
+import numpy as np
+import pytest
+
+from arm_description.urdf import parse_urdf
+from arm_gazebo.robot.placed_description import placed
+
+BASE = "<link name='base'/>"
+ON_WORLD = f"""<robot name='r'><link name='world'/>{BASE}<joint name='stand' type='fixed'>
+  <parent link='world'/><child link='base'/><origin xyz='1 0 0' rpy='0 0 0.5'/></joint></robot>"""
+POSE = (0.0, 2.0, 0.5, 0.0, 0.0, np.pi / 2)
+
+
+def test_a_root_is_fixed_to_the_world():
+    robot = parse_urdf(placed(f"<robot name='r'>{BASE}</robot>", POSE))
+    (joint,) = robot.children("world")
+    assert (robot.root, joint.child, joint.type) == ("world", "base", "fixed")
+    assert joint.origin.xyz == pytest.approx((0.0, 2.0, 0.5))
+    assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2))
+
+
+def test_what_stands_on_a_world_of_its_own_is_moved_with_it():
+    (joint,) = parse_urdf(placed(ON_WORLD, POSE)).children("world")
+    assert joint.origin.xyz == pytest.approx((0.0, 3.0, 0.5))
+    assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2 + 0.5))
+
+
+def test_without_a_pose_it_stands_where_it_says():
+    (joint,) = parse_urdf(placed(ON_WORLD, ())).children("world")
+    assert joint.origin.xyz == pytest.approx((1.0, 0.0, 0.0))
+    assert joint.origin.rpy == pytest.approx((0.0, 0.0, 0.5))

@@ -1,0 +1,261 @@
+"""Worlds in SDF, as the tutorials write them."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from arm_gazebo.build_report import BuildReport, Outcome
+from arm_gazebo.errors import WorldError
+from arm_gazebo.model.world_file import load_world
+from arm_gazebo.sdf.world import read_sdf_world
+
+GROUND = """<model name="ground_plane"><static>true</static><link name="link">
+  <collision name="collision"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane>
+  </geometry></collision>
+  <visual name="visual"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane>
+  </geometry><material><ambient>0.8 0.8 0.8 1</ambient><diffuse>0.8 0.8 0.8 1</diffuse></material>
+  </visual>
+</link></model>
+"""
+
+
+def shape(geometry, pose="0 0 0 0 0 0", more=""):
+    both = f"<geometry>{geometry}</geometry><pose>{pose}</pose>"
+    return (
+        f'<collision name="c">{both}{more}</collision><visual name="v">{both}'
+        "<material><diffuse>1 0 0 1</diffuse></material></visual>"
+    )
+
+
+CYLINDER = shape("<cylinder><radius>0.015</radius><length>0.35</length></cylinder>")
+INERTIAL = (
+    "<inertial><mass>0.05</mass><inertia><ixx>5e-4</ixx><iyy>5e-4</iyy><izz>4e-6</izz></inertia>"
+    "</inertial>"
+)
+BOX = shape("<box><size>0.2 0.4 0.6</size></box>")
+
+
+def model(name, pose="0 0 0 0 0 0", link=BOX, head="", attributes=""):
+    return (
+        f'<model name="{name}"><pose {attributes}>{pose}</pose>{head}'
+        f'<link name="link">{link}</link></model>'
+    )
+
+
+STATIC = "<static>true</static>"
+
+
+@pytest.fixture
+def write(tmp_path):
+    def file(content, name="lab.sdf"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f'<?xml version="1.0"?>\n<sdf version="1.7">\n{content}\n</sdf>\n')
+        return path
+
+    return file
+
+
+@pytest.fixture
+def world(write):
+    def made(*parts):
+        report = BuildReport()
+        path = write('<world name="lab">\n{}\n</world>'.format("\n".join(parts)))
+        compiled = read_sdf_world(path, report).compile()
+        data = mujoco.MjData(compiled)
+        mujoco.mj_forward(compiled, data)
+        return compiled, data, report
+
+    return made
+
+
+def test_free_model_stands_on_the_ground(world):
+    free = model("red_cylinder", "0.22 0.12 0.175 0 0 0", INERTIAL + CYLINDER)
+    compiled, data, _ = world(GROUND, free)
+    assert compiled.body("red_cylinder::link").mass[0] == pytest.approx(0.05)
+    mujoco.mj_step(compiled, data, nstep=500)
+    assert data.body("red_cylinder").xpos == pytest.approx([0.22, 0.12, 0.175], abs=1e-3)
+
+
+def test_a_link_without_inertial_weighs_what_it_does_in_gazebo(world):
+    compiled, _, report = world(model("crate"))
+    crate = compiled.body("crate::link")
+    assert crate.mass[0] == 1.0
+    assert crate.inertia == pytest.approx([1.0, 1.0, 1.0])
+    assert report.warnings == ()
+
+
+def test_static_model_does_not_fall(world):
+    compiled, data, _ = world(model("shelf", "1 2 3 0 0 1.5708", head=STATIC))
+    assert compiled.nv == 0
+    assert data.body("shelf::link").xpos == pytest.approx([1, 2, 3])
+    assert data.body("shelf::link").xmat.reshape(3, 3)[:, 0] == pytest.approx([0, 1, 0], abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("geometry", "kind", "size"),
+    [
+        ("<box><size>0.2 0.4 0.6</size></box>", "BOX", [0.1, 0.2, 0.3]),
+        ("<sphere><radius>0.3</radius></sphere>", "SPHERE", [0.3, 0, 0]),
+        (
+            "<cylinder><radius>0.1</radius><length>0.6</length></cylinder>",
+            "CYLINDER",
+            [0.1, 0.3, 0],
+        ),
+        ("<capsule><radius>0.1</radius><length>0.6</length></capsule>", "CAPSULE", [0.1, 0.3, 0]),
+    ],
+)
+def test_shapes(world, geometry, kind, size):
+    compiled, _, _ = world(model("thing", link=shape(geometry), head=STATIC))
+    assert list(compiled.geom_type) == [getattr(mujoco.mjtGeom, f"mjGEOM_{kind}")] * 2
+    assert compiled.geom_size == pytest.approx(np.array([size, size]))
+    assert sorted(compiled.geom_contype) == [0, 1]
+
+
+def test_colour_and_friction(world):
+    slippery = "<surface><friction><ode><mu>0.2</mu><mu2>0.2</mu2></ode></friction></surface>"
+    link = shape("<sphere><radius>0.3</radius></sphere>", more=slippery)
+    compiled, _, _ = world(model("thing", link=link, head=STATIC))
+    [seen] = np.flatnonzero(compiled.geom_contype == 0)
+    [touched] = np.flatnonzero(compiled.geom_contype)
+    assert compiled.geom_rgba[seen] == pytest.approx([1, 0, 0, 1])
+    assert compiled.geom_friction[touched][0] == pytest.approx(0.2)
+
+
+def test_colours_of_gazebo_are_known_by_name_and_transparency_counts(world):
+    blue = "<material><script><name>Gazebo/Blue</name></script></material>"
+    geometry = "<geometry><sphere><radius>1</radius></sphere></geometry>"
+    link = f'<visual name="v">{geometry}<transparency>0.25</transparency>{blue}</visual>'
+    compiled, _, _ = world(model("thing", link=link, head=STATIC))
+    assert compiled.geom_rgba[0] == pytest.approx([0, 0, 1, 0.75])
+
+
+def test_poses_are_relative_to_models_and_frames(world):
+    _, data, _ = world(
+        '<frame name="table"><pose relative_to="desk">0 0 1 0 0 0</pose></frame>',
+        model("desk", "2 0 0 0 0 1.5707963", head=STATIC),
+        model("cup", "0.5 0 0 0 0 0", head=STATIC, attributes='relative_to="table"'),
+        model("hat", "0 0 0 90 0 0", head=STATIC, attributes='degrees="true"'),
+    )
+    assert data.body("cup").xpos == pytest.approx([2, 0.5, 1], abs=1e-6)
+    assert data.body("hat").xmat.reshape(3, 3)[:, 2] == pytest.approx([0, -1, 0], abs=1e-6)
+
+
+def test_links_of_a_model_keep_their_frames(world):
+    _, data, _ = world(
+        '<model name="lamp"><static>true</static><link name="foot"/>'
+        '<link name="head"><pose relative_to="foot">0 0 2 0 0 0</pose></link></model>'
+    )
+    assert data.body("lamp::head").xpos == pytest.approx([0, 0, 2])
+
+
+def test_included_model_is_found_on_the_resource_path(world, write, tmp_path, monkeypatch):
+    write(model("can", link=INERTIAL + CYLINDER, head=STATIC), "models/can/model.sdf")
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
+    include = "<include><uri>model://can</uri>{}</include>"
+    compiled, data, _ = world(
+        include.format("<pose>1 0 0 0 0 0</pose>"),
+        include.format("<name>second</name><static>false</static><pose>2 0 0 0 0 0</pose>"),
+    )
+    assert data.body("can").xpos == pytest.approx([1, 0, 0])
+    assert data.body("second").xpos == pytest.approx([2, 0, 0])
+    assert compiled.nv == 6
+
+
+def test_mesh_beside_its_file_is_found(world, write, tmp_path, monkeypatch):
+    write(
+        model("wedge", link=shape("<mesh><uri>wedge.obj</uri><scale>2 2 2</scale></mesh>")),
+        "models/wedge/model.sdf",
+    )
+    (tmp_path / "models/wedge/wedge.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    )
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
+    compiled, _, _ = world("<include><uri>model://wedge</uri></include>")
+    assert set(compiled.geom_type) == {int(mujoco.mjtGeom.mjGEOM_MESH)}
+    assert np.ptp(compiled.mesh_vert[:4], axis=0).max() == pytest.approx(2 * 2**0.5, abs=0.3)
+
+
+def test_sun_and_ground_of_gazebo_need_no_files(world, monkeypatch):
+    monkeypatch.delenv("GZ_SIM_RESOURCE_PATH", raising=False)
+    fuel = "https://fuel.gazebosim.org/1.0/OpenRobotics/models"
+    compiled, _, _ = world(
+        f"<include><uri>{fuel}/Sun</uri></include>",
+        "<include><uri>model://ground_plane</uri></include>",
+    )
+    assert compiled.light("sun").dir == pytest.approx(np.array([-0.5, 0.1, -0.9]) / 1.07**0.5)
+    assert sorted(compiled.geom_contype) == [0, 1]
+
+
+def test_lights(world):
+    compiled, _, _ = world(
+        '<light name="lamp" type="point"><pose>0 0 2 0 0 0</pose><diffuse>0.5 0.4 0.3 1</diffuse>'
+        "<attenuation><constant>0.5</constant><linear>0.1</linear><quadratic>0.01</quadratic>"
+        "</attenuation></light>"
+    )
+    assert compiled.light("lamp").pos == pytest.approx([0, 0, 2])
+    assert compiled.light("lamp").diffuse == pytest.approx([0.5, 0.4, 0.3])
+    assert compiled.light("lamp").attenuation == pytest.approx([0.5, 0.1, 0.01])
+
+
+def test_what_is_not_simulated_is_listed_and_not_fatal(world):
+    _, _, report = world(
+        '<physics name="fast" type="ode"/>', '<plugin name="a" filename="b"/>' * 2, GROUND
+    )
+    listed = [str(finding) for finding in report.findings if finding.outcome is Outcome.DROPPED]
+    assert listed == [
+        "physics 'fast' in lab.sdf (line 4): it is not simulated",
+        "plugin 'a' in lab.sdf and 1 more (line 5): it is not simulated",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (model("a", "0 0 0"), r"<pose> of model 'a' has '0 0 0': 3 values, not 6"),
+        (model("a", "0 0 x 0 0 0"), "has 'x', which is not a finite number"),
+        (model("a", link=shape("<box/>")), "<box> of .* needs a <size>"),
+        (model("a", link=shape("<box><size>0 1 1</size></box>")), "they must be above 0"),
+        (model("a", link=shape("<sphere><radius>-1</radius></sphere>")), "-1; it must be above 0"),
+        (model("a", attributes='relative_to="b"'), "relative to 'b', not one of a"),
+        (model("a", attributes='relative_to="a"'), "in a circle to itself"),
+        (model("a") + model("a"), "second one called 'a'"),
+        ("<include><uri>model://nowhere</uri></include>", "cannot be had: no file"),
+        ("<include/>", "needs a <uri>"),
+        (GROUND.replace("<static>true</static>", ""), "a plane cannot move"),
+        ('<light name="l" type="laser"/>', "type 'laser', which is none of directional"),
+    ],
+)
+def test_mistakes_are_named_with_file_and_line(world, content, said):
+    with pytest.raises(WorldError, match=rf"lab\.sdf, line 4: (.|\n)*{said}"):
+        world(content)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("no xml", "not XML"),
+        ("<mujoco/>", "is no SDF"),
+        ("<sdf/>", "needs a <world>"),
+        ('<!DOCTYPE sdf [<!ENTITY a SYSTEM "/etc/passwd">]><sdf>&a;</sdf>', "DOCTYPE"),
+    ],
+)
+def test_what_is_no_world_is_refused(tmp_path, text, said):
+    path = tmp_path / "odd.world"
+    path.write_text(text)
+    with pytest.raises(WorldError, match=said):
+        load_world(path)
+
+
+def test_robot_is_put_into_an_sdf_world(parts, write):
+    path = write(f'<world name="lab">{GROUND}{model("shelf", "2 0 0.3 0 0 0")}</world>')
+    built = parts.build(parts.pendulum(), path)
+    assert built.model.body("shelf").dofnum[0] == 6
+    assert built.model.body("bob").dofnum[0] == 1
+
+
+@pytest.mark.parametrize("shipped", ["empty", "pick_and_place_demo", "house"])
+def test_friction_holds_as_in_the_shipped_worlds(world, shipped):
+    here, there = world(GROUND)[0].opt, load_world(shipped).compile().opt
+    assert (here.cone, here.impratio) == (mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0)
+    assert (there.cone, there.impratio) == (here.cone, here.impratio)

@@ -1,0 +1,219 @@
+import numpy as np
+import pytest
+
+from arm_gazebo.world.entity import Category, EntityNote
+from arm_gazebo.world.keeper import SpawnRequest
+from arm_gazebo.world.refusal import Refusal, RefusedError
+
+
+@pytest.fixture
+def world(kept, parts):
+    return kept(robot=parts.pendulum())
+
+
+def refusal(action) -> tuple[Refusal, str]:
+    """Return why an action is refused, and check that the sentence is one."""
+    with pytest.raises(RefusedError) as caught:
+        action()
+    message = str(caught.value)
+    assert message
+    assert "Traceback" not in message
+    return caught.value.refusal, message
+
+
+def test_robots_and_things_of_the_world_are_entities(world):
+    categories = {e.name: e.note.category for e in world.keeper.entities}
+    assert categories["bench"] is Category.ROBOT
+    assert categories["red_cylinder"] is Category.DYNAMIC_OBJECT
+    assert categories["mustard"] is Category.STATIC_OBJECT
+
+
+@pytest.mark.parametrize("text", ["crate", "chest", "ball", "puck"])
+def test_a_spawned_thing_is_where_it_was_put_and_falls(world, things, text):
+    assert world.spawn("thing", getattr(things, text), things.at(2, 1, 1)) == "thing"
+    assert world.where("thing") == pytest.approx([2, 1, 1], abs=1e-9)
+    world.arm.run(0.2)
+    assert world.where("thing")[2] == pytest.approx(1 - 0.5 * 9.81 * 0.04, abs=0.02)
+
+
+def test_a_static_thing_stays_where_it_was_put(world, things):
+    world.spawn("post", things.post, things.at(2, 1, 1))
+    world.arm.run(0.2)
+    assert world.where("post") == pytest.approx([2, 1, 1])
+    assert world.keeper.entities.find("post").note.category is Category.STATIC_OBJECT
+
+
+def test_poses_may_be_told_in_the_frame_of_an_entity_or_of_a_link(world, things):
+    can = world.where("coke_can")
+    world.spawn("a", things.post, things.at(z=0.5), frame="coke_can")
+    assert world.where("a") == pytest.approx(can + np.array([0, 0, 0.5]), abs=1e-6)
+    world.spawn("b", things.post, things.at(), frame="a::base")
+    assert world.where("b") == pytest.approx(world.where("a"))
+
+
+def test_names_are_kept_unique(world, things):
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    kind, message = refusal(lambda: world.spawn("crate", things.crate, things.at(3, 1, 1)))
+    assert kind is Refusal.NAME_NOT_UNIQUE
+    assert "'crate'" in message
+    for _ in range(2):
+        world.spawn("crate", things.crate, things.at(3, 1, 1), allow_renaming=True)
+    assert {"crate", "crate_2", "crate_3"} <= set(world.names())
+
+
+def test_a_thing_without_a_name_gets_one_where_that_is_allowed(world, things):
+    assert world.spawn("", things.puck, things.at(2, 1, 1), allow_renaming=True) == "thing"
+    assert refusal(lambda: world.spawn("", things.puck, things.at()))[0] is Refusal.NAME_INVALID
+
+
+@pytest.mark.parametrize("name", ["a b", "a/b", "a::b", "ä", "x" * 101, "\n", "<a>"])
+def test_names_that_are_none_are_refused(world, things, name):
+    assert refusal(lambda: world.spawn(name, things.crate, things.at()))[0] is Refusal.NAME_INVALID
+
+
+def test_the_name_of_the_world_is_taken(world, things):
+    kind, _ = refusal(lambda: world.spawn("world", things.crate, things.at()))
+    assert kind is Refusal.NAME_NOT_UNIQUE
+
+
+@pytest.mark.parametrize("namespace", ["1a", "a//b", "a b", "/", "a/"])
+def test_namespaces_that_are_none_are_refused(world, things, namespace):
+    kind, _ = refusal(lambda: world.spawn("a", things.crate, things.at(), namespace=namespace))
+    assert kind is Refusal.NAMESPACE_INVALID
+
+
+def test_an_unknown_frame_is_refused_before_anything_is_read(world, things):
+    kind, message = refusal(lambda: world.spawn("a", "<nonsense", things.at(), frame="nowhere"))
+    assert kind is Refusal.INVALID_POSE
+    assert "'nowhere'" in message
+
+
+def test_deleted_things_are_gone_and_their_names_free(world, things):
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    world.keeper.delete("crate")
+    world.keeper.delete("red_cylinder")
+    assert not {"crate", "red_cylinder"} & set(world.names())
+    assert refusal(lambda: world.keeper.delete("crate"))[0] is Refusal.NOT_FOUND
+    world.spawn("red_cylinder", things.puck, things.at(2, 1, 1))
+    assert world.where("red_cylinder") == pytest.approx([2, 1, 1])
+
+
+def test_a_robot_cannot_be_deleted(world):
+    kind, message = refusal(lambda: world.keeper.delete("bench"))
+    assert kind is Refusal.FAILED
+    assert "robot" in message
+
+
+def test_a_free_thing_is_moved_and_pushed_while_time_stands_still(world, things):
+    world.keeper.place("coke_can", things.at(1, 1, 1), "", np.array([1.0, 0, 0, 0, 0, 2.0]))
+    motion = world.keeper.motions().motion("coke_can")
+    assert motion.pose[:3, 3] == pytest.approx([1, 1, 1])
+    assert motion.linear == pytest.approx([1, 0, 0])
+    assert motion.angular == pytest.approx([0, 0, 2])
+
+
+def test_a_velocity_alone_leaves_a_thing_where_it_is(world):
+    before = world.where("coke_can")
+    world.keeper.place("coke_can", None, "", np.array([0, 0, 3.0, 0, 0, 0]))
+    assert world.where("coke_can") == pytest.approx(before)
+    world.arm.run(0.1)
+    assert world.where("coke_can")[2] > before[2] + 0.2
+
+
+def test_a_pose_alone_stops_a_thing(world, things):
+    world.keeper.place("coke_can", None, "", np.ones(6))
+    world.keeper.place("coke_can", things.at(1, 1, 1), "", None)
+    assert world.keeper.motions().motion("coke_can").linear == pytest.approx(np.zeros(3))
+
+
+def test_velocities_turn_with_the_frame_that_they_are_told_in(world, things):
+    turned = things.at(2, 2, 1)
+    turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    world.spawn("post", things.post, turned)
+    world.keeper.place("coke_can", things.at(1, 0, 0), "post", np.array([1.0, 0, 0, 1, 0, 0]))
+    motion = world.keeper.motions().motion("coke_can")
+    assert motion.pose[:3, 3] == pytest.approx([2, 3, 1])
+    assert motion.linear == pytest.approx([0, 1, 0])
+    assert motion.angular == pytest.approx([0, 1, 0])
+
+
+def test_what_stands_still_can_be_put_elsewhere(world, things):
+    world.spawn("post", things.post, things.at(2, 1, 1))
+    for name in ("post", "mustard"):
+        world.keeper.place(name, things.at(3, 2, 1), "", None)
+        assert world.where(name) == pytest.approx([3, 2, 1])
+    world.arm.run(0.1)
+    assert world.where("mustard") == pytest.approx([3, 2, 1])
+
+
+def test_what_cannot_move_takes_no_velocity(world):
+    kind, _ = refusal(lambda: world.keeper.place("mustard", None, "", np.ones(6)))
+    assert kind is Refusal.FAILED
+
+
+def test_a_robot_that_is_bolted_down_stays(world, things):
+    kind, message = refusal(lambda: world.keeper.place("bench", things.at(1), "", None))
+    assert kind is Refusal.FAILED
+    assert "bolted" in message
+
+
+def test_reset_brings_the_world_of_the_start_back(world, things):
+    start = world.where("coke_can")
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    world.keeper.delete("red_cylinder")
+    world.keeper.place("mustard", things.at(3, 2, 1), "", None)
+    world.keeper.place("coke_can", things.at(1, 1, 1), "", None)
+    before_s = world.arm.simulation.time_s
+    world.keeper.reset(spawned=True, state=True)
+    assert sorted(world.names()) == sorted(
+        ["bench", "red_cylinder", "mustard", "cheezit_big_original", "cardboard_box", "coke_can"]
+    )
+    assert world.where("coke_can") == pytest.approx(start)
+    assert world.where("mustard")[0] == pytest.approx(0.7)
+    assert world.arm.simulation.time_s == before_s
+
+
+def test_reset_of_the_state_alone_keeps_what_was_spawned(world, things):
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    world.arm.run(0.3)
+    world.keeper.reset(spawned=False, state=True)
+    assert world.where("crate") == pytest.approx([2, 1, 1])
+
+
+def test_what_a_client_says_about_an_entity_is_kept_until_it_goes(world, things):
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    note = EntityNote(Category.DYNAMIC_OBJECT, "fragile", ("glass",))
+    world.keeper.describe("crate", note)
+    world.spawn("other", things.crate, things.at(3, 1, 1))
+    assert world.keeper.entities.find("crate").note == note
+    world.keeper.delete("crate")
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    assert world.keeper.entities.find("crate").note.description == "spawned from URDF"
+
+
+def test_nothing_becomes_a_robot_by_being_called_one(world):
+    note = EntityNote(Category.ROBOT)
+    assert refusal(lambda: world.keeper.describe("mustard", note))[0] is Refusal.FAILED
+
+
+def test_bounds_follow_the_entity(world, things):
+    world.spawn("crate", things.crate, things.at(2, 1, 1))
+    entity = world.keeper.entities.find("crate")
+    motions = world.keeper.motions()
+    assert motions.bounds(entity).ravel() == pytest.approx([1.95, 0.95, 0.95, 2.05, 1.05, 1.05])
+    own = motions.bounds(entity, motions.pose("crate::base"))
+    assert own.ravel() == pytest.approx([-0.05] * 3 + [0.05] * 3)
+
+
+def test_a_thing_that_does_not_fit_leaves_everything_as_it_was(world, things):
+    model = world.keeper.model
+    assert refusal(lambda: world.spawn("a", "<mujoco/>", things.at()))[0] is Refusal.UNREADABLE
+    assert world.keeper.model is model
+    assert world.arm.simulation.model is model
+
+
+def test_a_file_is_read_by_its_uri(world, things, tmp_path):
+    file = tmp_path / "crate.urdf"
+    file.write_text(things.crate)
+    request = SpawnRequest("crate", file.as_uri(), "<nonsense", things.at(2, 1, 1))
+    assert world.keeper.spawn(request) == "crate"
