@@ -17,7 +17,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 DESCRIBE = Path(__file__).with_name("describe_installation.py")
-TIMEOUT_S = 150.0
+TIMEOUT_S = 300.0
 
 
 @dataclass(frozen=True)

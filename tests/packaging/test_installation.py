@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.slow
+# An installation builds everything, on a machine that may be busy with something else.
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
 
 
 def test_every_package_finds_its_share_folder(installation):
