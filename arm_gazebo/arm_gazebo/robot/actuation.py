@@ -14,6 +14,8 @@ from arm_gazebo.robot.mimic_joints import SCALAR_TYPES, Following
 
 DEFAULT_SPEED = {"revolute": 3.0, "continuous": 3.0, "prismatic": 0.5}
 """Highest speed, in rad/s or m/s, of a joint whose URDF gives none."""
+BOUNDLESS = 1e9
+"""A limit of speed or effort, in SI units, from which on it is none: no joint comes near it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +80,11 @@ def _drive(joint: Joint, report: BuildReport) -> Drive:
     velocity = joint.limit.velocity if joint.limit else 0.0
     effort = joint.limit.effort if joint.limit else 0.0
     element = f"joint '{joint.name}'"
-    if not (math.isfinite(velocity) and velocity > 0):
+    if not 0 < velocity < BOUNDLESS:
         velocity = DEFAULT_SPEED[joint.type]
         unit = "m/s" if joint.type == "prismatic" else "rad/s"
         report.repair(element, f"it has no velocity limit; {velocity:g} {unit} is used", joint.line)
-    if not (math.isfinite(effort) and effort > 0):
+    if not 0 < effort < BOUNDLESS:
         effort = math.inf
         report.repair(
             element, "it has no effort limit; its drive is as strong as need be", joint.line
