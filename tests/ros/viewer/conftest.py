@@ -20,7 +20,8 @@ VIEWPORT = {"width": 1280, "height": 800}
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
 collect_ignore_glob = [] if BROWSER else ["test_*.py"]
 
-ARGUMENTS = ("--disable-gpu", "--no-sandbox")
+# Drawing in software on a busy machine takes its time, which is no reason to give the context up.
+ARGUMENTS = ("--disable-gpu", "--disable-gpu-watchdog", "--no-sandbox")
 CAMERA_PIXELS = """() => {
   const image = document.querySelector("img[src]");
   if (!image || image.naturalWidth < 100) return [];
