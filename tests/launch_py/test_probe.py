@@ -74,6 +74,13 @@ def segments_of(pid: int) -> set[Path]:
             "node.create_service(Trigger, 'serve', lambda _, response: response)",
             "ServiceAvailable('serve')",
         ),
+        (
+            "from control_msgs.action import GripperCommand\n"
+            "from rclpy.action import ActionServer\n"
+            "result = GripperCommand.Result()\n"
+            "server = ActionServer(node, GripperCommand, 'move', lambda _: result)",
+            "ActionAvailable('move')",
+        ),
     ],
 )
 def test_a_condition_is_met(launch, body, condition):

@@ -206,8 +206,7 @@ def install_by_colcon(folder: Path, _wheel: Path) -> Installation:
     python = make_environment(folder / "venv")
     pip("install", "colcon-common-extensions", into=python, folder=folder)
     colcon = folder / "venv/bin/colcon"
-    folders = [*sources.packages, *sources.data_packages.values()]
-    run([colcon, "build", "--base-paths", *folders], sources.root, bare())
+    run([colcon, "build"], sources.root, bare())
     install = sources.root / "install"
     sourced = run(["bash", "-c", f". {install}/local_setup.bash && env -0"], folder, bare())
     variables = dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)

@@ -60,3 +60,21 @@ def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):
     assert "Traceback" not in run.stderr
     assert run.stdout.splitlines()[-1] == "1 [] []"
     assert run.returncode == 0
+
+
+def test_a_robot_without_hardware_is_refused_with_what_it_lacks(tmp_path):
+    path = tmp_path / "parameters.yaml"
+    settings = {"robot_description": "<robot name='bare'><link name='base'/></robot>"}
+    path.write_text(yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}}))
+    run = subprocess.run(
+        [
+            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node"),
+            *("--ros-args", "--params-file", str(path)),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=90,
+    )
+    assert run.returncode == 1
+    assert "the robot description has no <ros2_control> block" in run.stderr
+    assert "Traceback" not in run.stderr
