@@ -55,7 +55,8 @@ def test_a_goal_ends_after_its_time(send: Any, states: Any) -> None:
 def test_a_cancelled_goal_brakes_with_the_given_deceleration(send: Any, states: Any) -> None:
     send((1.0, HOME)).result()
     goal = send((1000.0, (500.0, 0.0, 0.0, 0.0)))
-    states.wait_until(lambda m: m and m[-1].feedback.velocities[0] > 0.45, "it moves")
+    # It brakes from the measured velocity, which swings for some cycles after the sudden start.
+    states.wait_until(lambda m: m and m[-1].feedback.positions[0] > 0.1, "it moves steadily")
     assert goal.cancel() == 1
     assert goal.result() == (CANCELED, 0, "")
     messages = states.wait_until(
