@@ -74,6 +74,12 @@ def test_launched_processes_may_be_held_up_for_a_while():
     assert tree.findtext(".//d:port_queue_capacity", namespaces=NAMESPACE) == "4096"
 
 
+@pytest.mark.parametrize("name", PROFILES)
+def test_a_profile_holds_up_who_sends_to_us_first_only_briefly(name):
+    tree = etree.parse(profile_path(name))
+    assert tree.findtext(".//d:healthy_check_timeout_ms", namespaces=NAMESPACE) == "150"
+
+
 @pytest.mark.ros
 @pytest.mark.parametrize("name", PROFILES)
 def test_a_profile_is_loaded_without_complaint(name):
