@@ -242,4 +242,8 @@ def _parser(program: str, short_names: Mapping[str, PackagedFile]) -> argparse.A
 def _refuse_unknown_options(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
     if unknown:
         known = parser._option_string_actions
-        raise UsageError(f"no option {unknown[0]}; {describe_known(unknown[0], known)}")
+        text = f"no option {unknown[0]}; {describe_known(unknown[0], known)}"
+        dashes, name = unknown[0][:2], unknown[0][2:].partition("=")[0]
+        if dashes == "--":
+            text += f"; an argument of the launch file is given as {name}:=VALUE"
+        raise UsageError(text)

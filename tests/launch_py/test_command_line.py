@@ -73,6 +73,12 @@ def test_a_missing_required_argument(refused, demo):
 
 def test_an_unknown_option(refused, demo):
     assert "no option --show-arg; did you mean '--show-args'" in refused(str(demo), "--show-arg")
+    assert ":=" not in refused(str(demo), "-x")
+
+
+@pytest.mark.parametrize("words", [("--world", "objects"), ("--world=objects",)])
+def test_an_argument_written_as_an_option(refused, demo, words):
+    assert "an argument of the launch file is given as world:=VALUE" in refused(str(demo), *words)
 
 
 def test_an_equals_sign_without_colon(refused, demo):
