@@ -59,6 +59,7 @@ class FakeRobot:
 
         self.positions = dict.fromkeys(JOINTS, 0.0)
         self.stuck: set[str] = set()
+        self.sent_ns: list[int] = []
         self._context = Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         self._executor = SingleThreadedExecutor(context=self._context)
@@ -80,14 +81,18 @@ class FakeRobot:
         self._executor.add_node(node)
         return node
 
-    def listen(self, name: str = "position_controller") -> list[list[float]]:
-        """Subscribe to the commands as a position controller does; return what will come."""
+    def listen(self, name: str = "position_controller", depth: int = 1) -> list[list[float]]:
+        """Subscribe to the commands as a position controller does; return what will come.
+
+        When the publisher sent each comes to `sent_ns`, of all subscriptions.
+        """
         from rclpy.qos import QoSProfile, ReliabilityPolicy
         from std_msgs.msg import Float64MultiArray
 
         received: list[list[float]] = []
 
-        def take(message: Float64MultiArray) -> None:
+        def take(message: Float64MultiArray, info: dict) -> None:
+            self.sent_ns.append(info["source_timestamp"])
             received.append(list(message.data))
             moving = {
                 joint: position
@@ -96,7 +101,7 @@ class FakeRobot:
             }
             self.positions.update(moving)
 
-        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
         self.node(name).create_subscription(
             Float64MultiArray, "/position_controller/commands", take, qos
         )

@@ -149,7 +149,7 @@ def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):
     program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
     until(lambda: robot.sees("arm_controller_node"), "the node")
     commands = robot.listen("position_controller")
-    until(lambda: commands, "the pose")
+    until(lambda: commands and seen, "the pose at both")
     assert commands == seen == [[0.1, 0.2, 0.3, 0.4]]
     assert program.interrupt() == 0
 

@@ -1,5 +1,7 @@
 """publisher_terminal beside a robot of topics."""
 
+from itertools import pairwise
+
 import pytest
 
 pytestmark = pytest.mark.ros
@@ -8,15 +10,18 @@ MODULE = "publisher_terminal_node"
 PROMPT = "Enter the 4 Joint Variables to send (separated by spaces): "
 
 
-def test_sends_every_line_of_a_pipe_and_ends_with_it(robot, run):
-    commands = robot.listen()
+def test_sends_every_line_of_a_pipe_and_ends_with_it(robot, run, until):
+    # Deeper than the controller's, for a robot that is held up; the publisher's pace is seen below.
+    commands = robot.listen(depth=10)
     robot.describe()
     program = run(MODULE)
     wanted = [[0.1 * step, 0.0, -0.1 * step, 1.0] for step in range(1, 11)]
     program.type("".join(" ".join(map(repr, pose)) + "\n" for pose in wanted))
     program.end_of_input()
     assert program.wait() == 0
+    until(lambda: len(commands) == len(wanted), "the last line")
     assert commands == wanted
+    assert min(after - before for before, after in pairwise(robot.sent_ns)) > 90_000_000
     assert program.output.count("Publishing: [") == len(wanted)
 
 

@@ -22,7 +22,6 @@ EXPECTED_TYPES: dict[str, dict[str, Any]] = yaml.safe_load(
     (FOLDER / "expected_types.yaml").read_text(encoding="utf-8")
 )
 WAIT_TIMEOUT_S = 30.0
-HIGHEST_DOMAIN_ID = 101
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -61,8 +60,8 @@ def load_type() -> Callable[[str], type]:
 
 @pytest.fixture
 def domain_id() -> int:
-    """A domain that no other test process of this machine is likely to use."""
-    return 1 + os.getpid() % HIGHEST_DOMAIN_ID
+    """The domain of the whole session."""
+    return int(os.environ["ROS_DOMAIN_ID"])
 
 
 @pytest.fixture
@@ -152,7 +151,7 @@ def start_peer(ros_environment: dict[str, str]) -> Iterator[Callable[..., subpro
     assert codes == [0] * len(peers)
 
 
-def end(process: subprocess.Popen, timeout_s: float = 10.0) -> int:
+def end(process: subprocess.Popen, timeout_s: float = WAIT_TIMEOUT_S) -> int:
     """Wait for a process that was told to end; kill it if it does not."""
     try:
         return process.wait(timeout_s)

@@ -91,7 +91,9 @@ def test_a_profile_is_loaded_without_complaint(name):
         timeout=60,
         check=False,
     )
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    # Of shared memory of other programs, which may have been killed; no word on the profile.
+    said = [line for line in done.stderr.splitlines() if "RTPS_TRANSPORT_SHM" not in line]
+    assert (done.returncode, done.stdout, said) == (0, "", [])
 
 
 @pytest.mark.parametrize("name", GENERAL)

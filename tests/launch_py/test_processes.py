@@ -154,7 +154,7 @@ def test_when_both_are_killed_the_processes_still_end(launch, waiting):
 
 
 def test_a_hanging_process_gets_sigint_sigterm_sigkill(launch):
-    launched = launch(DEAF.replace("{}", "{'sigterm_timeout': 0.2, 'sigkill_timeout': 0.2}"))
+    launched = launch(DEAF.replace("{}", "{'sigterm_timeout': 2.0, 'sigkill_timeout': 2.0}"))
     launched.wait_for("^ready ")
     launched.signal(signal.SIGTERM)
     assert launched.wait() == 137

@@ -21,4 +21,5 @@ def test_runs_without_home_and_without_any_ros_variable(tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    # Of shared memory of other programs, which may have been killed.
+    assert not [line for line in done.stderr.splitlines() if "RTPS_TRANSPORT_SHM" not in line]

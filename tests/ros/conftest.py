@@ -5,6 +5,7 @@ Nothing here sleeps: every wait is on a condition, with a generous time-out.
 
 import fcntl
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,6 +20,17 @@ import pytest
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
+FIRST_PORT = 7400
+"""Of the first domain."""
+
+
+def is_of_a_domain(name: str) -> bool:
+    """Return whether it is a file of Fast DDS's that programs of other domains do not use, too.
+
+    The ports from 7000 on are theirs as well, and stay where one of theirs was killed.
+    """
+    port = re.search(r"_port(\d+)", name)
+    return "fastrtps" in name and (port is None or int(port[1]) >= FIRST_PORT)
 
 
 class Launched:
@@ -82,7 +94,7 @@ class Launched:
         """The middleware's shared-memory files that the launcher and all below it have mapped."""
         processes = [psutil.Process(self.process.pid), *self.descendants()]
         paths = {Path(m.path) for process in processes for m in process.memory_maps()}
-        return {p for p in paths if p.parent == Path("/dev/shm") and "fastrtps" in p.name}
+        return {p for p in paths if p.parent == Path("/dev/shm") and is_of_a_domain(p.name)}
 
     @staticmethod
     def is_abandoned(file: Path) -> bool:
@@ -246,8 +258,8 @@ class Client:
             lambda: publisher.get_subscription_count() >= matches,
             f"{matches} subscriptions on {topic}",
         )
-        # A best-effort reader may miss what is sent at the very instant of the match.
-        self._stop.wait(0.4)
+        # A best-effort reader misses what is sent before it has matched in its turn.
+        self._stop.wait(1.0)
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
@@ -255,6 +267,8 @@ class Client:
         client = self.node.create_client(service_type, name)
         if not client.wait_for_service(timeout_sec=timeout_s):
             pytest.fail(f"no service {name} within {timeout_s} s")
+        # It may not know of its client yet, and an answer would be lost.
+        self._stop.wait(0.2)
         return self.result_of(client.call_async(request), name, timeout_s)
 
     def run(self, function: Callable[[], object], what: str) -> Any:

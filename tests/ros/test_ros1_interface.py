@@ -34,7 +34,10 @@ def test_four_topics_move_the_arm_and_states_come_at_50_hz(launch, client):
 
     states.clear()
     stamps = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in states.wait_for(50)]
-    assert np.allclose(np.diff(stamps), 0.02)
+    # A subscription may miss one on a busy machine.
+    periods = np.rint(np.diff(stamps) / 0.02)
+    assert np.allclose(np.diff(stamps), 0.02 * periods)
+    assert periods.min() == 1
 
 
 def test_the_originals_node_goes_beyond_a_limit_and_is_warned_once(launch, client):

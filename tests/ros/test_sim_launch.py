@@ -51,8 +51,8 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
         f"resource_path:={sdf_world.parent / 'models'}",
     )
     launched.wait_until_ready()
-    assert "plugin 'p' in lab.sdf (line 1): it is not simulated" in launched.output
-    assert "one is made up that commands shoulder, elbow" in launched.output
+    launched.wait_for_line("plugin 'p' in lab.sdf (line 1): it is not simulated")
+    launched.wait_for_line("one is made up that commands shoulder, elbow")
     states = client.subscribe(JointState, "/left/joint_states")
     commands = client.publisher(Float64MultiArray, "/left/position_controller/commands")
     commands.publish(Float64MultiArray(data=[0.5, -0.5]))

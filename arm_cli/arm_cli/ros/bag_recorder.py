@@ -19,7 +19,7 @@ from arm_cli.errors import NotFoundError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.names import this_domain
 from arm_cli.ros.bag_qos import RECORDING_DEPTH, offered_qos, recording_profile
-from arm_cli.ros.graph import Graph
+from arm_cli.ros.graph import SETTLED_S, Graph
 from arm_cli.ros.session import PATIENCE_S, Session
 from arm_node.polled_subscriptions import PolledSubscriptions
 from launch_py.near_names import describe_known
@@ -96,7 +96,8 @@ class BagRecorder:
                 next_poll_s = now_s + self._poll_period_s
                 if discover and not self._is_complete():
                     self._subscribe_new()
-                if now_s - started_s >= PATIENCE_S:
+                # Who has found nobody yet cannot say what there is instead.
+                if now_s - started_s >= (PATIENCE_S if self._graph.topics() else SETTLED_S):
                     self._say_missing()
                 if now_s - adapt_s >= ADAPT_PERIOD_S:
                     adapt_s = now_s

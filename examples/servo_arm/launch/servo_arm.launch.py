@@ -12,11 +12,11 @@ from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
 
-def describe(model: str, device: str) -> str:
-    """Return the URDF with the servos' port in it."""
+def describe(model: str, device: str, timeout: str) -> str:
+    """Return the URDF with the servos' port in it, and how long an answer may take."""
     from arm_description import expand_xacro
 
-    return expand_xacro(model, {"device": device})
+    return expand_xacro(model, {"device": device, "timeout": timeout})
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -43,10 +43,18 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "device", default_value="/tmp/servo_arm", description="name of the servos' port"
             ),
+            DeclareLaunchArgument(
+                "timeout",
+                default_value="0.2",
+                description="the longest that an answer of the servos may take, in seconds",
+            ),
             SetLaunchConfiguration(
                 "robot_description",
                 Call(
-                    describe, PathJoinSubstitution([share, "urdf", "servo_arm.urdf.xacro"]), device
+                    describe,
+                    PathJoinSubstitution([share, "urdf", "servo_arm.urdf.xacro"]),
+                    device,
+                    LaunchConfiguration("timeout"),
                 ),
             ),
             servos,

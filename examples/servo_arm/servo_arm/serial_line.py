@@ -63,5 +63,8 @@ class SerialLine:
                 raise SerialLineError(
                     f"{self._device} did not answer '{question}' within {self._timeout_s:g} s"
                 )
-            received += os.read(self._port, 1024)
+            chunk = os.read(self._port, 1024)
+            if not chunk:
+                raise SerialLineError(f"{self._device} is gone: the other end was closed")
+            received += chunk
         return received.decode(errors="replace").strip()

@@ -13,6 +13,7 @@ TRAJECTORY = (
     "{trajectory: {joint_names: [j0, j1, j2, j3], points: [{positions: [%s], "
     "time_from_start: {sec: %s}}]}}"
 )
+SET_POSE = 'arm param set /arm_controller_node desired_param "[0.2, 0.0, 0.1, 0.0]"'
 FOLLOW = (
     "arm action send_goal /joint_trajectory_controller/follow_joint_trajectory "
     "control_msgs/action/FollowJointTrajectory"
@@ -47,26 +48,25 @@ def test_a_message_moves_the_arm(run, arrives):
     arrives(0.1, 0.2, 0.0, -0.1)
 
 
-def test_a_parameter_moves_the_arm(run, arrives):
-    line = 'arm param set /arm_controller_node desired_param "[0.2, 0.0, 0.1, 0.0]"'
-    assert run(line) == "Set parameter successful\n"
+def test_a_parameter_moves_the_arm(run_until, arrives):
+    run_until(SET_POSE, lambda text: text == "Set parameter successful\n")
     arrives(0.2, 0.0, 0.1, 0.0)
-    assert run("arm param get /arm_controller_node desired_param") == (
-        "Double values are: array('d', [0.2, 0.0, 0.1, 0.0])\n"
-    )
-    refused = run('arm param set /arm_controller_node desired_param "[0.2]"', code=1)
-    assert refused.startswith("Setting parameter failed: ")
+    values = "Double values are: array('d', [0.2, 0.0, 0.1, 0.0])\n"
+    run_until("arm param get /arm_controller_node desired_param", lambda text: text == values)
+    too_short = 'arm param set /arm_controller_node desired_param "[0.2]"'
+    run_until(too_short, lambda text: "Setting parameter failed: " in text, code=1)
 
 
-def test_parameters_go_to_a_file_and_back(run, start):
-    run('arm param set /arm_controller_node desired_param "[0.2, 0.0, 0.1, 0.0]"')
-    run("mkdir folder && arm param dump /arm_controller_node --output-dir folder")
+def test_parameters_go_to_a_file_and_back(run_until, start):
+    run_until(SET_POSE, lambda text: text == "Set parameter successful\n")
+    dump = "arm param dump /arm_controller_node --output-dir folder"
+    run_until(f"mkdir -p folder && {dump}", lambda _: True)
     text = start("cp folder/arm_controller_node.yaml params.yaml && cat params.yaml")
     text.wait()
     assert text.out.startswith("/arm_controller_node:\n  ros__parameters:\n")
-    loaded = run("arm param load /arm_controller_node params.yaml", code=1)
-    assert "Set parameter desired_param successful\n" in loaded
-    assert "Set parameter joints failed: " in loaded
+    loaded = ("Set parameter desired_param successful\n", "Set parameter joints failed: ")
+    load = "arm param load /arm_controller_node params.yaml"
+    run_until(load, lambda text: all(sentence in text for sentence in loaded), code=1)
 
 
 def test_the_course_project_s_executable_moves_the_arm(start, arrives):
@@ -75,7 +75,7 @@ def test_the_course_project_s_executable_moves_the_arm(start, arrives):
     assert node.interrupt() == 0
 
 
-def test_controllers_change_places_and_a_goal_is_followed(run, start, arrives):
+def test_controllers_change_places_and_a_goal_is_followed(run, run_until, start, arrives):
     state = "arm control set_controller_state joint_trajectory_controller"
     load = "arm control load_controller --set-state inactive joint_trajectory_controller"
     assert run(load).endswith("joint_trajectory_controller into state inactive\n")
@@ -85,13 +85,15 @@ def test_controllers_change_places_and_a_goal_is_followed(run, start, arrives):
         "--deactivate position_controller --strict"
     )
     assert run(switch) == "Successfully switched controllers!\n"
-    assert run("arm action list -t") == (
+    action = (
         "/joint_trajectory_controller/follow_joint_trajectory "
         "[control_msgs/action/FollowJointTrajectory]\n"
     )
+    run_until("arm action list -t", lambda text: text == action)
     done = start(f'{FOLLOW} "{TRAJECTORY % ("0.3, 0.2, 0.1, 0.0", "1.5")}"')
     assert done.wait() == 0
-    assert done.err == (
+    # Before it says, on a busy machine, that it waits for the server.
+    assert done.err.startswith(
         "arm action send_goal: trajectory.points[0].time_from_start.sec: 1.5 is truncated to 1 "
         "(int32)\n"
     )
@@ -192,4 +194,5 @@ def test_ctrl_c_ends_a_line_that_runs_on(start, line, text):
 def test_a_reader_that_has_had_enough_ends_it_silently(start):
     command = start("set -o pipefail; arm topic echo /clock | head -n 1")
     assert command.wait() == 128 + signal.SIGPIPE
-    assert (command.out, command.err) == ("clock:\n", "")
+    said = [line for line in command.err.splitlines() if not line.startswith("waiting for ")]
+    assert (command.out, said) == ("clock:\n", [])

@@ -253,15 +253,17 @@ class Control:
     def _connect(self) -> None:
         import controller_manager_msgs.srv
 
-        for service, type_name in SERVICES.items():
-            type_ = getattr(controller_manager_msgs.srv, type_name)
+        last = "list_controllers"
+        for service in (*(name for name in SERVICES if name != last), last):
+            type_ = getattr(controller_manager_msgs.srv, SERVICES[service])
             self._services[service] = self._client.node.create_client(
                 type_, f"{self._prefix}/{service}"
             )
         for service, client in self._services.items():
             self._client.wait_until(client.service_is_ready, f"{self._prefix}/{service}")
-        # The server may not know of its client yet, and an answer would be lost.
-        threading.Event().wait(0.2)
+        # Where the server does not know of its client yet, the answer is lost. It hears of them in
+        # their order, so one who answers the last, which is asked again, knows all.
+        self.call(last)
 
     def load(self, name: str) -> bool:
         return self.call("load_controller", name=name).ok
@@ -273,13 +275,20 @@ class Control:
         return self.call("unload_controller", name=name).ok
 
     def switch(
-        self, activate: Sequence[str] = (), deactivate: Sequence[str] = (), strictness: int = 2
+        self,
+        activate: Sequence[str] = (),
+        deactivate: Sequence[str] = (),
+        strictness: int = 2,
+        timeout_s: int = 30,
     ) -> Any:
+        from builtin_interfaces.msg import Duration
+
         return self.call(
             "switch_controller",
             activate_controllers=list(activate),
             deactivate_controllers=list(deactivate),
             strictness=strictness,
+            timeout=Duration(sec=timeout_s),
         )
 
     def start(self, *names: str) -> None:

@@ -51,9 +51,13 @@ def test_end_points_are_those_of_a_real_one(
     durability: str,
 ) -> None:
     control.start("joint_state_broadcaster", "position_controller")
-    client.wait_until(lambda: end_points(client, topic, kind), f"{kind} of {topic}")
+    # The name of its node is heard of later than the end point.
+    client.wait_until(
+        lambda: [e.node_name for e in end_points(client, topic, kind)] == [node],
+        f"{kind} of {topic}",
+    )
     (end_point,) = end_points(client, topic, kind)
-    assert (end_point.node_name, end_point.topic_type) == (node, type_)
+    assert end_point.topic_type == type_
     assert end_point.qos_profile.reliability.name == reliability
     assert end_point.qos_profile.durability.name == durability
 
@@ -115,10 +119,12 @@ def test_transitions_are_published(control: Any, client: Any) -> None:
     # Which of the first events a subscriber sees depends on when it is matched: let it see one.
     while not events.messages:
         assert control.configure("position_controller")
-    events.clear()
     control.switch(["position_controller"])
-    seen = [(e.start_state.label, e.goal_state.label) for e in events.wait_for(2)[-2:]]
-    assert seen == [("inactive", "activating"), ("activating", "active")]
+    expected = [("inactive", "activating"), ("activating", "active")]
+    events.wait_until(
+        lambda m: [(e.start_state.label, e.goal_state.label) for e in m[-2:]] == expected,
+        f"the events {expected}",
+    )
 
 
 # Joint states

@@ -23,11 +23,10 @@ def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, cl
     control_of("/right").start("jsb")
     message = client.subscribe(JointState, "/right/joint_states").wait_for(1)[0]
     assert message.header.frame_id == "there"
-    assert {"jsb", "controller_manager", "hardwareinterface"} <= {
-        name
-        for name, namespace in client.node.get_node_names_and_namespaces()
-        if namespace == "/right"
-    }
+    nodes = {(name, "/right") for name in ("jsb", "controller_manager", "hardwareinterface")}
+    client.wait_until(
+        lambda: nodes <= set(client.node.get_node_names_and_namespaces()), f"the nodes {nodes}"
+    )
     assert program.stop() == 0
 
 

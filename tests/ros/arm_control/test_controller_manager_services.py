@@ -19,9 +19,19 @@ def test_the_services_of_a_real_one_are_there(
     control: Any, client: Any, services: dict[str, str]
 ) -> None:
     control.list()
-    offered = dict(client.node.get_service_names_and_types_by_node("controller_manager", "/"))
-    for name, type_ in services.items():
-        assert offered[f"/controller_manager/{name}"] == [f"controller_manager_msgs/srv/{type_}"]
+    expected = {
+        (f"/controller_manager/{name}", f"controller_manager_msgs/srv/{type_}")
+        for name, type_ in services.items()
+    }
+
+    def all_offered() -> bool:
+        # Whose they are is heard of later than that they are there.
+        if "controller_manager" not in client.node.get_node_names():
+            return False
+        offered = client.node.get_service_names_and_types_by_node("controller_manager", "/")
+        return expected <= {(name, type_) for name, types in offered for type_ in types}
+
+    client.wait_until(all_offered, f"the services {expected}")
 
 
 def test_controller_types_are_listed_with_their_base_class(control: Any) -> None:

@@ -69,12 +69,13 @@ def values_of(status: Any) -> dict[str, str]:
 
 def test_it_is_published_by_the_manager_reliably(control: Any, client: Any) -> None:
     control.list()
-    client.wait_until(lambda: client.node.get_publishers_info_by_topic("/diagnostics"), "it")
-    (end_point,) = client.node.get_publishers_info_by_topic("/diagnostics")
-    assert (end_point.node_name, end_point.topic_type) == (
-        "controller_manager",
-        "diagnostic_msgs/msg/DiagnosticArray",
+    read = client.node.get_publishers_info_by_topic
+    # The name of its node is heard of later than the end point.
+    client.wait_until(
+        lambda: [e.node_name for e in read("/diagnostics")] == ["controller_manager"], "it"
     )
+    (end_point,) = read("/diagnostics")
+    assert end_point.topic_type == "diagnostic_msgs/msg/DiagnosticArray"
     assert end_point.qos_profile.reliability.name == "RELIABLE"
     assert end_point.qos_profile.durability.name == "VOLATILE"
 

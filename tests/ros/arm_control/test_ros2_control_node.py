@@ -232,7 +232,11 @@ def test_its_loop_runs_at_the_priority_asked_for(manager: Any, client: Any) -> N
 
     def raised() -> bool:
         # Field 40 and 41 of stat(5), counted after the command name: priority and policy.
-        stats = [(thread / "stat").read_text().rpartition(")")[2] for thread in threads.iterdir()]
+        try:
+            texts = [(thread / "stat").read_text() for thread in threads.iterdir()]
+        except OSError:  # One has just ended.
+            return False
+        stats = [text.rpartition(")")[2] for text in texts]
         return [("20", str(os.SCHED_FIFO))] == [
             (fields[37], fields[38]) for fields in map(str.split, stats) if fields[38] != "0"
         ]

@@ -24,7 +24,9 @@ def test_it_loads_configures_and_activates_in_order(control: Any, spawn: Any) ->
         "joint_state_broadcaster": "active",
     }
     lines = [line.split("]: ")[-1] for line in spawner.lines[:-1]]
-    assert lines == [
+    # It says so where it has to wait for the manager or to ask it again.
+    waits = ("waiting for service ", "no answer from ")
+    assert [line for line in lines if not line.startswith(waits)] == [
         "Loaded joint_state_broadcaster",
         "Configured and activated joint_state_broadcaster",
         "Loaded position_controller",
@@ -156,9 +158,9 @@ def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client: Any, s
 
 def test_a_manager_that_loads_nothing_is_given_up(control: Any, manager: Any, spawn: Any) -> None:
     manager.tell("block")
-    spawner = spawn("position_controller", "--service-call-timeout", "0.3")
+    spawner = spawn("position_controller", "--service-call-timeout", "1")
     try:
-        said = "/controller_manager/load_controller did not answer 3 times within 0.3 s each"
+        said = "/controller_manager/load_controller did not answer 3 times within 1 s each"
         assert said in spawner.fail()
     finally:
         manager.tell("unblock")

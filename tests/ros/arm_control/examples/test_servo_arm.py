@@ -11,7 +11,7 @@ from typing import Any
 import psutil
 import pytest
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 SOURCES = Path(__file__).parents[4] / "examples" / "servo_arm"
 ACTIVE = 3
@@ -40,6 +40,7 @@ def launched(installed: Path, run: Any) -> Any:
     program = run(
         *("-m", "arm_cli", "launch", "servo_arm", "servo_arm.launch.py"),
         f"device:={installed / 'port'}",
+        "timeout:=5.0",  # A busy machine may hold the servos up.
     )
     program.wait_for_line("[launch] stop: ")
     return program

@@ -146,7 +146,8 @@ def states(client: Any) -> Any:
     from control_msgs.msg import JointTrajectoryControllerState
     from rclpy.qos import DurabilityPolicy, QoSProfile
 
-    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    # So deep that an executor which is held up misses none.
+    latched = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return client.subscribe(JointTrajectoryControllerState, f"/{NAME}/controller_state", latched)
 
 

@@ -47,9 +47,8 @@ def test_joints_may_come_in_any_order(active: Any, send: Any, states: Any) -> No
 def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
     goal = send((0.5, THERE))
     goal.result()
-    messages = goal.feedback.messages
+    messages = goal.feedback.wait_for(9)  # The result may be taken before the last of it.
     stamps = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages]
-    assert len(messages) >= 9
     assert all(
         after - before == pytest.approx(0.05, abs=1e-6) for before, after in pairwise(stamps)
     )
@@ -190,7 +189,7 @@ def test_a_flood_of_goals_leaves_the_last_one(
             send.send_and_forget((FOR_EVER_S, THERE))
 
     timer = client.node.create_timer(0.01, send_another)
-    assert sent.wait(30.0)
+    assert sent.wait(100.0)
     client.node.destroy_timer(timer)
     assert send((0.1, HERE)).result() == REACHED
     assert "callback failed" not in manager.output

@@ -56,7 +56,10 @@ def test_a_cancelled_goal_brakes_with_the_given_deceleration(send: Any, states: 
     send((1.0, HOME)).result()
     goal = send((1000.0, (500.0, 0.0, 0.0, 0.0)))
     # It brakes from the measured velocity, which swings for some cycles after the sudden start.
-    states.wait_until(lambda m: m and m[-1].feedback.positions[0] > 0.1, "it moves steadily")
+    states.wait_until(
+        lambda m: m and m[-1].feedback.positions[0] > 0.1 and m[-1].reference.velocities[0] > 0.0,
+        "it moves steadily",
+    )
     assert goal.cancel() == 1
     assert goal.result() == (CANCELED, 0, "")
     messages = states.wait_until(
@@ -85,7 +88,9 @@ def test_a_scaled_speed_takes_longer_and_is_told(send: Any, states: Any, client:
     states.wait_until(lambda m: m and m[-1].speed_scaling_factor == 0.5, "half the speed")
     goal = send((0.5, THERE))
     assert goal.result() == REACHED
-    last = goal.feedback.messages[-1]
+    last = goal.feedback.wait_until(
+        lambda m: m and seconds(m[-1].desired.time_from_start) > 0.449, "the last feedback"
+    )[-1]
     assert seconds(last.desired.time_from_start) == pytest.approx(0.475, abs=0.026)
     assert seconds(last.actual.time_from_start) == pytest.approx(
         2 * seconds(last.desired.time_from_start), abs=2 * CYCLE_S

@@ -12,6 +12,6 @@ def test_the_end_of_the_simulation_leaves_no_traceback(run: Any) -> None:
         *("-m", "arm_cli", "launch", "arm_gazebo", "arm_world.launch.py", "camera:=none"),
         "spawn:=joint_trajectory_controller",
     )
-    launched.wait_for_line("arm_gazebo_node is ready")
+    launched.wait_for_line("[launch] stop: ")  # Everything has started.
     assert launched.stop() == 0
     assert "Traceback" not in launched.output
