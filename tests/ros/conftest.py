@@ -3,9 +3,7 @@
 Nothing here sleeps: every wait is on a condition, with a generous time-out.
 """
 
-import fcntl
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -20,17 +18,6 @@ import pytest
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
-FIRST_PORT = 7400
-"""Of the first domain."""
-
-
-def is_of_a_domain(name: str) -> bool:
-    """Return whether it is a file of Fast DDS's that programs of other domains do not use, too.
-
-    The ports from 7000 on are theirs as well, and stay where one of theirs was killed.
-    """
-    port = re.search(r"_port(\d+)", name)
-    return "fastrtps" in name and (port is None or int(port[1]) >= FIRST_PORT)
 
 
 class Launched:
@@ -89,27 +76,6 @@ class Launched:
     def descendants(self) -> list[psutil.Process]:
         """All processes below the launcher."""
         return psutil.Process(self.process.pid).children(recursive=True)
-
-    def shared_memory(self) -> set[Path]:
-        """The middleware's shared-memory files that the launcher and all below it have mapped."""
-        processes = [psutil.Process(self.process.pid), *self.descendants()]
-        paths = {Path(m.path) for process in processes for m in process.memory_maps()}
-        return {p for p in paths if p.parent == Path("/dev/shm") and is_of_a_domain(p.name)}
-
-    @staticmethod
-    def is_abandoned(file: Path) -> bool:
-        """Return whether a shared-memory file is there and nobody holds its lock."""
-        try:
-            lock = os.open(f"{file}_el", os.O_RDONLY)
-        except OSError:
-            return file.exists()
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return False
-        finally:
-            os.close(lock)
-        return file.exists()
 
     def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:
         """Send a signal, wait for the end, and return the exit code."""
