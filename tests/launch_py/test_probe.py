@@ -90,6 +90,18 @@ def test_a_condition_is_met(launch, body, condition):
     assert launched.wait() == 0
 
 
+def test_what_the_middleware_prints_is_no_answer_of_the_probe(launch):
+    body = "node.create_publisher(String, 'chat', 1)"
+    launched = launch(
+        f"{NODE}actions = [tested({body!r}, ready=TopicPublished('chat'))]",
+        FASTRTPS_DEFAULT_PROFILES_FILE="/no/such/profile.xml",
+    )
+    launched.wait_for("XMLPARSER")  # Fast DDS complains on stdout.
+    launched.wait_for("^ready ")
+    launched.signal(signal.SIGINT)
+    assert launched.wait() == 0
+
+
 @pytest.mark.parametrize(
     ("condition", "missing"),
     [

@@ -6,10 +6,10 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from arm_cli.errors import UsageError
-from arm_cli.ros.library_output import library_output_on_stderr
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.local_profile import PROFILE, use_local_profile
 from launch_py.child_environment import dds_profile
+from launch_py.library_output import library_output_on_stderr
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import Session

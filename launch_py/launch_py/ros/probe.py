@@ -15,6 +15,8 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from launch_py.library_output import library_output_on_stderr
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
@@ -207,4 +209,5 @@ def main() -> None:
         sys.stdout.flush()
 
     threading.Thread(target=read, daemon=True).start()
-    Probe(answer).run(messages)
+    with library_output_on_stderr():
+        Probe(answer).run(messages)

@@ -7,7 +7,7 @@ import pytest
 
 BOTH = """
 import os
-from arm_cli.ros.library_output import library_output_on_stderr
+from launch_py.library_output import library_output_on_stderr
 
 print("before")
 with library_output_on_stderr():
@@ -38,7 +38,7 @@ def test_an_end_in_the_middle_loses_nothing(end):
 
 
 def test_a_captured_stdout_stays_captured(capsys):
-    from arm_cli.ros.library_output import library_output_on_stderr
+    from launch_py.library_output import library_output_on_stderr
 
     with library_output_on_stderr():
         print("mine")
@@ -50,7 +50,7 @@ def test_a_reader_who_goes_ends_it_as_usual():
     code = (
         "import sys\n"
         "from arm_cli import main, verbs\n"
-        "from arm_cli.ros.library_output import library_output_on_stderr\n"
+        "from launch_py.library_output import library_output_on_stderr\n"
         "class Talk:\n"
         "    def run(self, *_):\n"
         "        with library_output_on_stderr():\n"
