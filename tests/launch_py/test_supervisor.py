@@ -146,13 +146,20 @@ def test_a_process_that_is_ready_in_time_is_not_late(trial):
     assert t.asked_to_stop() == set()
 
 
-def test_an_end_before_readiness_ends_the_launch_and_says_what_was_missing(trial):
+@pytest.mark.parametrize(
+    ("code", "launch_code", "said"),
+    [
+        (4, 4, "exit code 4 after 0.00 s, before it was ready"),
+        (0, 1, "exit code 0 after 0.00 s, before it was ready: no line in its output matches 'up'"),
+    ],
+)
+def test_an_end_before_readiness_ends_the_launch(trial, code, launch_code, said):
     t = trial(process("a", ready=UP), process("b"))
-    t["a"].end(4)
+    t["a"].end(code)
     assert t.asked_to_stop() == {"b"}
     t["b"].end(0)
-    assert t.finish() == 4
-    assert "before it was ready: no line in its output matches 'up'" in str(t.screen.last_line)
+    assert t.finish() == launch_code
+    assert str(t.screen.last_line).endswith(f"a ended with {said}")
 
 
 def test_a_process_that_cannot_be_started_ends_the_launch(trial):

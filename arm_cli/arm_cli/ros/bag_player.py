@@ -5,7 +5,6 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rclpy.duration import Duration
 from rclpy.publisher import Publisher
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
@@ -24,9 +23,7 @@ SIGNAL_PERIOD_S = 0.05
 MATCHED_WITHIN_S = 1.0
 AFTER_MATCH_S = 0.2
 """What is sent at the very moment of the match may be lost."""
-ACKNOWLEDGED_WITHIN_S = 1.0
 KEEP_ALIVE_S = 0.2
-"""What a reader has not taken when its publisher ends is gone, acknowledged or not."""
 CLOCK_TOPIC = "/clock"
 COMMON_TOPICS = frozenset(("/rosout", "/parameter_events"))
 """That every node publishes."""
@@ -137,12 +134,7 @@ class BagPlayer:
 
     def finish(self) -> None:
         """Let the last messages arrive."""
-        deadline_s = time.monotonic() + ACKNOWLEDGED_WITHIN_S
-        for publisher in self._publishers.values():
-            left_s = deadline_s - time.monotonic()
-            if left_s > 0 and publisher.get_subscription_count():
-                publisher.wait_for_all_acked(Duration(seconds=left_s))
-        self._session.spin_for(KEEP_ALIVE_S)
+        self._session.let_arrive(self._publishers.values(), KEEP_ALIVE_S)
 
     def _wait(self, schedule: PlaySchedule, bag_time_ns: int) -> None:
         """Spin until a time of the bag has come, and tick meanwhile."""

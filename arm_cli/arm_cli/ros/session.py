@@ -9,15 +9,17 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
 import rclpy
+from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from rclpy.utilities import try_shutdown
@@ -29,6 +31,7 @@ from arm_node.process import first_line
 POLL_S = 0.02
 PATIENCE_S = 1.0
 """Whoever waits longer than this is told what for."""
+ACKNOWLEDGED_WITHIN_S = 1.0
 
 
 class Session:
@@ -101,6 +104,22 @@ class Session:
             StoppedError: a signal came.
         """
         self.wait_until(lambda: False, timeout_s=duration_s)
+
+    def let_arrive(self, publishers: Iterable[Publisher], keep_alive_s: float) -> None:
+        """Wait for the last messages of publishers to be acknowledged, and then some seconds.
+
+        What a reader has not taken when its publisher ends is gone, acknowledged or not; hence
+        the seconds after it. A reader that does not acknowledge holds this up for one second.
+
+        Raises:
+            StoppedError: a signal came.
+        """
+        deadline_s = time.monotonic() + ACKNOWLEDGED_WITHIN_S
+        for publisher in publishers:
+            left_s = deadline_s - time.monotonic()
+            if left_s > 0 and publisher.get_subscription_count():
+                publisher.wait_for_all_acked(Duration(seconds=left_s))
+        self.spin_for(keep_alive_s)
 
     def result(self, future: Future, timeout_s: float | None = None) -> Any:
         """Return a future's result, None where it has none within the time-out.

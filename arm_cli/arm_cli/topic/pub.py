@@ -71,7 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=positive_number,
         default=KEEP_ALIVE_S,
         metavar="SECONDS",
-        help=f"stay so long after the last message (default {KEEP_ALIVE_S})",
+        help=f"stay so long after the last message has arrived (default {KEEP_ALIVE_S})",
     )
     parser.add_argument("-n", "--node-name", metavar="NAME", help="name of the publishing node")
     parser.add_argument(
@@ -110,7 +110,7 @@ def run(options: argparse.Namespace) -> None:
         )
         print("publisher: beginning loop")
         publication.repeat(times, 1.0 / options.rate)
-        session.spin_for(options.keep_alive)
+        session.let_arrive([publication.publisher], options.keep_alive)
 
 
 def _values(options: argparse.Namespace) -> str:

@@ -285,9 +285,10 @@ class Supervisor:
             for trigger in step.after
         )
         if member.step.ready or needed or not member.was_started:
-            missing = f", before it was ready: {member.missing()}" if member.missing() else ""
-            code = member.exit_code or EXIT_NOT_READY
-            self._fail(Failure(text + missing, code))
+            early = ", before it was ready" if member.missing() else ""
+            # Of a process that failed, its own words are the reason, not what did not follow.
+            missing = f": {member.missing()}" if early and not member.exit_code else ""
+            self._fail(Failure(text + early + missing, member.exit_code or EXIT_NOT_READY))
             self.stop(f"{member.name} ended before it was ready")
 
     def _fail(self, failure: Failure) -> None:
