@@ -24,7 +24,7 @@ def check_mesh_file(path: Path) -> None:
         raise MeshFileError(f"'{suffix}' is not one of {STL_SUFFIX}, {', '.join(SCENE_SUFFIXES)}")
     if not path.is_file():
         raise MeshFileError("it is no file")
-    size = _unpacked_bytes(path) if suffix == PACKED_SUFFIX else path.stat().st_size
+    size = _packed_bytes(path) if suffix == PACKED_SUFFIX else path.stat().st_size
     if size > LARGEST_BYTES:
         raise MeshFileError(f"it has {size} bytes; at most {LARGEST_BYTES} are read")
 
@@ -40,13 +40,8 @@ def read_mesh_file(path: Path) -> tuple[MeshData, ...]:
     return read_scene(path)
 
 
-def _unpacked_bytes(path: Path) -> int:
-    """Return how large the content of a ZIP file is: a thousand times its size, if it is a trap."""
-    # A robot of other meshes does without.
-    import zipfile
+def _packed_bytes(path: Path) -> int:
+    # A robot of other meshes does without zipfile and lxml.
+    from arm_description.packed_file import unpacked_bytes
 
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return sum(entry.file_size for entry in archive.infolist())
-    except (zipfile.BadZipFile, ValueError) as error:
-        raise MeshFileError(f"it is no ZIP file, as {PACKED_SUFFIX} files are: {error}") from error
+    return unpacked_bytes(path)

@@ -1,4 +1,4 @@
-"""What of a 3MF file must be known before trimesh reads it: how much it draws."""
+"""What of a 3MF file must be known before trimesh reads it: how large it is, how much it draws."""
 
 import zipfile
 import zlib
@@ -15,7 +15,23 @@ LONGEST_TEXT = 10_000_000
 """What libxml2 takes in one element, in bytes, unless it is told to take anything."""
 ELSEWHERE = SceneNode(1, ())
 BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, etree.LxmlError)
-"""What zipfile and lxml raise for broken, encrypted and unknown content."""
+"""What zipfile and lxml raise for broken, encrypted and unknown content.
+
+RuntimeError stands for NotImplementedError, too: of packing methods and ZIP versions to come.
+"""
+
+
+def unpacked_bytes(path: Path) -> int:
+    """Return how large the content of a ZIP file is: a thousand times its size, if it is a trap.
+
+    Raises:
+        MeshFileError: it is no ZIP file, or one of a kind unknown here.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return sum(entry.file_size for entry in archive.infolist())
+    except BROKEN as error:
+        raise MeshFileError(f"it is no ZIP file, as 3MF files are: {error}") from error
 
 
 def check_packed(path: Path) -> None:

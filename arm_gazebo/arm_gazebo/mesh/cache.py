@@ -6,6 +6,7 @@ import logging
 import os
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -24,7 +25,10 @@ LARGEST_BYTES = 1_000_000_000
 """Of all entries; the ones longest unused go first."""
 
 # numpy tells a broken file by whatever it stumbles over first.
-_UNUSABLE = (OSError, ValueError, TypeError, KeyError, EOFError, MeshFileError, zipfile.BadZipFile)
+_UNUSABLE = (
+    *(OSError, ValueError, TypeError, KeyError, EOFError, MeshFileError),
+    *(zipfile.BadZipFile, zlib.error, RuntimeError),
+)
 
 
 def cache_folder(environ: Mapping[str, str] = os.environ) -> Path:

@@ -33,6 +33,11 @@ usemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3
 usemtl green\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7
 """
 
+# The directory of an archive: one file, which takes version 25.5 of the format to read it.
+ZIP_OF_LATER = struct.pack("<4sBBBB38x", b"PK\1\2", 20, 3, 255, 0) + struct.pack(
+    "<4s4xHHLLH", b"PK\5\6", 1, 1, 46, 0, 0
+)
+
 
 def shape(uri, scale="1 1 1", tag="visual", colour=""):
     return f'<{tag}><geometry><mesh filename="{uri}" scale="{scale}"/></geometry>{colour}</{tag}>'
@@ -183,6 +188,7 @@ def test_missing_mesh_is_an_error_when_strict(parts):
         ("a.obj", b"v 1 2 3\n", ""),
         ("a.dae", b"<COLLADA", ""),
         ("a.3mf", b"PK", "it is no ZIP file"),
+        ("a.3mf", ZIP_OF_LATER, "zip file version 25.5"),
         ("a.step", b"ISO-10303", "'.step' is not one of .stl, .obj"),
     ],
 )
