@@ -162,6 +162,8 @@ def test_what_an_mjcf_file_includes_reads_nothing_from_elsewhere_either(tmp_path
         SOURCE.read(str(tmp_path / "thing.xml"), "")
 
 
+# MuJoCo warns of an almost singular inertia, and goes on.
+@pytest.mark.filterwarnings("ignore:Inertia matrix is too close to singular")
 @settings(max_examples=120, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_spoilt_texts_are_refused_or_can_be_simulated(things, data):
