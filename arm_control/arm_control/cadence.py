@@ -1,6 +1,7 @@
 """When something is due that runs at a rate of its own, in the cycles of a faster loop."""
 
 import logging
+from math import nan
 
 logger = logging.getLogger(__name__)
 
@@ -21,14 +22,17 @@ class Cadence:
         """
         self.rate_hz = rate_hz
         self._own_period_s = 1.0 / rate_hz if rate_hz < cycle_rate_hz else 0.0
-        self._last_s: float | None = None
+        self._last_s = nan
+        self._elapsed_s = 0.0
 
     def restart(self) -> None:
         """Let the next cycle be the first: it is picked, with the nominal period."""
-        self._last_s = None
+        self._last_s = nan
 
     def due_period_s(self, time_s: float, cycle_s: float) -> float | None:
         """Return the period to run with, None where a later cycle comes closer to the own period.
+
+        Where time is set back, a first cycle follows; where it is set forward, none comes earlier.
 
         Args:
             time_s: of this cycle.
@@ -36,13 +40,15 @@ class Cadence:
         """
         if not self._own_period_s:
             return cycle_s
-        if self._last_s is None or time_s < self._last_s:
-            elapsed_s = self._own_period_s
-        else:
-            elapsed_s = time_s - self._last_s
-            error_s = abs(elapsed_s - self._own_period_s)
-            if error_s > abs(elapsed_s + cycle_s - self._own_period_s):
+        # The sum of the cycles, not the difference of times: somebody may have set the clock.
+        self._elapsed_s += cycle_s
+        if time_s >= self._last_s:
+            error_s = abs(self._elapsed_s - self._own_period_s)
+            if error_s > abs(self._elapsed_s + cycle_s - self._own_period_s):
                 return None
+        else:
+            self._elapsed_s = self._own_period_s
+        elapsed_s, self._elapsed_s = self._elapsed_s, 0.0
         self._last_s = time_s
         return elapsed_s
 

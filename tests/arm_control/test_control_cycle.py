@@ -56,5 +56,23 @@ def test_where_time_does_not_advance_the_period_is_nominal(bench: Any, step_s: f
     assert mover.updates[-1] == (100.0 + step_s, 0.01)
 
 
+@pytest.mark.parametrize("step_s", [3600.0, -3600.0])
+def test_a_date_that_is_set_changes_no_period(bench: Any, step_s: float) -> None:
+    every, second = (
+        bench.configure(name, commands=(f"{joint}/position",), rate_hz=rate_hz)
+        for name, joint, rate_hz in (("every", "j0", 100), ("second", "j1", 50))
+    )
+    bench.manager.switch_controller(SwitchRequest(("every", "second")))
+    date, ticker = ManualClock(1.7e9), ManualClock(5.0)
+    cycle = ControlCycle(bench.manager, date, ticker)
+    for date_step_s in (0.01, 0.01, 0.01 + step_s, 0.01, 0.01):
+        date.advance(date_step_s)
+        ticker.advance(0.01)
+        cycle()
+    assert [p for _, p in every.updates] == pytest.approx([0.01] * 5)
+    assert [p for _, p in second.updates] == pytest.approx([0.02] * 3)
+    assert every.updates[-1][0] == pytest.approx(1.7e9 + 0.05 + step_s)
+
+
 def test_the_system_clock_is_the_date() -> None:
     assert SystemClock().now_s() > 1.6e9

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 
 from rclpy.executors import SingleThreadedExecutor
 
-from arm_control.clock import SystemClock
+from arm_control.clock import MonotonicClock, SystemClock
 from arm_control.control_cycle import ControlCycle
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
@@ -146,7 +146,7 @@ def _loop(
         catch_up_s=CATCH_UP_PERIODS * period_s,
         print_warnings=node.settings.overruns.print_warnings,
     )
-    cycle = ControlCycle(manager, simulated or SystemClock())
+    cycle = ControlCycle(manager, simulated or SystemClock(), simulated or MonotonicClock())
     loop = ControlLoop(
         cycle,
         pacer,
