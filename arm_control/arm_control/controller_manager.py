@@ -158,7 +158,7 @@ class ControllerManager:
             self._keeper.bring_up(unconfigured, inactive)
         finally:
             self._hardware_changed()
-        self.read(0.0, 0.0)
+        self.read(0.0, 1.0 / self.update_rate_hz)
         for component in self.resources.components.values():
             component.restart_cadence()
 

@@ -81,9 +81,19 @@ class Hardware(Protocol):
         ...
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Fill the states."""
+        """Fill the states.
+
+        Args:
+            time_s: the manager's time; 0 in the read at the start.
+            period_s: time since the last read, more than 0; nominal in the first one.
+        """
         ...
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Take the commands."""
+        """Take the commands.
+
+        Args:
+            time_s: the manager's time.
+            period_s: time since the last write, more than 0; nominal in the first one.
+        """
         ...

@@ -214,6 +214,15 @@ def test_a_component_is_read_and_written_at_its_own_rate() -> None:
     assert component.read_write_rate_hz == 25
 
 
+@pytest.mark.parametrize(("rate_hz", "period_s"), [(0, 0.01), (25, 0.04)])
+def test_a_driver_may_divide_by_the_period_of_its_very_first_read(
+    rate_hz: int, period_s: float
+) -> None:
+    hardware = Visited(dataclasses.replace(fake_hardware().info, read_write_rate_hz=rate_hz))
+    ControllerManager([hardware], 100).bring_up()
+    assert hardware.visits == [("read", 0.0, period_s)]
+
+
 @pytest.mark.parametrize(
     ("asked", "given", "says"),
     [
