@@ -70,6 +70,29 @@ def test_a_reader_may_remove_another(loop):
         os.close(pipe[1])
 
 
+def test_a_file_that_gets_the_number_of_a_removed_one_is_another(loop):
+    pipes = [os.pipe() for _ in range(2)]
+    called = []
+
+    def replace_other(index):
+        called.append(index)
+        other, _ = pipes[1 - index]
+        loop.remove_reader(other)
+        replacement, writable = os.pipe()
+        os.dup2(replacement, other)
+        os.close(replacement)
+        loop.add_reader(other, lambda: called.append("replacement"))
+        pipes.append((pipes[1 - index][0], writable))
+
+    for index, (readable, writable) in enumerate(pipes):
+        loop.add_reader(readable, lambda i=index: replace_other(i))
+        os.write(writable, b"x")
+    loop.run(until=lambda: bool(called))
+    assert len(called) == 1
+    for fd in {fd for pipe in pipes for fd in pipe}:
+        os.close(fd)
+
+
 def test_signals_come_from_the_loop_and_the_handlers_are_restored(loop):
     before = signal.getsignal(signal.SIGUSR1)
     called = []

@@ -82,8 +82,9 @@ class EventLoop:
             heapq.heappop(self._timers)
         timeout_s = max(0.0, self._timers[0][0] - self.clock()) if self._timers else None
         for key, _ in self._selector.select(timeout_s):
-            # An earlier callback of this round may have removed this one.
-            if key.fd in self._selector.get_map():
+            # An earlier callback of this round may have removed this one, and a file that it then
+            # opened may have got the same number.
+            if self._selector.get_map().get(key.fd) is key:
                 key.data()
 
     @contextmanager
