@@ -10,8 +10,8 @@ from arm_control.status import ChainConnection
 class ControllerChain:
     """The relations between the loaded controllers, as they are configured now. Loop thread only.
 
-    A controller *precedes* those whose references it commands or whose exported states it reads;
-    these *follow* it.
+    A controller *precedes* those whose references it commands or whose exported states it asks for
+    by name; these *follow* it. Whoever reads all states that there are needs none of them.
     """
 
     def __init__(
@@ -31,13 +31,13 @@ class ControllerChain:
         return self._named(map(self._exported.reference_owner, controller.commands))
 
     def read_by(self, controller: ManagedController) -> tuple[ManagedController, ...]:
-        """Return the controllers whose exported states it reads."""
+        """Return the controllers whose exported states it reads, by name or not."""
         return self._named(map(self._exported.state_owner, controller.states))
 
     def following(self, controller: ManagedController) -> tuple[ManagedController, ...]:
         """Return the controllers that follow it directly."""
-        both = (*self.commanded_by(controller), *self.read_by(controller))
-        return tuple(dict.fromkeys(both))
+        needed = self._named(map(self._exported.state_owner, controller.named_states))
+        return tuple(dict.fromkeys((*self.commanded_by(controller), *needed)))
 
     def preceding(self, controller: ManagedController) -> tuple[ManagedController, ...]:
         """Return the controllers that precede it directly."""

@@ -48,6 +48,11 @@ class InterfaceConfiguration:
         """Ask for all whose full name matches one of the patterns."""
         return cls(InterfaceKind.REGEX, tuple(patterns))
 
+    @property
+    def is_by_name(self) -> bool:
+        """Whether it names interfaces, rather than take what there is."""
+        return self.kind in (InterfaceKind.INDIVIDUAL, InterfaceKind.INDIVIDUAL_BEST_EFFORT)
+
     def resolve(self, existing: Sequence[str]) -> tuple[str, ...]:
         """Return the full names asked for; of INDIVIDUAL ones, some may not exist.
 

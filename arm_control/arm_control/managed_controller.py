@@ -26,6 +26,7 @@ class ManagedController:
         state: of its life cycle.
         commands: full names of the command interfaces it asks for; empty while unconfigured.
         states: full names of the state interfaces it asks for; empty while unconfigured.
+        named_states: these, where it asks for them by name; empty where it takes what there is.
         runs: its latest updates, in the manager's time.
     """
 
@@ -43,6 +44,7 @@ class ManagedController:
         self.state = LifecycleState.UNCONFIGURED
         self.commands: tuple[str, ...] = ()
         self.states: tuple[str, ...] = ()
+        self.named_states: tuple[str, ...] = ()
         self._manager_rate_hz = manager_rate_hz
         self._cadence = Cadence(manager_rate_hz, manager_rate_hz)
         supervision = supervision or RunSupervision()
@@ -95,13 +97,13 @@ class ManagedController:
         self.commands = self.controller.command_interface_configuration().resolve(
             resources.available_commands()
         )
-        self.states = self.controller.state_interface_configuration().resolve(
-            resources.available_states()
-        )
+        wanted = self.controller.state_interface_configuration()
+        self.states = wanted.resolve(resources.available_states())
+        self.named_states = self.states if wanted.is_by_name else ()
 
     def forget_interfaces(self) -> None:
         """Ask for nothing any more."""
-        self.commands = self.states = ()
+        self.commands = self.states = self.named_states = ()
 
     def forget_references(self) -> None:
         """Let a chainable controller begin with nothing to follow."""

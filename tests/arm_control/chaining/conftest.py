@@ -20,6 +20,10 @@ from arm_control.forward_command_controller import (
     ForwardCommandController,
     ForwardCommandParameters,
 )
+from arm_control.joint_state_broadcaster import (
+    JointStateBroadcaster,
+    JointStateBroadcasterParameters,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +45,7 @@ class Link(ChainableController[LinkParameters]):
         self.topic: float = np.nan
         self.fails = False
         self.refuses_to_start = False
+        self.refuses_to_stop = False
         self._parameters = LinkParameters()
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
@@ -61,6 +66,10 @@ class Link(ChainableController[LinkParameters]):
     def on_activate(self) -> None:
         if self.refuses_to_start:
             raise ControllerError(f"{self.name} does not want to start")
+
+    def on_deactivate(self) -> None:
+        if self.refuses_to_stop:
+            raise ControllerError(f"{self.name} does not want to stop")
 
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
         self.references[:] = self.topic
@@ -106,6 +115,13 @@ class ChainBench:
         controller = ForwardCommandController(ControllerContext(name, 100))
         self.manager.load_controller(controller, "test/Forward")
         self.manager.configure_controller(name, ForwardCommandParameters(joints, "position"))
+        return controller
+
+    def broadcaster(self, name: str) -> JointStateBroadcaster:
+        """Load and configure a joint_state_broadcaster of all states."""
+        controller = JointStateBroadcaster(ControllerContext(name, 100))
+        self.manager.load_controller(controller, "test/Broadcaster")
+        self.manager.configure_controller(name, JointStateBroadcasterParameters())
         return controller
 
     def switch(

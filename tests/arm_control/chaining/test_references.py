@@ -174,6 +174,14 @@ def test_the_list_is_sorted_along_the_chain(chain: Any, order: tuple[int, ...]) 
     assert chain.runs == ["c4", "c3", "c2", "c1"]
 
 
+def test_whoever_reads_all_there_is_runs_after_those_that_export(chain: Any) -> None:
+    chain.link("filter", states=("j0/position",), exported=("sum/position",))
+    chain.broadcaster("every")
+    assert expected_order(chain) == ["every", "filter"]
+    chain.switch("filter")
+    assert expected_order(chain) == ["filter", "every"]
+
+
 def test_branches_run_before_what_they_share(chain: Any) -> None:
     chain.link("left", commands=("base/x/position",), references=("x/position",))
     chain.link("base", commands=("j0/position",), references=("x/position", "y/position"))

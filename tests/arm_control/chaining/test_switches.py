@@ -113,6 +113,30 @@ def test_whoever_is_commanded_is_not_restarted_alone(pair: Any) -> None:
     assert pair.links["low"].references.tolist() == [7.0]
 
 
+@STRICTNESSES
+def test_whoever_is_read_by_name_does_not_stop_alone(chain: Any, strictness: Strictness) -> None:
+    chain.link("filter", states=("j0/position",), exported=("sum/position",))
+    chain.bench.configure("reader", states=("filter/sum/position",))
+    chain.switch("filter reader")
+    chain.switch("", "filter", strictness)
+    assert chain.states() == {"filter": "active", "reader": "active"}
+
+
+@STRICTNESSES
+def test_whoever_reads_all_there_is_keeps_nobody_from_stopping(
+    chain: Any, strictness: Strictness
+) -> None:
+    chain.link("filter", states=("j0/position",), exported=("sum/position",))
+    every = chain.broadcaster("every")
+    chain.switch("filter")
+    chain.switch("every")
+    assert "filter/sum/position" in every.states.names
+    assert chain.switch("", "filter", strictness).ok
+    assert chain.states() == {"filter": "inactive", "every": "active"}
+    chain.bench.tick()
+    assert chain.states()["every"] == "active"
+
+
 @pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
 def test_without_whom_it_commands_a_leader_does_not_start(
     chain: Any, strictness: Strictness
@@ -144,6 +168,15 @@ def test_an_update_that_fails_stops_the_whole_chain(pair: Any) -> None:
     pair.bench.tick()
     assert pair.states() == {"high": "inactive", "low": "inactive", "aside": "active"}
     assert not pair.status("low").is_chained
+
+
+def test_an_update_that_fails_does_not_stop_who_reads_all_there_is(chain: Any) -> None:
+    chain.link("filter", states=("j0/position",), exported=("sum/position",)).fails = True
+    chain.broadcaster("every")
+    chain.switch("filter")
+    chain.switch("every")
+    chain.bench.tick()
+    assert chain.states() == {"filter": "inactive", "every": "active"}
 
 
 def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
