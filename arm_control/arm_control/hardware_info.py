@@ -20,7 +20,7 @@ class InterfaceInfo:
 
     Attributes:
         name: without the joint, for example 'position'.
-        initial_value: value at the start, None if not given.
+        initial_value: value at the start, None if not given or nan; a bool's is 0 or 1.
         minimum: lowest command, None if not given.
         maximum: highest command, None if not given.
         parameters: every `<param>` of the interface, the ones above included, as text.
@@ -168,13 +168,13 @@ def _parse_mimics(robot: "etree._Element") -> dict[str, MimicInfo]:
         mimic = joint.find("mimic")
         if mimic is None:
             continue
-        where = f"line {mimic.sourceline}: %s of <mimic> in <joint name='{joint.get('name')}'>"
+        line, where = mimic.sourceline, f"<mimic> in <joint name='{joint.get('name')}'>"
         numbers = dict(mimic.attrib)
-        multiplier = _parse_number(numbers, "multiplier", where)
+        multiplier = _parse_number(numbers, "multiplier", line, where)
         mimics[joint.get("name") or ""] = MimicInfo(
             mimic.get("joint") or "",
             1.0 if multiplier is None else multiplier,
-            _parse_number(numbers, "offset", where) or 0.0,
+            _parse_number(numbers, "offset", line, where) or 0.0,
         )
     return mimics
 
@@ -239,7 +239,7 @@ def _parse_parts(
             command_interfaces=_parse_interfaces(child, "command_interface", here),
             state_interfaces=_parse_interfaces(child, "state_interface", here),
             parameters=_parse_parameters(child, here),
-            mimic=None if child.get("mimic") == "false" else (mimics or {}).get(name),
+            mimic=(mimics or {}).get(name) if _is_on(child, "mimic") else None,
             is_limited=_is_limited(child),
         )
     return tuple(parts.values())
@@ -255,22 +255,27 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
             )
         here = f"<{tag} name='{name}'> of {where}"
         parameters = _parse_parameters(child, here)
-        where_exactly = f"line {child.sourceline}: %s of {here}"
+        data_type = child.get("data_type", "double")
         interfaces[name] = InterfaceInfo(
             name=name,
-            initial_value=_parse_number(parameters, "initial_value", where_exactly),
+            initial_value=_parse_initial_value(parameters, data_type, child.sourceline, here),
             minimum=_parse_limit(parameters, "min"),
             maximum=_parse_limit(parameters, "max"),
             parameters=parameters,
             is_limited=_is_limited(child),
-            data_type=child.get("data_type", "double"),
+            data_type=data_type,
         )
     return tuple(interfaces.values())
 
 
 def _is_limited(element: "etree._Element") -> bool:
     limits = element.find("limits")
-    return limits is None or limits.get("enable", "true").strip().lower() != "false"
+    return limits is None or _is_on(limits, "enable")
+
+
+def _is_on(element: "etree._Element", attribute: str) -> bool:
+    """Return whether an attribute is anything but false; xacro writes Python's False."""
+    return element.get(attribute, "").strip().lower() != "false"
 
 
 def _parse_parameters(element: "etree._Element", where: str) -> dict[str, str]:
@@ -280,13 +285,29 @@ def _parse_parameters(element: "etree._Element", where: str) -> dict[str, str]:
     }
 
 
-def _parse_number(parameters: Mapping[str, str], key: str, where: str) -> float | None:
+def _parse_initial_value(
+    parameters: Mapping[str, str], data_type: str, line: int | None, where: str
+) -> float | None:
+    """Return a number, also for true and false of a bool; None where nan says there is none."""
+    text = parameters.get("initial_value", "").lower()
+    if text == "nan":
+        return None
+    if data_type == "bool" and text in ("true", "false"):
+        return float(text == "true")
+    return _parse_number(parameters, "initial_value", line, where)
+
+
+def _parse_number(
+    parameters: Mapping[str, str], key: str, line: int | None, where: str
+) -> float | None:
     text = parameters.get(key)
     if not text:
         return None
     value = _number(text)
     if value is None:
-        raise HardwareInfoError(f"{where % repr(key)} is '{text}'; it must be a finite number")
+        raise HardwareInfoError(
+            f"line {line}: '{key}' of {where} is '{text}'; it must be a finite number"
+        )
     return value
 
 

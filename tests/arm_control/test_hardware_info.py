@@ -99,16 +99,45 @@ def test_several_components() -> None:
         ),
         (
             block(
-                "<joint name='a'><state_interface name='position'>"
-                "<param name='initial_value'>nan</param></state_interface></joint>"
+                "<joint name='100%d'><state_interface name='position'>"
+                "<param name='initial_value'>inf</param></state_interface></joint>"
             ),
-            "'initial_value' of .* is 'nan'; it must be a finite number",
+            "line 1: 'initial_value' of .* of <joint name='100%d'> of .* is 'inf'; it must be",
         ),
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(blocks: str, says: str) -> None:
     with pytest.raises(HardwareInfoError, match=says):
         parse_hardware_info(robot(blocks))
+
+
+@pytest.mark.parametrize(
+    ("data_type", "text", "value"),
+    [
+        ("bool", "true", 1.0),
+        ("bool", "False", 0.0),
+        ("bool", "1", 1.0),
+        ("double", "nan", None),
+        ("double", "NaN", None),
+        ("int8", "-3", -3.0),
+    ],
+)
+def test_an_initial_value_is_of_its_interfaces_type(
+    data_type: str, text: str, value: float | None
+) -> None:
+    info = parse_one(
+        f"<gpio name='io'><state_interface name='on' data_type='{data_type}'>"
+        f"<param name='initial_value'>{text}</param></state_interface></gpio>"
+    )
+    assert info.gpios[0].state_interfaces[0].initial_value == value
+
+
+def test_only_a_bool_is_true() -> None:
+    with pytest.raises(HardwareInfoError, match=r"'initial_value' of .* is 'true'; it must be"):
+        parse_one(
+            "<gpio name='io'><state_interface name='on'>"
+            "<param name='initial_value'>true</param></state_interface></gpio>"
+        )
 
 
 def test_a_limit_that_is_no_number_is_passed_over() -> None:
@@ -137,8 +166,10 @@ def test_the_group_of_a_component() -> None:
     assert parse_one("").group == ""
 
 
-def test_what_a_joint_mimics_comes_from_the_urdf() -> None:
-    joints = "<joint name='a'/><joint name='b'/><joint name='c' mimic='false'/>"
+# xacro writes a boolean as Python does.
+@pytest.mark.parametrize("false", ["false", "False", " false "])
+def test_what_a_joint_mimics_comes_from_the_urdf(false: str) -> None:
+    joints = f"<joint name='a'/><joint name='b' mimic='True'/><joint name='c' mimic='{false}'/>"
     (info,) = parse_hardware_info(
         "<robot><joint name='b'><mimic joint='a' multiplier='0' offset='0.5'/></joint>"
         f"<joint name='c'><mimic joint='a'/></joint>{block(joints)}</robot>"
@@ -148,10 +179,10 @@ def test_what_a_joint_mimics_comes_from_the_urdf() -> None:
 
 def test_a_mimic_that_is_no_number_is_named_with_its_line() -> None:
     with pytest.raises(
-        HardwareInfoError, match="line 2: 'multiplier' of <mimic> in <joint name='b"
+        HardwareInfoError, match="line 2: 'multiplier' of <mimic> in <joint name='b%d'> is 'x'; it"
     ):
         parse_hardware_info(
-            "<robot>\n<joint name='b'><mimic joint='a' multiplier='x'/></joint></robot>"
+            "<robot>\n<joint name='b%d'><mimic joint='a' multiplier='x'/></joint></robot>"
         )
 
 
