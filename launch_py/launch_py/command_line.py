@@ -121,7 +121,8 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
                 raise UsageError("which launch file? Give PACKAGE FILE, or the path of a file")
             return packages.launch_file(*short_names[""])
         case [word] if os.path.isfile(word):
-            return Path(word)
+            # Absolute, as the launch file's own folder is handed on to other processes.
+            return Path(os.path.abspath(word))
         case [word] if word in short_names:
             return packages.launch_file(*short_names[word])
         case [word] if word.endswith(".py") or os.sep in word:
@@ -236,6 +237,8 @@ def _parser(program: str, short_names: Mapping[str, PackagedFile]) -> argparse.A
         action="store_true",
         help="like -a, with what the supervisor does and tracebacks of errors",
     )
+    # Nothing is ever asked; but lines written for ros2 say so.
+    parser.add_argument("-n", "--noninteractive", action="store_true", help=argparse.SUPPRESS)
     return parser
 
 

@@ -59,6 +59,12 @@ def test_without_the_interfaces_it_says_the_fix_and_starts_nothing(
     assert "pip install ./arm_interfaces" in sentence
 
 
+@pytest.mark.parametrize("option", ["-n", "--noninteractive"])
+def test_a_line_for_ros2_may_say_that_nothing_is_to_be_asked(launch_file, capsys, option):
+    assert main(["launch", option, str(launch_file), "--show-args"]) == 0
+    assert "test.launch.py has no arguments." in capsys.readouterr().out
+
+
 def test_without_the_interfaces_it_still_lists_arguments(launch_file, monkeypatch, capsys):
     monkeypatch.setattr(environment, "INTERFACE_PACKAGES", ("no_such_interfaces",))
     assert main(["launch", str(launch_file), "--show-args"]) == 0
