@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -16,22 +17,18 @@ if TYPE_CHECKING:
 
 
 class LaunchDescriptionSource:
-    """A launch file somewhere; read at most once."""
+    """A launch file somewhere."""
 
     def __init__(self, location: Text) -> None:
         self.location = location
-        self._read: tuple[Path, LaunchDescription] | None = None
 
-    def load(self, context: LaunchContext) -> tuple[Path, LaunchDescription]:
-        """Return the file's path and its description.
+    def path(self, context: LaunchContext) -> Path:
+        """Return the file's absolute path.
 
         Raises:
-            LaunchError: the file does not exist, cannot be read or fails.
+            LaunchError: the location has no value.
         """
-        path = Path(perform_text(context, self.location))
-        if self._read is None or self._read[0] != path:
-            self._read = (path, read_launch_file(path))
-        return self._read
+        return Path(os.path.abspath(perform_text(context, self.location)))
 
     def describe(self) -> str:
         """Return the location as it is written."""

@@ -79,11 +79,15 @@ def is_costly(value: Text) -> bool:
     return any(is_costly(part) for part in value)
 
 
+def keep_pairs(pairs: Pairs | None) -> tuple[tuple[Text, Text], ...]:
+    """Return the pairs as a value that can be looked at twice, unlike what `zip` gives."""
+    items = pairs.items() if isinstance(pairs, Mapping) else pairs or ()
+    return tuple(cast("Iterable[tuple[Text, Text]]", items))
+
+
 def perform_pairs(context: LaunchContext, pairs: Pairs) -> tuple[tuple[str, str], ...]:
     """Return the pairs with both sides performed; see `perform_text`."""
-    items = cast(
-        "Iterable[tuple[Text, Text]]", pairs.items() if isinstance(pairs, Mapping) else pairs
-    )
     return tuple(
-        (perform_text(context, left), perform_text(context, right)) for left, right in items
+        (perform_text(context, left), perform_text(context, right))
+        for left, right in keep_pairs(pairs)
     )

@@ -31,6 +31,7 @@ from textwrap import dedent
 from launch_py import *
 from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.event_handlers import OnProcessExit, OnProcessStart
+from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import Node, PushRosNamespace
 from launch_py.substitutions import *
 

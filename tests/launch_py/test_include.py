@@ -2,6 +2,7 @@
 
 import pytest
 
+from launch_py.command_line import find_launch_file
 from launch_py.errors import LaunchFileError, NotFoundError, UsageError
 from launch_py.expansion import survey_description
 from launch_py.launch_description_sources import read_launch_file
@@ -83,6 +84,44 @@ def test_a_circle_of_includes_ends_with_a_sentence(write_launch_file, expand_fil
     path = write_launch_file("actions = [IncludeLaunchDescription(ThisLaunchFile())]")
     with pytest.raises(LaunchFileError, match="include each other without end"):
         expand_file(path)
+
+
+def test_a_file_named_relatively_knows_its_folder(
+    parent, write_launch_file, expand_file, monkeypatch
+):
+    top = parent()
+    monkeypatch.chdir(top.parent)
+    outer = write_launch_file(
+        f'actions = [IncludeLaunchDescription("{top.name}")]', "outer.launch.py"
+    )
+    assert texts(expand_file(outer)) == ["child empty 100"]
+    assert expand_file(find_launch_file([top.name], {})).steps
+
+
+@pytest.mark.parametrize(
+    "arguments", ["zip(['world'], ['objects'])", "(p for p in [('world', 'objects')])"]
+)
+def test_arguments_that_can_be_gone_through_once_are_passed(parent, expand_file, arguments):
+    assert texts(expand_file(parent(f", launch_arguments={arguments}"))) == ["child objects 100"]
+
+
+def test_no_arguments_may_be_none(parent, expand_file):
+    assert texts(expand_file(parent(", launch_arguments=None"))) == ["child empty 100"]
+
+
+def test_one_source_included_twice_is_two_copies(write_launch_file, expand_file):
+    write_launch_file(
+        "a = forever('a'); actions = [a, forever('b', depends_on=a)]", "robot.launch.py"
+    )
+    path = write_launch_file(
+        """
+        source = PythonLaunchDescriptionSource([ThisLaunchFileDir(), "/robot.launch.py"])
+        actions = [IncludeLaunchDescription(source), IncludeLaunchDescription(source)]
+        """
+    )
+    plan = expand_file(path)
+    waits_for = {s.name: [trigger.process for trigger in s.after] for s in plan.processes}
+    assert waits_for == {"a": [], "b": ["a"], "a-2": [], "b-2": ["a-2"]}
 
 
 def test_a_missing_file_names_its_neighbours(parent, write_launch_file, expand_file):

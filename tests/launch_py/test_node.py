@@ -65,6 +65,18 @@ def test_name_namespace_and_remappings(expand):
     assert plan.processes[0].name == "chatter"
 
 
+def test_remappings_may_be_a_dict(expand):
+    assert words(expand([node(remappings={"chat": "talk"})]))[1:] == (
+        "--ros-args",
+        *("-r", "chat:=talk"),
+    )
+
+
+def test_what_is_not_given_may_be_none(expand):
+    bare = node(parameters=None, remappings=None, arguments=None, ros_arguments=None)
+    assert len(words(expand([bare]))) == 1
+
+
 def test_an_absolute_namespace_stands_alone(expand):
     plan = expand([PushRosNamespace("left"), node(namespace="/right")])
     assert "__ns:=/right" in words(plan)

@@ -12,9 +12,10 @@ from launch_py.launch_description import LaunchDescription
 from launch_py.launch_description_sources import (
     LaunchDescriptionSource,
     PythonLaunchDescriptionSource,
+    read_launch_file,
 )
 from launch_py.near_names import describe_known
-from launch_py.substitution import Pairs, Text, perform_pairs
+from launch_py.substitution import Pairs, Text, keep_pairs, perform_pairs
 from launch_py.survey import Survey
 
 if TYPE_CHECKING:
@@ -39,14 +40,15 @@ class IncludeLaunchDescription(Action):
         self,
         launch_description_source: Source,
         *,
-        launch_arguments: Pairs = (),
+        launch_arguments: Pairs | None = None,
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         if not isinstance(launch_description_source, LaunchDescriptionSource | LaunchDescription):
             launch_description_source = PythonLaunchDescriptionSource(launch_description_source)
         self.source = launch_description_source
-        self.launch_arguments = launch_arguments
+        self.launch_arguments = keep_pairs(launch_arguments)
+        self._read: tuple[Path, LaunchDescription] | None = None
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the included actions.
@@ -77,7 +79,12 @@ class IncludeLaunchDescription(Action):
     def _load(self, context: LaunchContext) -> tuple[Path | None, LaunchDescription]:
         if isinstance(self.source, LaunchDescription):
             return context.launch_file, self.source
-        return self.source.load(context)
+        path = self.source.path(context)
+        # Once for the survey and the expansion, which must see the same actions. Not once for the
+        # source: two includes of one file are two robots.
+        if self._read is None or self._read[0] != path:
+            self._read = (path, read_launch_file(path))
+        return self._read
 
     def _refuse_unknown(
         self,

@@ -18,7 +18,14 @@ from launch_py.parameters import (
     parameters_by_node,
 )
 from launch_py.plan import GeneratedFile
-from launch_py.substitution import Text, describe_text, perform_text
+from launch_py.substitution import (
+    Pairs,
+    Text,
+    describe_text,
+    keep_pairs,
+    perform_pairs,
+    perform_text,
+)
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
@@ -44,7 +51,7 @@ class Node(ExecuteProcess):
             or of every node of the process without one; in a process with several nodes it may
             have the form of a file, {node: {"ros__parameters": {...}}}, whose nodes are in the
             namespace of this one unless they begin with a slash.
-        remappings: pairs of a name and what it becomes.
+        remappings: pairs of a name and what it becomes, or a dict.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
     """
@@ -57,10 +64,10 @@ class Node(ExecuteProcess):
         name: Text | None = None,
         namespace: Text | None = None,
         exec_name: Text | None = None,
-        parameters: Iterable[Parameters] = (),
-        remappings: Iterable[tuple[Text, Text]] = (),
-        arguments: Iterable[Text] = (),
-        ros_arguments: Iterable[Text] = (),
+        parameters: Iterable[Parameters] | None = None,
+        remappings: Pairs | None = None,
+        arguments: Iterable[Text] | None = None,
+        ros_arguments: Iterable[Text] | None = None,
         **options: Unpack[ProcessOptions],
     ) -> None:
         super().__init__(cmd=(), name=exec_name or name or executable, **options)
@@ -68,10 +75,12 @@ class Node(ExecuteProcess):
         self.executable = executable
         self.node_name = name
         self.namespace = namespace
-        self.parameters = [parameters] if isinstance(parameters, Mapping) else list(parameters)
-        self.remappings = list(remappings)
-        self.arguments = list(arguments)
-        self.ros_arguments = list(ros_arguments)
+        self.parameters = (
+            [parameters] if isinstance(parameters, Mapping) else list(parameters or ())
+        )
+        self.remappings = keep_pairs(remappings)
+        self.arguments = list(arguments or ())
+        self.ros_arguments = list(ros_arguments or ())
 
     def command_words(self, context: LaunchContext) -> tuple[str | GeneratedFile, ...]:
         """Return the command line.
@@ -92,8 +101,8 @@ class Node(ExecuteProcess):
             ros += ["-r", f"__ns:={namespace}"]
         for parameters in self._parameter_files(context, namespace, name):
             ros += ["--params-file", parameters]
-        for old, new in [*context.remappings, *self.remappings]:
-            ros += ["-r", f"{perform_text(context, old)}:={perform_text(context, new)}"]
+        for old, new in [*context.remappings, *perform_pairs(context, self.remappings)]:
+            ros += ["-r", f"{old}:={new}"]
         ros += [perform_text(context, word) for word in self.ros_arguments]
         words = [perform_text(context, word) for word in self.arguments]
         return (*program, *words, *(["--ros-args", *ros] if ros else []))
