@@ -163,6 +163,17 @@ def test_logic_on_something_else_is_refused(context):
         ("'b' in ['a', 'b']", "True"),
         ("1 < 2 < 3", "True"),
         ("-4 // 3", "-2"),
+        ("'left' or 'robot'", "left"),
+        ("'' or 'robot'", "robot"),
+        ("'' and 'b'", ""),
+        ("'a' and 'b'", "b"),
+        ("0 and 1 / 0", "0"),
+        ("1 > 2 > 1 / 0", "False"),
+        ("'a' is not None", "True"),
+        ("None is None", "True"),
+        ("'%s_%s' % ('a', 'b')", "a_b"),
+        ("'b' in ('a', 'b')", "True"),
+        ("'b' not in ['a', 'b']", "False"),
     ],
 )
 def test_python_expression(context, expression, expected):

@@ -26,6 +26,8 @@ OPERATORS: dict[str, Callable[..., Any]] = {
     "GtE": operator.ge,
     "In": lambda a, b: a in b,
     "NotIn": lambda a, b: a not in b,
+    "Is": operator.is_,
+    "IsNot": operator.is_not,
     "Add": operator.add,
     "Sub": operator.sub,
     "Mult": operator.mul,
@@ -73,29 +75,41 @@ def _evaluate(node: ast.expr) -> Any:
             return value
         case ast.Name(name) if name in NAMES:
             return NAMES[name]
-        case ast.List(items) | ast.Tuple(items):
+        case ast.List(items):
             return [_evaluate(item) for item in items]
+        case ast.Tuple(items):
+            return tuple(_evaluate(item) for item in items)
         case ast.UnaryOp(op, operand) if type(op).__name__ in OPERATORS:
             return OPERATORS[type(op).__name__](_evaluate(operand))
         case ast.BinOp(left, op, right) if type(op).__name__ in OPERATORS:
             return OPERATORS[type(op).__name__](_evaluate(left), _evaluate(right))
-        case ast.BoolOp(ast.And(), values):
-            return all(_evaluate(value) for value in values)
-        case ast.BoolOp(ast.Or(), values):
-            return any(_evaluate(value) for value in values)
+        case ast.BoolOp(op, values):
+            return _decide(values, by=isinstance(op, ast.Or))
         case ast.IfExp(test, body, orelse):
             return _evaluate(body if _evaluate(test) else orelse)
-        case ast.Compare(left, _, comparators):
-            return _compare(node, [left, *comparators])
+        case ast.Compare():
+            return _compare(node)
     raise SubstitutionError(
         f"{ast.unparse(node)!r} is not allowed in a PythonExpression: it takes literals, "
         "comparisons, and/or/not, arithmetic and if-else; use Call for anything else"
     )
 
 
-def _compare(node: ast.Compare, operands: list[ast.expr]) -> bool:
-    values = [_evaluate(operand) for operand in operands]
-    return all(
-        OPERATORS.get(type(op).__name__, operator.is_)(values[i], values[i + 1])
-        for i, op in enumerate(node.ops)
-    )
+def _decide(operands: list[ast.expr], by: bool) -> Any:
+    """Return the first operand that is as true as `by`, else the last one, as and/or do."""
+    value = None
+    for operand in operands:
+        value = _evaluate(operand)
+        if bool(value) is by:
+            break
+    return value
+
+
+def _compare(node: ast.Compare) -> bool:
+    left = _evaluate(node.left)
+    for op, comparator in zip(node.ops, node.comparators, strict=True):
+        right = _evaluate(comparator)
+        if not OPERATORS[type(op).__name__](left, right):
+            return False
+        left = right
+    return True
