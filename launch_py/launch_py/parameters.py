@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from os import PathLike
 from typing import TYPE_CHECKING, Any, get_args, get_origin
 
@@ -17,6 +18,17 @@ if TYPE_CHECKING:
 
 UNPRINTABLE = re.compile("[\x7f-\x9f\ufffe\uffff]")
 """What JSON writes as it is and YAML does not allow bare."""
+
+YAML_WORDS = {
+    spelling: value
+    for words, value in {"true yes on": True, "false no off": False, "null ~": ""}.items()
+    for word in words.split()
+    for spelling in (word, word.capitalize(), word.upper())
+}
+"""Words that YAML does not read as text; for null, which no parameter can be, ROS takes ''."""
+
+YAML_NO_NUMBERS = (".nan", ".inf", "+.inf", "-.inf")
+"""How YAML writes the floats that have no digits; a bare nan or infinity is text."""
 
 NODE_KEY = "ros__parameters"
 """What a parameter file has between the name of a node and its parameters."""
@@ -45,7 +57,8 @@ class ParameterValue:
             return evaluate_value(context, self.value)
         origin = get_origin(self.value_type)
         if origin is list:
-            items = evaluate_value(context, self.value)
+            value = self.value
+            items = read_yaml(value) if isinstance(value, str) else evaluate_value(context, value)
             if not isinstance(items, list):
                 raise ParameterError(f"a list is needed, not {items!r}")
             item_type = get_args(self.value_type)[0]
@@ -80,8 +93,12 @@ def evaluate_value(context: LaunchContext, value: Any) -> Value:
             return value.evaluate(context)
         case Substitution():
             return read_yaml(perform_text(context, value))
-        case bool() | int() | float() | str():
+        case bool() | str():
             return value
+        case int():
+            return int(value)  # An enumeration's would be written by its name.
+        case float():
+            return float(value)  # A numpy.float64 would be written with its class.
         case PathLike():
             return str(value.__fspath__())
         case Mapping() if value:
@@ -90,6 +107,8 @@ def evaluate_value(context: LaunchContext, value: Any) -> Value:
             return read_yaml(perform_text(context, value))
         case list() | tuple():
             return _one_type([evaluate_value(context, item) for item in value])
+        case _ if hasattr(value, "tolist"):  # Another number of numpy, or an array.
+            return evaluate_value(context, value.tolist())
     raise ParameterError(
         f"{value!r} of type {type(value).__name__} cannot be a parameter; it takes bool, int, "
         "float, str, a list of one of these, a dict or a substitution"
@@ -99,20 +118,21 @@ def evaluate_value(context: LaunchContext, value: Any) -> Value:
 def read_yaml(text: str) -> Value:
     """Return what a text means as a YAML value; a text that is no YAML scalar or list is itself."""
     word = text.strip()
-    if word in ("true", "True", "TRUE", "false", "False", "FALSE"):
-        return word.lower() == "true"
-    for number in (int, float):
-        try:
-            return number(word)
-        except ValueError:
-            continue
+    if word in YAML_WORDS:
+        return YAML_WORDS[word]
+    if word.lower() in YAML_NO_NUMBERS:
+        return float(word.replace(".", ""))
+    if any(map(str.isdigit, word)):
+        for number in (int, lambda digits: int(digits, base=0), float):
+            with suppress(ValueError):
+                return number(word)
     if word[:1] not in ("[", "{", "'", '"'):
         return text
     import yaml  # Only here: importing it costs as much as starting a process.
 
     try:
         value = yaml.safe_load(word)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError) as error:  # A ValueError: no date, though written as one.
         raise ParameterError(f"{text!r} is not YAML: {str(error).splitlines()[0]}") from None
     return _one_type(value) if isinstance(value, list) else value
 

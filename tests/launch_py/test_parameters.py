@@ -2,9 +2,11 @@
 
 import json
 import math
+import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import yaml
 
@@ -76,6 +78,50 @@ def test_the_text_of_a_substitution_is_read_as_yaml(context, name, expected):
     assert evaluated(context, LaunchConfiguration(name)) == expected
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("yes", "On", "FALSE", "no", "off", "tRUE", "'yes'", "arm", "1.2.3", "nan", "infinity"),
+        *("-inf", ".inf", "-.Inf", "0x10", "1_000", "-7", "+2.5", "[yes, off]", "['1', a]"),
+    ],
+)
+def test_texts_are_read_as_pyyaml_reads_them(context, text):
+    context.launch_configurations["t"] = text
+    value = evaluated(context, LaunchConfiguration("t"))
+    assert (value, type(value)) == (yaml.safe_load(text), type(yaml.safe_load(text)))
+
+
+def test_not_a_number_is_written_as_in_yaml(context):
+    context.launch_configurations["t"] = ".nan"
+    assert math.isnan(evaluated(context, LaunchConfiguration("t")))
+
+
+@pytest.mark.parametrize("text", ["null", "~", "Null"])
+def test_nothing_is_an_empty_text_as_in_ros(context, text):
+    context.launch_configurations["t"] = text
+    assert evaluated(context, LaunchConfiguration("t")) == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "plain"),
+    [
+        (np.deg2rad(90), math.pi / 2),
+        (np.float32(0.5), 0.5),
+        (np.int64(3), 3),
+        (np.bool_(True), True),
+        (np.array([1.0, 2.5]), [1.0, 2.5]),
+        (np.array([True, False]), [True, False]),
+        ([np.float64(1.0), 2.5], [1.0, 2.5]),
+        ([np.int32(1), 2], [1, 2]),
+        (signal.SIGINT, 2),
+    ],
+)
+def test_numbers_of_other_classes_are_written_plainly(context, value, plain):
+    assert round_trip({"p": evaluated(context, value)})["p"] == plain
+    given = ParameterValue(value)
+    assert round_trip({"p": evaluated(context, given)})["p"] == plain
+
+
 def test_a_robot_description_stays_text(context):
     assert evaluated(context, LaunchConfiguration("urdf")) == URDF
 
@@ -86,6 +132,7 @@ def test_value_type_decides(context):
     assert evaluated(context, ParameterValue(rate, value_type=float)) == 100.0
     values = ParameterValue(LaunchConfiguration("list"), value_type=list[float])
     assert evaluated(context, values) == [1.0, 2.5]
+    assert evaluated(context, ParameterValue("[1, 2]", value_type=list[int])) == [1, 2]
 
 
 def test_a_list_with_substitutions_is_one_text(context):
@@ -103,6 +150,8 @@ def test_integers_among_floats_become_floats(context):
         (None, "cannot be a parameter"),
         (["a", 1], "mixes types"),
         ([[1]], "mixes types"),
+        ([np.array([1.0])], "mixes types"),
+        (ParameterValue("[2024-02-30]", value_type=list[str]), "is not YAML"),
         ([], "an empty list has no type"),
         ({}, "cannot be a parameter"),
         (ParameterValue("x", value_type=int), "'x' is not an integer"),
