@@ -14,6 +14,7 @@ from arm_control.parameters import parameter
 
 ParametersT = TypeVar("ParametersT")
 
+FIXED_INTERFACE = "Command interface of each joint; fixed, another one has no effect"
 IGNORED_GAIN = "Known from ROS 1, without effect"
 
 
@@ -29,21 +30,21 @@ class ForwardCommandParameters:
 class PositionGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupPositionController."""
 
-    interface_name: str = parameter("position", "Command interface of each joint; fixed")
+    interface_name: str = parameter("position", FIXED_INTERFACE)
 
 
 @dataclass(frozen=True, slots=True)
 class VelocityGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupVelocityController."""
 
-    interface_name: str = parameter("velocity", "Command interface of each joint; fixed")
+    interface_name: str = parameter("velocity", FIXED_INTERFACE)
 
 
 @dataclass(frozen=True, slots=True)
 class EffortGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupEffortController."""
 
-    interface_name: str = parameter("effort", "Command interface of each joint; fixed")
+    interface_name: str = parameter("effort", FIXED_INTERFACE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +132,14 @@ class ForwardCommander(Controller[ParametersT]):
 
 
 class ForwardCommandController(ForwardCommander[ForwardCommandParameters]):
-    """forward_command_controller/ForwardCommandController: one interface of several joints."""
+    """forward_command_controller/ForwardCommandController: one interface of several joints.
 
+    Attributes:
+        interface: the command interface of a type that has but one; empty where the parameter
+            names it.
+    """
+
+    interface: ClassVar[str] = ""
     parameters_type: ClassVar[type[Any]] = ForwardCommandParameters
 
     def on_configure(self, parameters: ForwardCommandParameters) -> None:
@@ -143,22 +150,29 @@ class ForwardCommandController(ForwardCommander[ForwardCommandParameters]):
         """
         if not parameters.joints:
             raise ControllerError("'joints' parameter was empty")
-        if not parameters.interface_name:
+        interface = self.interface or parameters.interface_name
+        if not interface:
             raise ControllerError("'interface_name' parameter was empty")
-        self._command_names = tuple(
-            f"{joint}/{parameters.interface_name}" for joint in parameters.joints
-        )
+        if interface != parameters.interface_name:
+            self.logger.warning(
+                "interface_name '%s' has no effect: this type of controller commands '%s'",
+                parameters.interface_name,
+                interface,
+            )
+        self._command_names = tuple(f"{joint}/{interface}" for joint in parameters.joints)
 
 
 class JointGroupPositionController(ForwardCommandController):
     """position_controllers/JointGroupPositionController: stays where it is when it ends."""
 
+    interface = "position"
     parameters_type = PositionGroupParameters
 
 
 class JointGroupVelocityController(ForwardCommandController):
     """velocity_controllers/JointGroupVelocityController: stops the joints when it ends."""
 
+    interface = "velocity"
     parameters_type = VelocityGroupParameters
 
     def on_deactivate(self) -> None:
@@ -169,6 +183,7 @@ class JointGroupVelocityController(ForwardCommandController):
 class JointGroupEffortController(ForwardCommandController):
     """effort_controllers/JointGroupEffortController: lets go of the joints when it ends."""
 
+    interface = "effort"
     parameters_type = EffortGroupParameters
 
     def on_deactivate(self) -> None:

@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control import ControllerManager, ControllerManagerError, SwitchRequest
+from arm_control import (
+    ControllerContext,
+    ControllerManager,
+    ControllerManagerError,
+    SwitchRequest,
+)
 from arm_control.forward_command_controller import (
     EffortGroupParameters,
     ForwardCommandController,
@@ -195,6 +200,26 @@ def test_the_multi_interface_controller_commands_one_joint(bench: Any, make: Any
     controller.offer([7.0, 8.0])
     bench.tick()
     assert commands(bench)[3:6:2] == [8.0, 7.0]
+
+
+@pytest.mark.parametrize(
+    ("class_", "interface", "other"),
+    [
+        (JointGroupPositionController, "position", "velocity"),
+        (JointGroupVelocityController, "velocity", "effort"),
+        (JointGroupEffortController, "effort", "position"),
+    ],
+)
+def test_the_interface_of_a_group_is_fixed(
+    class_: Any, interface: str, other: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    controller = class_(ControllerContext("it", 100))
+    for given in ({}, {"interface_name": other}):
+        assert not caplog.messages
+        controller.on_configure(class_.build_parameters({"joints": ["j0"], **given}))
+        names = controller.command_interface_configuration().names
+        assert names == (f"j0/{interface}",)
+    assert f"interface_name '{other}' has no effect" in caplog.text
 
 
 @pytest.mark.parametrize(
