@@ -6,9 +6,9 @@ dataclass groups its fields under its name: 'map_interface_to_joint_state.positi
 """
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import Any, TypeGuard, get_args, get_origin, get_type_hints
 
 from arm_control.errors import ParameterError
 
@@ -68,11 +68,10 @@ class ParameterSpec:
         """
         if not self.is_list:
             return self._convert_scalar(value, self.name)
-        if isinstance(value, str) or not hasattr(value, "__iter__"):
+        if not _is_list(value):
             raise ParameterError(f"parameter '{self.name}' must be a list, not {value!r}")
         return tuple(
-            self._convert_scalar(item, f"{self.name}[{i}]")
-            for i, item in enumerate(value)  # pyright: ignore[reportArgumentType]
+            self._convert_scalar(item, f"{self.name}[{i}]") for i, item in enumerate(value)
         )
 
     def _convert_scalar(self, value: Any, name: str) -> Any:
@@ -147,6 +146,19 @@ def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpe
             )
         )
     return tuple(specs)
+
+
+def list_among(values: Mapping[str, Any], name: str) -> tuple[Any, ...]:
+    """Return a list among values that nobody has checked yet, for names that depend on it.
+
+    What is no list counts as empty: that it is wrong is said where it is converted.
+    """
+    value = values.get(name)
+    return tuple(value) if _is_list(value) else ()
+
+
+def _is_list(value: object) -> TypeGuard[Iterable[object]]:
+    return isinstance(value, Iterable) and not isinstance(value, str)
 
 
 def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 
 from arm_control.errors import ParameterError
 from arm_control.joint_trajectory.pid import AntiWindup, PidGains
-from arm_control.parameters import ParameterSpec, build_parameters, parameter, specs_of
+from arm_control.parameters import ParameterSpec, build_parameters, list_among, parameter, specs_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class PidControllerParameters(CommonPidParameters):
     def specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         """Return every parameter that there is for the names among the given parameters."""
         specs = specs_of(CommonPidParameters)
-        for dof in given.get("dof_names") or ():
+        for dof in list_among(given, "dof_names"):
             specs += specs_of(DofGains, f"gains.{dof}.")
         return specs
 
@@ -115,7 +115,7 @@ class PidControllerParameters(CommonPidParameters):
         """
         rest = dict(values)
         gains: dict[str, DofGains] = {}
-        for dof in rest.get("dof_names") or ():
+        for dof in list_among(rest, "dof_names"):
             prefix = f"gains.{dof}."
             own = [name for name in rest if name.startswith(prefix)]
             gains[dof] = build_parameters(

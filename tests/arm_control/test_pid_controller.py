@@ -337,3 +337,11 @@ def test_bounds_the_wrong_way_round_are_refused() -> None:
         PidController.build_parameters(
             {"dof_names": ["j0"], "gains.j0.u_clamp_min": 2.0, "gains.j0.u_clamp_max": 1.0}
         )
+
+
+@pytest.mark.parametrize("names", [5, True, "j0"])
+def test_names_that_are_no_list_are_refused_in_a_sentence(names: object) -> None:
+    given = {"dof_names": names}
+    assert "dof_names" in {spec.name for spec in PidController.parameter_specs(given)}
+    with pytest.raises(ParameterError, match=f"'dof_names' must be a list, not {names!r}"):
+        PidController.build_parameters(given)

@@ -8,7 +8,7 @@ from typing import Any
 from arm_control.errors import ParameterError
 from arm_control.joint_trajectory.pid import AntiWindup, PidGains
 from arm_control.joint_trajectory.trajectory import Interpolation
-from arm_control.parameters import ParameterSpec, build_parameters, parameter, specs_of
+from arm_control.parameters import ParameterSpec, build_parameters, list_among, parameter, specs_of
 
 LOWEST_MONITOR_RATE_HZ = 0.1
 
@@ -150,7 +150,7 @@ class JointTrajectoryParameters(CommonParameters):
     def specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         """Return every parameter that there is for the joints among the given parameters."""
         specs = specs_of(CommonParameters)
-        for joint in given.get("joints") or ():
+        for joint in list_among(given, "joints"):
             specs += specs_of(JointGains, f"gains.{joint}.")
             specs += specs_of(JointConstraints, f"constraints.{joint}.")
         return specs
@@ -163,7 +163,7 @@ class JointTrajectoryParameters(CommonParameters):
             ParameterError: a name is unknown, or a value cannot be used.
         """
         rest = dict(values)
-        joints: list[str] = list(rest.get("joints") or ())
+        joints = list_among(rest, "joints")
         gains = {joint: _take(JointGains, f"gains.{joint}.", rest) for joint in joints}
         constraints = {
             joint: _take(JointConstraints, f"constraints.{joint}.", rest) for joint in joints

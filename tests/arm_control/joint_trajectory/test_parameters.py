@@ -30,6 +30,14 @@ def test_parameters_of_each_joint_are_found_by_its_name():
     assert parameters.constraints_of("j2").goal == 0.5
 
 
+@pytest.mark.parametrize("joints", [5, True, "j0"])
+def test_joints_that_are_no_list_are_refused_in_a_sentence(joints: object):
+    given = {"joints": joints}
+    assert "joints" in {spec.name for spec in JointTrajectoryParameters.specs(given)}
+    with pytest.raises(ParameterError, match=f"'joints' must be a list, not {joints!r}"):
+        JointTrajectoryParameters.build(given)
+
+
 @pytest.mark.parametrize(
     ("name", "default", "read_only"),
     [
