@@ -78,7 +78,15 @@ class GripperGains:
 
 
 @dataclass(frozen=True, slots=True)
-class EffortGripperParameters(GripperParameters):
+class CommonEffortGripperParameters(GripperParameters):
+    """The parameters that do not depend on the name of the joint."""
+
+    # The gains of another joint are no parameters of a controller that is loaded already.
+    joint: str = parameter("", JOINT, read_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class EffortGripperParameters(CommonEffortGripperParameters):
     """Parameters of the controller that commands efforts.
 
     Attributes:
@@ -98,7 +106,7 @@ class EffortGripperParameters(GripperParameters):
         """Return every parameter that there is for the joint among the given parameters."""
         joint = given.get("joint")
         gains = specs_of(GripperGains, _prefix(joint)) if joint else ()
-        return (*specs_of(GripperParameters), *gains)
+        return (*specs_of(CommonEffortGripperParameters), *gains)
 
     @classmethod
     def build(cls, values: Mapping[str, Any]) -> "EffortGripperParameters":
@@ -110,7 +118,7 @@ class EffortGripperParameters(GripperParameters):
         prefix = _prefix(values.get("joint"))
         own = {name: value for name, value in values.items() if name.startswith(prefix)}
         common = build_parameters(
-            GripperParameters, {n: value for n, value in values.items() if n not in own}
+            CommonEffortGripperParameters, {n: v for n, v in values.items() if n not in own}
         )
         gains = build_parameters(
             GripperGains, {name.removeprefix(prefix): value for name, value in own.items()}
@@ -118,6 +126,16 @@ class EffortGripperParameters(GripperParameters):
         return cls(
             **{item.name: getattr(common, item.name) for item in fields(common)}, gains=gains
         )
+
+    def check(self) -> None:
+        """Raise `ParameterError` where a value is out of its range."""
+        GripperParameters.check(self)
+        # Infinity is no bound, which is in order.
+        if not self.gains.i_clamp >= 0.0:
+            raise ParameterError(
+                f"parameter '{_prefix(self.joint)}i_clamp' must be at least 0, "
+                f"but is {self.gains.i_clamp:g}"
+            )
 
 
 def _prefix(joint: object) -> str:

@@ -1,5 +1,6 @@
 """What each gripper controller commands, claims and reports."""
 
+from math import inf
 from typing import Any
 
 import pytest
@@ -206,3 +207,13 @@ def test_a_value_out_of_range_is_refused_and_the_old_ones_stay(make_rig: Any) ->
     with pytest.raises(ParameterError, match="'goal_tolerance' must be at least 0, but is -1"):
         rig.set(goal_tolerance=-1.0)
     assert rig.controller.parameters.goal_tolerance == 0.02
+
+
+def test_a_bound_of_the_integral_below_zero_is_refused(make_rig: Any) -> None:
+    says = r"'gains\.grip\.i_clamp' must be at least 0, but is -5"
+    with pytest.raises(ControllerManagerError, match=says):
+        effort_rig(make_rig, **{"gains.grip.i_clamp": -5.0})
+    rig = effort_rig(make_rig, **{"gains.grip.i_clamp": inf})
+    with pytest.raises(ParameterError, match=says):
+        rig.set(**{"gains.grip.i_clamp": -5.0})
+    assert rig.controller.parameters.gains.i_clamp == inf

@@ -18,6 +18,8 @@ COMMON = {
     "stall_velocity_threshold": (0.001, False),
 }
 GAINS = {f"gains.grip.{name}": (0.0, False) for name in ("p", "i", "d", "i_clamp")}
+# Read-only, unlike a real one's: a controller has the gains of the joint that it was loaded with.
+EFFORT = {**COMMON, **GAINS, "joint": ("", True)}
 # One more than a real one: so that max_effort can have an effect.
 POSITION = {**COMMON, "max_effort_interface": ("", True)}
 PARALLEL = {
@@ -36,7 +38,7 @@ PARALLEL = {
     ("type_name", "expected"),
     [
         ("position_controllers/GripperActionController", POSITION),
-        ("effort_controllers/GripperActionController", {**COMMON, **GAINS}),
+        ("effort_controllers/GripperActionController", EFFORT),
         ("parallel_gripper_action_controller/GripperActionController", PARALLEL),
     ],
 )
