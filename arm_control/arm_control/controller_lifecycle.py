@@ -57,15 +57,9 @@ class ControllerLifecycle:
         return self._arrive(managed, Transition.CLEANUP, reason)
 
     def activate(self, managed: ManagedController) -> str:
-        """Claim and loan the interfaces, then start."""
-        self._resources.claim(managed.name, managed.commands)
-        managed.controller.assign_interfaces(
-            self._resources.loan_commands(managed.commands),
-            self._resources.loan_states(managed.states),
-        )
-        managed.restart_cadence()
-        managed.forget_references()
-        reason = self._run(managed, Transition.ACTIVATE, managed.controller.on_activate)
+        """Loan and claim the interfaces, then start."""
+        reason = self._run(managed, Transition.ACTIVATE, lambda: self._lend(managed))
+        reason = reason or self._run(managed, Transition.ACTIVATE, managed.controller.on_activate)
         if reason:
             self._take_interfaces(managed)
         return self._arrive(managed, Transition.ACTIVATE, reason)
@@ -88,6 +82,15 @@ class ControllerLifecycle:
         self._forget(managed)
         self._arrive(managed, Transition.SHUTDOWN, "")
         return reason
+
+    def _lend(self, managed: ManagedController) -> None:
+        managed.controller.assign_interfaces(
+            self._resources.loan_commands(managed.commands),
+            self._resources.loan_states(managed.states),
+        )
+        self._resources.claim(managed.name, managed.commands)
+        managed.restart_cadence()
+        managed.forget_references()
 
     def _forget(self, managed: ManagedController) -> None:
         managed.forget_interfaces()

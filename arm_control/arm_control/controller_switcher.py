@@ -70,7 +70,7 @@ class ControllerSwitcher:
         """Deactivate these without asking anybody: after errors, and at the end."""
         if not controllers:
             return
-        self._leave_modes(controllers)
+        self._leave_modes([name for controller in controllers for name in controller.commands])
         for controller in self._from_above(controllers):
             self._lifecycle.deactivate(controller)
         self._set_chained_modes()
@@ -105,22 +105,25 @@ class ControllerSwitcher:
         )
 
     def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
+        modes = {controller: controller.commands for controller in plan.activate}
         stuck = [c for c in self._from_above(plan.deactivate) if self._lifecycle.deactivate(c)]
         self._set_chained_modes(plan.activate)
-        refused = self._activate(plan.activate)
+        refused = self._activate(plan.activate, stuck)
         if refused:
             self._set_chained_modes()
-            self._leave_modes(refused)
+            self._leave_modes([name for controller in refused for name in modes[controller]])
             if request.is_strict:
                 self.deactivate([c for c in plan.activate if c.is_active])
         if stuck or refused:
             return _failed(refused, stuck)
         return _succeeded(plan, request)
 
-    def _activate(self, controllers: Sequence[ManagedController]) -> list[ManagedController]:
-        """Activate these from below; return those that could not be."""
-        refused: list[ManagedController] = []
-        for controller in self._chain.from_below(controllers):
+    def _activate(
+        self, controllers: Sequence[ManagedController], stuck: Sequence[ManagedController]
+    ) -> list[ManagedController]:
+        """Activate these from below, but none that failed to stop; return who is not active."""
+        refused = [controller for controller in controllers if controller in stuck]
+        for controller in self._chain.from_below(c for c in controllers if c not in stuck):
             missing = [c.name for c in self._chain.following(controller) if c in refused]
             if missing:
                 logger.error(
@@ -137,9 +140,8 @@ class ControllerSwitcher:
     ) -> tuple[ManagedController, ...]:
         return self._chain.from_below(controllers[::-1])[::-1]
 
-    def _leave_modes(self, controllers: Iterable[ManagedController]) -> None:
-        stop = [name for controller in controllers for name in controller.commands]
-        reason = self._resources.perform_mode_switch((), stop)
+    def _leave_modes(self, commands: Sequence[str]) -> None:
+        reason = self._resources.perform_mode_switch((), commands)
         if reason:
             logger.error("Error while performing mode switch: %s", reason)
 

@@ -1,5 +1,6 @@
 """The interfaces that chainable controllers lend to other controllers."""
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -105,9 +106,24 @@ class ExportedInterfaces:
         return entry is not None and entry[0].is_active
 
     def reference_place(self, name: str) -> Place:
-        """Return where a reference's value stands."""
-        return self._references[name][1]
+        """Return where a reference's value stands.
+
+        Raises:
+            ControllerManagerError: no controller exports it, or none does any more.
+        """
+        return _place(self._references, name)
 
     def state_place(self, name: str) -> Place:
-        """Return where an exported state's value stands; read-only."""
-        return self._states[name][1]
+        """Return where an exported state's value stands; read-only.
+
+        Raises:
+            ControllerManagerError: no controller exports it, or none does any more.
+        """
+        return _place(self._states, name)
+
+
+def _place(entries: Mapping[str, tuple[object, Place]], name: str) -> Place:
+    entry = entries.get(name)
+    if entry is None:
+        raise ControllerManagerError(f"no controller exports '{name}'")
+    return entry[1]

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from arm_control import SwitchRequest
+from arm_control.controller_switch import Strictness
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 
@@ -97,3 +98,19 @@ def test_a_controller_that_cannot_stop_is_cleaned_up_and_loses_its_interfaces(be
     assert result.message.endswith("\nUnable to deactivate controllers: [ bad ]")
     assert bench.states()["bad"] == "unconfigured"
     assert bench.manager.switch_controller(SwitchRequest(("next",))).ok
+
+
+@pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
+def test_a_controller_that_cannot_stop_is_not_restarted(bench: Any, strictness: Strictness) -> None:
+    bench.configure("bad", commands=ALL).refuses.add("deactivate")
+    bench.configure("good", states=("j0/position",))
+    bench.manager.switch_controller(SwitchRequest(("bad",)))
+    result = bench.manager.switch_controller(SwitchRequest(("bad", "good"), ("bad",), strictness))
+    assert not result.ok
+    assert "Unable to activate controllers: [ bad ]" in result.message
+    assert bench.states() == {
+        "bad": "unconfigured",
+        "good": "inactive" if strictness is Strictness.STRICT else "active",
+    }
+    assert bench.events.count("bad activate") == 1
+    assert bench.hardware.mode_switches[-1] == ((), ALL)

@@ -104,6 +104,21 @@ def test_a_whole_chain_can_be_restarted(pair: Any) -> None:
     assert pair.status("low").is_chained
 
 
+def test_a_chain_one_of_which_cannot_stop_is_not_restarted(pair: Any) -> None:
+    pair.switch("low high")
+    low = pair.links["low"]
+    parameters, low.refuses_to_stop = low.parameters, True
+    result = pair.switch("low high", "low high")
+    assert result.message.endswith(
+        "\nUnable to activate controllers: [ low high ]\nUnable to deactivate controllers: [ low ]"
+    )
+    assert pair.states() == {"high": "inactive", "low": "unconfigured"}
+    assert pair.bench.hardware.mode_switches[-1] == ((), ("j0/position",))
+    # Nothing is left claimed: configured again, the chain starts as ever.
+    pair.manager.configure_controller("low", parameters)
+    assert pair.switch("low high").ok
+
+
 def test_whoever_is_commanded_is_not_restarted_alone(pair: Any) -> None:
     pair.switch("low high")
     pair.links["low"].references[:] = 7.0
