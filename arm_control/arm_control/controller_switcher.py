@@ -99,7 +99,7 @@ class ControllerSwitcher:
         self.switch(
             SwitchRequest(
                 tuple(name for name in fallbacks if not self._is_active(name)),
-                tuple(dict.fromkeys(self._holders_of_interfaces(fallbacks))),
+                tuple(c.name for c in self._chain.with_preceding(self._holders_for(fallbacks))),
                 Strictness.STRICT,
             )
         )
@@ -160,7 +160,7 @@ class ControllerSwitcher:
         controller = self._controllers.get(name)
         return controller is not None and controller.is_active
 
-    def _holders_of_interfaces(self, names: Iterable[str]) -> Iterable[str]:
+    def _holders_for(self, names: Iterable[str]) -> Iterable[ManagedController]:
         """Yield the controllers that hold what inactive controllers of these names need."""
         for name in names:
             controller = self._controllers.get(name)
@@ -169,7 +169,7 @@ class ControllerSwitcher:
             for command in controller.commands:
                 holder = self._resources.claimant(command)
                 if holder is not None:
-                    yield holder
+                    yield self._controllers[holder]
 
 
 def _succeeded(plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:

@@ -220,6 +220,25 @@ def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
     }
 
 
+def test_a_fallback_stops_the_whole_chain_that_holds_its_interfaces(pair: Any) -> None:
+    pair.forwarder("spare", ("j0", "j1"))
+    work = pair.link(
+        "work",
+        commands=("j1/position",),
+        references=("x/position",),
+        fallback_names=("spare",),
+    )
+    assert pair.switch("low high work").ok
+    work.fails = True
+    pair.bench.tick()
+    assert pair.states() == {
+        "high": "inactive",
+        "low": "inactive",
+        "work": "inactive",
+        "spare": "active",
+    }
+
+
 def test_hardware_that_fails_takes_the_leaders_of_its_users_along(pair: Any) -> None:
     pair.switch("low high")
     pair.bench.hardware.read_result = HardwareReturn.ERROR
