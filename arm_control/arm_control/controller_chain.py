@@ -111,6 +111,10 @@ class ControllerChain:
         """Return these and all active ones that precede them."""
         return self._closure(controllers, self.preceding)
 
+    def with_read(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
+        """Return these and all active ones whose exported states they read."""
+        return self._closure(controllers, self.read_by)
+
     def with_group(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
         """Return these and all active ones that they hang together with."""
         return self._closure(controllers, lambda c: (*self.preceding(c), *self.following(c)))

@@ -115,7 +115,7 @@ class ControllerManager:
     # One tick
 
     def update(self, time_s: float, period_s: float) -> None:
-        """Run the controllers that command something."""
+        """Run the controllers that command something, and those whose exported states they read."""
         began_s = self._supervision.now_s()
         failed = [c for c in self._commanding if not c.run(time_s, period_s)]
         if failed:
@@ -137,7 +137,7 @@ class ControllerManager:
             self._stop_troubled(trouble, "read")
 
     def publish(self, time_s: float, period_s: float) -> None:
-        """Run the controllers that only look at states, such as broadcasters."""
+        """Run the others: those that only look at states, such as broadcasters."""
         failed = [c for c in self._broadcasting if not c.run(time_s, period_s)]
         if failed:
             self._replace_failed(failed)
@@ -316,8 +316,8 @@ class ControllerManager:
 
     def _select_active(self) -> None:
         active = [c for c in self._chain.in_order() if c.is_active]
-        self._commanding = tuple(c for c in active if c.commands)
-        self._broadcasting = tuple(c for c in active if not c.commands)
+        self._commanding = self._chain.with_read(c for c in active if c.commands)
+        self._broadcasting = tuple(c for c in active if c not in self._commanding)
         if self._limiter is not None:
             self._limiter.claimed({name for c in active for name in c.commands})
         if self.resources.exported.states():

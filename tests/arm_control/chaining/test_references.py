@@ -156,6 +156,27 @@ def test_exported_states_are_read_in_the_same_cycle(chain: Any) -> None:
         reader.states.write(0.0)
 
 
+@pytest.mark.parametrize("names", ["estimator user", "user estimator"])
+def test_whoever_commands_reads_what_only_exports_in_the_same_cycle(chain: Any, names: str) -> None:
+    """Before the commands, not when the broadcasters' turn comes."""
+    states = {
+        "raw": ("j0/position",),
+        "estimator": ("raw/x/position",),
+        "user": ("estimator/x/position",),
+    }
+    for name in ("raw", *names.split()):
+        commands = ("j1/position",) if name == "user" else ()
+        chain.link(name, commands=commands, states=states[name], exported=("x/position",))
+    chain.link("aside", states=("raw/x/position",), exported=("x/position",))
+    chain.manager.resources.states[:] = 3.0
+    assert chain.switch("raw estimator user aside").ok
+    chain.manager.update(1.0, 0.01)
+    assert chain.runs == ["raw", "estimator", "user"]
+    assert chain.links["user"].exported_states.tolist() == [3.0]
+    chain.manager.publish(1.0, 0.01)
+    assert chain.runs == ["raw", "estimator", "user", "aside"]
+
+
 # Order
 
 
