@@ -9,7 +9,7 @@ LaunchError
 +-- StartError             a process that could not be started
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 
@@ -42,8 +42,11 @@ class StartError(LaunchError):
 
 
 @contextmanager
-def blaming(what: str) -> Iterator[None]:
-    """Turn whatever the code of a launch file raises inside into a sentence that names `what`.
+def blaming(describe: Callable[[], str]) -> Iterator[None]:
+    """Turn whatever a mistake of a launch file raises inside into a sentence.
+
+    Args:
+        describe: returns whom to blame; asked only then.
 
     Raises:
         LaunchFileError: something other than a LaunchError was raised.
@@ -56,4 +59,4 @@ def blaming(what: str) -> Iterator[None]:
         # An error class of somebody's own comes with a sentence; KeyError and the like do not.
         own = type(error).__module__ != "builtins"
         text = str(error) if own and str(error) else f"{type(error).__name__}: {error}"
-        raise LaunchFileError(f"{what}: {text}") from error
+        raise LaunchFileError(f"{describe()}: {text}") from error

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from launch_py.errors import UsageError
+from launch_py.errors import UsageError, blaming
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description import LaunchDescription
 from launch_py.near_names import describe_known
@@ -16,10 +16,15 @@ from launch_py.survey import Survey
 def survey_description(
     description: LaunchDescription, environ: Mapping[str, str], path: Path | None = None
 ) -> Survey:
-    """Return what the description declares and contains, without expanding it."""
+    """Return what the description declares and contains, without expanding it.
+
+    Raises:
+        LaunchFileError: something in it is not of a kind that can be there.
+    """
     survey = Survey()
     context = LaunchContext(base_environment=environ).included(path, {})
-    description.survey(survey, context)
+    with blaming(lambda: _name(path)):
+        description.survey(survey, context)
     return survey
 
 
@@ -43,12 +48,16 @@ def expand_description(
     survey = survey_description(description, environ, path)
     for name in arguments:
         if name not in survey.arguments:
-            what = path.name if path else "the launch description"
             known = describe_known(name, survey.arguments, "its arguments are")
-            raise UsageError(f"{what} has no launch argument {name!r}; {known}")
+            raise UsageError(f"{_name(path)} has no launch argument {name!r}; {known}")
     context = LaunchContext(base_environment=environ).included(path, {})
     context.launch_configurations.update(arguments)
     context.plan.surveyed_actions = survey.actions
     context.plan.surveyed_names = survey.process_names
-    description.visit(context)
-    return context.plan.finish()
+    with blaming(lambda: _name(path)):
+        description.visit(context)
+        return context.plan.finish()
+
+
+def _name(path: Path | None) -> str:
+    return path.name if path else "the launch description"

@@ -70,11 +70,11 @@ class LaunchContext:
         def expand(event: ProcessEvent) -> Sequence[Step]:
             inner = self.scoped()
             inner.after, inner.delay_s = (), 0.0
-            with blaming("an event handler"):
-                actions = function(event, inner) or ()
-            for action in check_actions(actions, "an event handler"):
-                action.visit(inner)
-            return self.plan.finish_steps()
+            who = "an event handler"
+            with blaming(lambda: who):
+                for action in check_actions(function(event, inner) or (), who):
+                    action.visit(inner)
+                return self.plan.finish_steps()
 
         return DeferredStep(after=self.after, delay_s=self.delay_s, expand=expand)
 

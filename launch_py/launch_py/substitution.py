@@ -67,7 +67,9 @@ def describe_text(value: Text) -> str:
         return value.describe()
     if isinstance(value, PathLike):
         return str(value.__fspath__())
-    return "".join(describe_text(part) for part in value)
+    if isinstance(value, Iterable) and not isinstance(value, bytes):
+        return "".join(describe_text(part) for part in value)
+    return repr(value)  # A mistake, of which a message is about to be made.
 
 
 def is_costly(value: Text) -> bool:

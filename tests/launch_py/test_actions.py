@@ -10,6 +10,7 @@ from launch_py import (
     EmitEvent,
     ExecuteProcess,
     GroupAction,
+    IncludeLaunchDescription,
     LaunchDescription,
     LogInfo,
     OpaqueFunction,
@@ -21,11 +22,19 @@ from launch_py import (
     UnsetEnvironmentVariable,
 )
 from launch_py.conditions import IfCondition, UnlessCondition
-from launch_py.errors import LaunchFileError, NotFoundError, SubstitutionError, UsageError
+from launch_py.errors import (
+    LaunchError,
+    LaunchFileError,
+    NotFoundError,
+    SubstitutionError,
+    UsageError,
+)
 from launch_py.events import Shutdown as ShutdownEvent
 from launch_py.expansion import survey_description
 from launch_py.plan import MessageStep, ShutdownStep, StopDelays
+from launch_py.restart_policy import RestartHistory
 from launch_py.substitutions import Call, LaunchConfiguration
+from launch_py.testing import ManualClock
 
 
 def sh(name="sh", **options):
@@ -175,6 +184,46 @@ def test_a_prefix_is_put_before_the_command(expand):
     assert [os.path.basename(str(word)) for word in step.command[:3]] == ["env", "-i", "sh"]
 
 
+@pytest.mark.parametrize("prefix", [None, "", " "])
+def test_an_empty_prefix_is_none(expand, prefix):
+    assert len(expand([sh(prefix=prefix)]).processes[0].command) == 3
+
+
+@pytest.mark.parametrize(
+    ("action", "message"),
+    [
+        (
+            LogInfo(msg="x", condition=LaunchConfiguration("x")),  # pyright: ignore[reportArgumentType]
+            "^a LogInfo: AttributeError: 'LaunchConfiguration' .* 'evaluate'",
+        ),
+        (sh(prefix='"'), "^an ExecuteProcess of sh: ValueError: No closing quotation"),
+        (sh(cwd=3), "a text or a substitution is needed, not 3"),
+        (sh(ready=["up"]), "^an ExecuteProcess of sh: AttributeError"),
+        (GroupAction([sh(env={"A": 1})]), "needed, not 1 of type int"),
+        (sh(output=3), "needed, not 3 of type int"),
+        (
+            IncludeLaunchDescription(LaunchDescription(), launch_arguments=["abc"]),  # pyright: ignore[reportArgumentType]
+            "^the launch description: ValueError: too many values",
+        ),
+    ],
+)
+def test_what_an_action_does_not_take_is_a_sentence(expand, action, message):
+    with pytest.raises(LaunchError, match=message):
+        expand([action])
+
+
+def test_a_dependency_on_something_else_is_refused():
+    with pytest.raises(LaunchFileError, match="depends_on= takes actions and names, not 3"):
+        sh(depends_on=[3])
+
+
+def test_choices_may_be_numbers(expand):
+    argument = DeclareLaunchArgument("n", choices=[1, 2])
+    assert expand([argument], n="2").steps == ()
+    with pytest.raises(UsageError, match="'n' cannot be '3'; the choices are 1, 2"):
+        expand([argument], n="3")
+
+
 def test_names_are_made_unique(expand):
     plan = expand([sh("a"), sh("a"), ExecuteProcess(cmd=["true"])])
     assert [step.name for step in plan.processes] == ["a", "a-2", "true"]
@@ -185,6 +234,18 @@ def test_respawn_is_a_restart_policy(expand):
     policy = step.restart
     assert (policy.when, policy.first_delay_s, policy.factor) == ("always", 2.0, 1.0)
     assert policy.max_restarts == 3
+
+
+def test_retries_that_are_counted_are_all_made(expand):
+    (step,) = expand([sh(respawn=True, respawn_max_retries=10)]).processes
+    history = RestartHistory(step.restart, ManualClock())
+    assert [history.ended(1).delay_s for _ in range(11)] == [0.0] * 10 + [None]
+
+
+def test_retries_without_a_number_end_with_a_crash_loop(expand):
+    (step,) = expand([sh(respawn=True)]).processes
+    history = RestartHistory(step.restart, ManualClock())
+    assert [history.ended(1).delay_s for _ in range(5)] == [0.0] * 4 + [None]
 
 
 def test_stop_delays_may_be_substitutions(expand):

@@ -9,6 +9,7 @@ from launch_py import (
     LogInfo,
     LogLine,
     Notified,
+    OpaqueFunction,
     ProcessExited,
     RegisterEventHandler,
     RestartPolicy,
@@ -348,11 +349,20 @@ def test_a_handler_that_fails_ends_the_launch_with_a_sentence(trial):
     assert "no program 'no-such-program-x'" in str(t.screen.last_line)
 
 
-def test_a_function_as_handler_that_raises_ends_the_launch_with_a_sentence(trial):
-    t = trial(process("a", on_exit=lambda event, _context: event.no_such_thing))
+@pytest.mark.parametrize(
+    ("handler", "said"),
+    [
+        (lambda event, _context: event.no_such_thing, "an event handler: AttributeError"),
+        (lambda _event, _context: 3, "an event handler: TypeError"),
+        (lambda *_: process("b", prefix="'"), "an ExecuteProcess of b: ValueError"),
+        (OpaqueFunction(function=lambda _context: 3), "an event handler: TypeError"),
+    ],
+)
+def test_a_handler_with_a_mistake_ends_the_launch_with_a_sentence(trial, handler, said):
+    t = trial(process("a", on_exit=handler))
     t["a"].end(0)
     assert t.finish() == 1
-    assert "an event handler: AttributeError" in str(t.screen.last_line)
+    assert said in str(t.screen.last_line)
 
 
 def test_whoever_waits_for_a_process_does_not_wait_for_its_handlers(trial):

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from launch_py.errors import LaunchFileError
+from launch_py.errors import LaunchFileError, blaming
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
@@ -25,10 +25,15 @@ class Action(ABC):
         self.condition = condition
 
     def visit(self, context: LaunchContext) -> None:
-        """Expand it where its condition holds."""
-        if self.condition is None or self.condition.evaluate(context):
-            with context.plan.expanding(self):
-                self.expand(context)
+        """Expand it where its condition holds.
+
+        Raises:
+            LaunchError: something in it does not make sense, or is not of a kind that it takes.
+        """
+        with blaming(self.describe):
+            if self.condition is None or self.condition.evaluate(context):
+                with context.plan.expanding(self):
+                    self.expand(context)
 
     @abstractmethod
     def expand(self, context: LaunchContext) -> None:

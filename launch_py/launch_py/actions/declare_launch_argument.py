@@ -30,14 +30,14 @@ class DeclareLaunchArgument(Action):
         *,
         default_value: Text | None = None,
         description: Text | None = None,
-        choices: Iterable[str] | None = None,
+        choices: Iterable[object] | None = None,
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         self.name = name
         self.default_value = default_value
         self.description = None if description is None else describe_text(description)
-        self.choices = tuple(choices or ())
+        self.choices = tuple(str(choice) for choice in choices or ())
 
     def expand(self, context: LaunchContext) -> None:
         """Set the default where no value is given; check the value.

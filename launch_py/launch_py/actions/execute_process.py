@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypedDict
 
 from launch_py.actions.action import Action, check_actions
@@ -50,14 +51,14 @@ class ProcessOptions(TypedDict, total=False):
     depends_on: Action | str | Iterable[Action | str]
     restart: RestartPolicy | None
     on_exit: Reaction | None
-    prefix: Text
+    prefix: Text | None
     output: Text
     emulate_tty: bool
     cwd: Text | None
     env: Variables | None
     additional_env: Variables | None
     respawn: bool | Text
-    respawn_delay: float
+    respawn_delay: float | None
     respawn_max_retries: int
     sigterm_timeout: float | Text
     sigkill_timeout: float | Text
@@ -98,14 +99,14 @@ class ExecuteProcess(Action):
         restart: RestartPolicy | None = None,
         on_exit: Reaction | None = None,
         shell: bool = False,
-        prefix: Text = "",
+        prefix: Text | None = None,
         output: Text = "screen",
         emulate_tty: bool = False,
         cwd: Text | None = None,
         env: Variables | None = None,
         additional_env: Variables | None = None,
         respawn: bool | Text = False,
-        respawn_delay: float = 0.0,
+        respawn_delay: float | None = None,
         respawn_max_retries: int = -1,
         sigterm_timeout: float | Text = SIGTERM_TIMEOUT_S,
         sigkill_timeout: float | Text = SIGKILL_TIMEOUT_S,
@@ -118,17 +119,20 @@ class ExecuteProcess(Action):
         self.depends_on = (
             (depends_on,) if isinstance(depends_on, Action | str) else tuple(depends_on)
         )
+        for process in self.depends_on:
+            if not isinstance(process, Action | str):
+                raise LaunchFileError(f"depends_on= takes actions and names, not {process!r}")
         self.restart = restart
         self.on_exit = on_exit
         self.shell = shell
-        self.prefix = prefix
+        self.prefix = prefix or ""
         self.output = output
         self.emulate_tty = emulate_tty
         self.cwd = cwd
         self.env = env
         self.additional_env = additional_env or {}
         self.respawn = respawn
-        self.respawn_delay = respawn_delay
+        self.respawn_delay = respawn_delay or 0.0
         self.respawn_max_retries = respawn_max_retries
         self.sigterm_timeout = sigterm_timeout
         self.sigkill_timeout = sigkill_timeout
@@ -203,7 +207,7 @@ class ExecuteProcess(Action):
         self, context: LaunchContext, command: tuple[str | GeneratedFile, ...]
     ) -> tuple[str | GeneratedFile, ...]:
         text = perform_text(context, self.prefix)
-        if not text:
+        if not text.strip():
             return command
         import shlex
 
@@ -237,10 +241,13 @@ class ExecuteProcess(Action):
             respawn = parse_truth(perform_text(context, respawn)) is True
         if not respawn:
             return RestartPolicy()
-        retries = None if self.respawn_max_retries < 0 else self.respawn_max_retries
-        return RestartPolicy(
-            "always", first_delay_s=self.respawn_delay, factor=1.0, max_restarts=retries
-        )
+        policy = RestartPolicy("always", first_delay_s=self.respawn_delay, factor=1.0)
+        retries = self.respawn_max_retries
+        if retries < 0:
+            return policy
+        # Whoever counts the retries wants them all.
+        patience = max(policy.give_up_after, retries + 1)
+        return replace(policy, max_restarts=retries, give_up_after=patience)
 
 
 def _seconds(context: LaunchContext, value: float | Text, name: str) -> float:

@@ -46,7 +46,7 @@ class OpaqueFunction(Action):
             action.visit(context)
 
     def _call(self, context: LaunchContext) -> Iterable[Action] | Action:
-        with blaming(self.describe()):
+        with blaming(self.describe):
             return self.function(context, *self.args, **self.kwargs) or ()
 
     def describe(self) -> str:

@@ -35,7 +35,7 @@ class Call(Substitution):
         """
         args = [perform_text(context, value) for value in self.args]
         kwargs = {name: perform_text(context, value) for name, value in self.kwargs.items()}
-        with blaming(self.describe()):
+        with blaming(self.describe):
             return str(self.function(*args, **kwargs))
 
     def describe(self) -> str:
