@@ -3,7 +3,7 @@
 import logging
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, isnan, nan
 from typing import ClassVar, Generic, TypeVar
 
 from arm_control.controller import Controller, ControllerContext, ReturnType
@@ -60,6 +60,7 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
         self._target = GripperTarget(0.0, 0.0, 0.0)
         self._goal_id: object = None
         self._watch = GoalWatch(0.0, 0.0, 0.0)
+        self._seen_position = nan
 
     # Requests: any thread, once configured
 
@@ -137,6 +138,7 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
 
     def on_activate(self) -> None:
         """Hold where the joint is, and begin to take goals."""
+        self._seen_position = nan
         self._hold()
         if self.sink is not None:
             self.sink.open()
@@ -146,6 +148,8 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
         """Run one cycle."""
         self.serve_requests()
         position, velocity = self._measure()
+        if isnan(self._target.position):
+            self._hold()
         effort = self.command(self._target, position, velocity, period_s)
         if self._goal_id is not None:
             self._judge(GripperState(position, velocity, effort), period_s)
@@ -198,8 +202,11 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
                 pass
 
     def _hold(self) -> None:
-        position, _ = self._measure()
-        self._target = GripperTarget(position, self.parameters.max_effort, self.max_velocity)
+        """Stay where the joint was last seen: nowhere before its position is known at all."""
+        self._measure()
+        self._target = GripperTarget(
+            self._seen_position, self.parameters.max_effort, self.max_velocity
+        )
 
     def _end(self, result: GripperResult) -> None:
         """End the goal, if there is one."""
@@ -213,6 +220,8 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
 
     def _measure(self) -> tuple[float, float]:
         position, velocity = self.states.read()[: len(STATES)].tolist()
+        if isfinite(position):
+            self._seen_position = position
         return position, velocity
 
     def _interfaces_of_joint(self, kinds: Sequence[str]) -> InterfaceConfiguration:

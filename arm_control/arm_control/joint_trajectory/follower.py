@@ -90,7 +90,9 @@ class Follower:
         position = self._first_position()
         self._commanded = at_rest(position)
         self._execution = self._hold(position)
-        self._next: Callable[[], Execution] | None = None
+        # A hold of what is not known yet gives way to one where the joints turn out to be.
+        is_known = bool(np.isfinite(position).all())
+        self._next: Callable[[], Execution] | None = None if is_known else self._stop
         if sink is not None:
             sink.open(self._state.layout)
 
@@ -110,10 +112,10 @@ class Follower:
         state = self._state
         state.time_s = self.time_s = time_s
         self._measure()
-        if self._next is None:
-            self._execution.advance(period_s, state.speed_scaling)
-        else:
+        if self._next is not None and np.isfinite(self._start()[POSITION]).all():
             self._execution, self._next = self._next(), None
+        else:
+            self._execution.advance(period_s, state.speed_scaling)
         execution = self._execution
         state.progress = execution.progress
         wanted = execution.plan.sample(execution.elapsed_s)
@@ -218,7 +220,14 @@ class Follower:
     # Motions
 
     def _start(self) -> NDArray[np.float64]:
-        return self._commanded if self._configuration.starts_from_command else self._measured()
+        """Return the motion to go on from: a position is unknown only where nobody ever knew it."""
+        if self._configuration.starts_from_command:
+            return _completed(self._commanded, self._measured())
+        return self._present()
+
+    def _present(self) -> NDArray[np.float64]:
+        """Return the motion of the joints, at what was commanded last where none is measured."""
+        return _completed(self._measured(), self._commanded)
 
     def _begin_next(self, begin: Callable[[], Execution]) -> None:
         self._execution.serves_goal = False
@@ -245,10 +254,10 @@ class Follower:
     def _plan(self, trajectory: Trajectory) -> Plan:
         configuration = self._configuration
         continuous = configuration.model.continuous
-        held = self._measured()[POSITION].copy()
+        held = self._present()[POSITION].copy()
         if configuration.wiring.commands("position"):
-            commanded = configuration.wiring.commanded
-            held[commanded] = self._commanded[POSITION, commanded]
+            known = _completed(self._commanded, self._measured())[POSITION]
+            held[configuration.wiring.commanded] = known[configuration.wiring.commanded]
         join_s = configuration.parameters.smooth_replacement_time
         return trajectory.plan(self.time_s or 0.0, self._start(), held, continuous, join_s)
 
@@ -256,12 +265,11 @@ class Follower:
         """Brake where that is configured, else hold at once."""
         deceleration = self._configuration.deceleration
         if deceleration is None:
-            return self._hold(self._state.feedback[POSITION])
-        start = self._measured()
+            return self._hold(self._present()[POSITION])
+        start = self._start().copy()
         if self._configuration.starts_from_command:
-            start = self._commanded.copy()
             start[VELOCITY] *= self._state.speed_scaling
-        plan = StopPlan(start[POSITION], start[VELOCITY], deceleration)
+        plan = StopPlan(start[POSITION], np.nan_to_num(start[VELOCITY]), deceleration)
         return self._rest(plan)
 
     def _hold(self, position: NDArray[np.float64]) -> Execution:
@@ -286,7 +294,7 @@ class Follower:
             execution.settle()
         elif not execution.is_stop and 0.0 < timeout_s < late_s - RESOLUTION_S:
             self._logger.warning("Aborted due to command timeout")
-            self._execution = self._hold(self._state.feedback[POSITION])
+            self._execution = self._hold(self._present()[POSITION])
 
     def _give_up(
         self, result: GoalResult, text: str, bounds: Bounds, error: NDArray[np.float64]
@@ -298,3 +306,13 @@ class Follower:
         else:
             self._logger.error("%s (%s)", text, detail)
         self._execution = self._stop()
+
+
+def _completed(motion: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a motion with the positions of another where its own are not known."""
+    known = np.isfinite(motion[POSITION])
+    if known.all():
+        return motion
+    completed = motion.copy()
+    completed[POSITION] = np.where(known, motion[POSITION], other[POSITION])
+    return completed
