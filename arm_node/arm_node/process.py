@@ -96,6 +96,8 @@ def run_process(
 ) -> int:
     """Run an application until SIGINT, SIGTERM, SIGHUP or its own `stop`; return the exit code.
 
+    A SIGHUP that is ignored already, as under nohup, stays so.
+
     Args:
         application: builds the nodes, see `Application`.
         argv: ROS arguments of the process, the program's name first; default sys.argv.
@@ -215,7 +217,9 @@ def _signals_set(stop: threading.Event) -> Iterator[threading.Event]:
     def ask_to_stop(_number: int, _frame: FrameType | None) -> None:
         stop.set()
 
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # nohup
+        numbers.append(signal.SIGHUP)
     previous = {number: signal.signal(number, ask_to_stop) for number in numbers}
     try:
         yield stop

@@ -27,3 +27,35 @@ sys.exit(run_process(application, ["program"]))
 def test_a_signal_that_another_thread_got_ends_the_process():
     run = subprocess.run([sys.executable, "-c", PROGRAM], timeout=60, check=False)
     assert run.returncode == 0
+
+
+HUNG_UP = """
+import os, signal, sys
+from contextlib import contextmanager
+
+from arm_node.process import run_process
+
+@contextmanager
+def application(process):
+    os.kill(os.getpid(), signal.SIGHUP)
+    print("ends" if process.stopping else "goes on")
+    process.stop()
+    yield
+
+signal.signal(signal.SIGHUP, getattr(signal, sys.argv[1]))
+sys.exit(run_process(application, ["program"]))
+"""
+
+
+@pytest.mark.parametrize(("inherited", "then"), [("SIG_DFL", "ends"), ("SIG_IGN", "goes on")])
+def test_a_terminal_that_goes_ends_the_process_unless_it_runs_under_nohup(
+    inherited: str, then: str
+):
+    run = subprocess.run(
+        [sys.executable, "-c", HUNG_UP, inherited],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert run.stdout.split("\n")[0] == then
