@@ -15,6 +15,9 @@ _POSITION = re.compile(r"(, line \d+, column \d+)+\Z")
 def parse_xml(text: str, source: str = "robot_description") -> etree._Element:
     """Parse XML and return its root element; comments and processing instructions are dropped.
 
+    What has no prefix is in no namespace either: whoever declares one for all, as urdf.xsd has
+    it for a robot, means the same elements. Those with a prefix keep theirs.
+
     Args:
         text: the document. What its declaration says of the encoding is ignored, blanks before
             the declaration are allowed, as in a YAML file's block text.
@@ -42,6 +45,10 @@ def parse_xml(text: str, source: str = "robot_description") -> etree._Element:
         raise XmlError(f"{source}, line {error.lineno or 1}: not XML: {problem}") from error
     if root.getroottree().docinfo.internalDTD is not None:
         raise XmlError(f"{source} has a DOCTYPE, which is not accepted; remove it")
+    for element in root.iter("*"):
+        if element.prefix is None:
+            element.tag = etree.QName(element).localname
+    etree.cleanup_namespaces(root)
     return root
 
 

@@ -35,6 +35,12 @@ JOINT = """
 """
 
 
+def test_a_robot_in_a_namespace_has_its_hardware() -> None:
+    text = robot(block(JOINT)).replace("<robot", "<robot xmlns='http://www.ros.org'")
+    (info,) = parse_hardware_info(text)
+    assert [joint.name for joint in info.joints] == ["j0"]
+
+
 def test_a_description_without_a_block_has_no_hardware() -> None:
     assert parse_hardware_info(robot()) == ()
 

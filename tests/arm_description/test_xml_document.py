@@ -29,6 +29,11 @@ def test_comments_and_processing_instructions_are_dropped():
     assert len(parse_xml("<robot><!-- a --><?b c?></robot>")) == 0
 
 
+def test_a_namespace_for_all_makes_no_other_elements():
+    root = parse_xml("<robot xmlns='http://www.ros.org' xmlns:y='y'><link/><y:link/></robot>")
+    assert [element.tag for element in root.iter()] == ["robot", "link", "{y}link"]
+
+
 @pytest.mark.parametrize("text", ["", " \n\t", "<?xml version='1.0'?>\n"])
 def test_an_empty_text_is_said_to_be_empty(text):
     with pytest.raises(XmlError, match=r"^arm\.urdf is empty$"):

@@ -26,6 +26,12 @@ def test_what_stands_on_a_world_of_its_own_is_moved_with_it():
     assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2 + 0.5))
 
 
+def test_what_is_in_a_namespace_is_moved_too():
+    text = ON_WORLD.replace("<robot", "<robot xmlns='http://www.ros.org'")
+    (joint,) = parse_urdf(placed(text, POSE)).children("world")
+    assert joint.origin.xyz == pytest.approx((0.0, 3.0, 0.5))
+
+
 def test_without_a_pose_it_stands_where_it_says():
     (joint,) = parse_urdf(placed(ON_WORLD, ())).children("world")
     assert joint.origin.xyz == pytest.approx((1.0, 0.0, 0.0))
