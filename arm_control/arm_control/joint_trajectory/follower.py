@@ -207,7 +207,8 @@ class Follower:
         if limits is None:
             return None
         offset_s = trajectory.offset_s(self.time_s or 0.0)
-        return limits.find_excess(self._plan(trajectory), trajectory.times_s + offset_s)
+        places = np.stack([self._measured()[POSITION], self._commanded[POSITION]])
+        return limits.find_excess(self._plan(trajectory), trajectory.times_s + offset_s, places)
 
     def find_haste(self, trajectory: Trajectory) -> str | None:
         """Say which joint is too slow for a trajectory that begins now, None for none; any thread.

@@ -104,14 +104,16 @@ class LimitCheck:
     positions: bool
     velocities: bool
 
-    def find_excess(self, plan: Plan, times_s: Array) -> Refusal | None:
+    def find_excess(self, plan: Plan, times_s: Array, places: Array) -> Refusal | None:
         """Return what is wrong with a plan, None where it keeps the limits.
 
-        Between the way points a few samples stand for the whole.
+        Between the way points a few samples stand for the whole. A joint that is beyond a limit
+        already may stay there or come back, and not go further.
 
         Args:
             plan: the plan.
             times_s: when its way points are due, shape (m,).
+            places: where the joints are, and are told to be, shape (k, n); NaN where nobody knows.
         """
         knots_s = np.concatenate([[0.0], times_s[times_s > 0.0]])
         fractions = np.arange(SAMPLES_PER_SEGMENT) / SAMPLES_PER_SEGMENT
@@ -121,7 +123,9 @@ class LimitCheck:
         model = self.model
         if self.positions:
             position = motions[:, POSITION]
-            outside = (position < model.lower - SLACK) | (position > model.upper + SLACK)
+            lower = np.fmin.reduce(np.vstack([model.lower, places]))
+            upper = np.fmax.reduce(np.vstack([model.upper, places]))
+            outside = (position < lower - SLACK) | (position > upper + SLACK)
             for row, i in np.argwhere(outside):
                 return _refusal(
                     f"The trajectory takes joint {model.joints[i]} to {position[row, i]:f}, "

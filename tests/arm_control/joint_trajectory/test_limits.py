@@ -86,6 +86,46 @@ def test_positions_that_are_integrated_count(fault: Callable[..., str]):
     assert "joint j0 to" in message
 
 
+class TestAJointBeyondItsLimit:
+    """j1 rests where gravity, or its noise, has taken it: 0.1 past the upper limit."""
+
+    beyond = (0.0, 2.1, 0.0)
+
+    @pytest.mark.parametrize("target", [2.0, 2.05, 2.1])
+    def test_may_stay_or_come_back(self, fault: Callable[..., str], target: float):
+        assert fault([(5.0, [0.0, target, 0.0])], positions=self.beyond) == ""
+
+    def test_leaves_the_others_their_goals(self, fault: Callable[..., str]):
+        partial = {"joints": ("j0",), "allow_partial_joints_goal": True}
+        assert fault([(5.0, [1.0])], positions=self.beyond, **partial) == ""
+
+    def test_may_be_held_where_it_was_commanded_to(
+        self, make_rig: MakeRig, make_request: MakeRequest, robot_description: Callable[..., str]
+    ):
+        rig = make_rig(
+            robot_description=robot_description("revolute", LIMIT),
+            positions=self.beyond,
+            check_position_limits=True,
+            allow_partial_joints_goal=True,
+        )
+        rig.tick()
+        rig.place([0.0, 2.09, 0.0])
+        rig.moves = False
+        rig.tick()
+
+        assert rig.controller.check_goal(make_request([(5.0, [1.0])], ["j0"])) is None
+
+    @pytest.mark.parametrize("time_s", [0.0, 5.0])
+    def test_may_not_go_further(self, fault: Callable[..., str], time_s: float):
+        message = fault([(time_s, [0.0, 2.2, 0.0])], ("position",), positions=self.beyond)
+
+        assert message.startswith("The trajectory takes joint j1 to 2.")
+        assert "outside its limits [-1.000000, 2.000000]" in message
+
+    def test_nor_beyond_the_other_limit(self, fault: Callable[..., str]):
+        assert "joint j1 to -1." in fault([(9.0, [0.0, -1.1, 0.0])], positions=self.beyond)
+
+
 def test_joints_not_named_count_where_they_are(fault: Callable[..., str]):
     assert fault([(10.0, [1.0])], joints=("j1",), allow_partial_joints_goal=True) == ""
 
