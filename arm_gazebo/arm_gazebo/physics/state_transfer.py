@@ -125,7 +125,12 @@ def _mocaps(
     for body in np.flatnonzero(source.body_mocapid >= 0).tolist():
         name = source.body(body).name
         other = known.get(name)
-        if other is not None and name in roots and target.body_mocapid[other] >= 0:
+        if other is None or name not in roots or target.body_mocapid[other] < 0:
+            continue
+        # One that stands elsewhere in the target's model was put there.
+        if np.array_equal(source.body_pos[body], target.body_pos[other]) and np.array_equal(
+            source.body_quat[body], target.body_quat[other]
+        ):
             yield int(source.body_mocapid[body]), int(target.body_mocapid[other])
 
 

@@ -49,7 +49,7 @@ class WorldChanges:
     Attributes:
         removed: bodies right below the world that were deleted.
         spawned: models that were added.
-        moved: new poses (4, 4) of the world's own bodies that cannot move by themselves.
+        moved: new poses (4, 4) of bodies right below the world that cannot move by themselves.
     """
 
     removed: frozenset[str] = frozenset()
@@ -62,17 +62,14 @@ class WorldChanges:
 
     def without(self, root: str) -> "WorldChanges":
         """Return these changes and a body less, spawned or the world's own."""
+        moved = {body: pose for body, pose in self.moved.items() if body != root}
         kept = tuple(spawned for spawned in self.spawned if spawned.root != root)
         if len(kept) < len(self.spawned):
-            return replace(self, spawned=kept)
-        moved = {body: pose for body, pose in self.moved.items() if body != root}
+            return replace(self, spawned=kept, moved=moved)
         return replace(self, removed=self.removed | {root}, moved=moved)
 
     def with_moved(self, root: str, pose: Matrix) -> "WorldChanges":
         """Return these changes with a body elsewhere."""
-        if any(spawned.root == root for spawned in self.spawned):
-            spawned = tuple(replace(s, pose=pose) if s.root == root else s for s in self.spawned)
-            return replace(self, spawned=spawned)
         return replace(self, moved={**self.moved, root: pose})
 
 
@@ -85,10 +82,10 @@ def changed_model(base: BuiltModel, changes: WorldChanges) -> BuiltModel:
     spec = base.spec.copy()
     for name in changes.removed:
         spec.delete(spec.body(name))
-    for name, pose in changes.moved.items():
-        _place(spec.body(name), pose)
     for spawned in changes.spawned:
         _attach(spec, spawned)
+    for name, pose in changes.moved.items():
+        _place(spec.body(name), pose)
     for body in spec.bodies:
         if body.sleep == ASLEEP_AT_FIRST:
             # It may have lost what it lay on, or be under way by now.

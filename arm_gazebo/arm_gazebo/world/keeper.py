@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar
 
 import mujoco
@@ -188,6 +188,8 @@ class WorldKeeper:
         """Take out what was spawned and bring back what was deleted; put all where it started."""
         if spawned and self._changes != NOTHING:
             self._change(NOTHING)
+        elif state and self._changes.moved:
+            self._change(replace(self._changes, moved={}))
         if state:
             self._on_loop(lambda: self._simulation.reset(self._simulation.time_s))
 

@@ -146,6 +146,20 @@ def test_what_stands_still_can_be_put_elsewhere(world, things):
     assert world.where("mustard") == pytest.approx([3, 2, 1])
 
 
+def test_a_mocap_body_can_be_put_elsewhere(kept, parts, things, tmp_path):
+    file = tmp_path / "world.xml"
+    file.write_text(
+        "<mujoco><worldbody><body name='hand' mocap='true' pos='1 0 1'><geom size='0.1'/></body>"
+        "</worldbody></mujoco>"
+    )
+    world = kept(str(file), robot=parts.pendulum())
+    world.keeper.place("hand", things.at(3, 2, 1), "", None)
+    world.spawn("post", things.post, things.at(5, 5, 1))
+    assert world.where("hand") == pytest.approx([3, 2, 1])
+    world.keeper.reset(spawned=False, state=True)
+    assert world.where("hand") == pytest.approx([1, 0, 1])
+
+
 def test_what_cannot_move_takes_no_velocity(world):
     kind, _ = refusal(lambda: world.keeper.place("mustard", None, "", np.ones(6)))
     assert kind is Refusal.FAILED
@@ -178,6 +192,24 @@ def test_reset_of_the_state_alone_keeps_what_was_spawned(world, things):
     world.arm.run(0.3)
     world.keeper.reset(spawned=False, state=True)
     assert world.where("crate") == pytest.approx([2, 1, 1])
+
+
+def test_reset_of_the_state_puts_back_what_stands_still(world, things):
+    world.spawn("post", things.post, things.at(2, 1, 1))
+    before = {name: world.where(name).copy() for name in ("post", "mustard")}
+    for name in before:
+        world.keeper.place(name, things.at(3, 2, 1), "", None)
+    world.keeper.reset(spawned=False, state=True)
+    for name, place in before.items():
+        assert world.where(name) == pytest.approx(place)
+
+
+def test_what_was_moved_and_deleted_comes_back_where_it_is_put(world, things):
+    world.spawn("post", things.post, things.at(2, 1, 1))
+    world.keeper.place("post", things.at(3, 2, 1), "", None)
+    world.keeper.delete("post")
+    world.spawn("post", things.post, things.at(4, 1, 1))
+    assert world.where("post") == pytest.approx([4, 1, 1])
 
 
 def test_what_a_client_says_about_an_entity_is_kept_until_it_goes(world, things):
