@@ -42,17 +42,21 @@ class Bounds:
         return cls(values, bool(np.isfinite(values).any()))
 
     def hold(self, error: Array) -> bool:
-        """Return whether errors, shape (k, n) with k <= 3, are within bounds; NaN is not."""
-        return not self.is_any or bool((np.abs(error) <= self.values[: len(error)]).all())
+        """Return whether errors, shape (k, n) with k <= 3, are within bounds; NaN is in none."""
+        return not self.is_any or not self._is_outside(error).any()
 
     def excess(self, error: Array, joints: Sequence[str]) -> str:
         """Say which error is out of bounds; there must be one."""
-        bounds = self.values[: len(error)]
-        row, joint = np.argwhere(~(np.abs(error) <= bounds))[0]
+        row, joint = np.argwhere(self._is_outside(error))[0]
         return (
             f"{QUANTITIES[row]} error of joint {joints[joint]} is {error[row, joint]:f}, "
-            f"tolerance {bounds[row, joint]:f}"
+            f"tolerance {self.values[row, joint]:f}"
         )
+
+    def _is_outside(self, error: Array) -> NDArray[np.bool_]:
+        bounds = self.values[: len(error)]
+        # Not `error > bounds`: a NaN is greater than nothing.
+        return np.isfinite(bounds) & ~(np.abs(error) <= bounds)
 
 
 @dataclass(frozen=True, slots=True)

@@ -111,6 +111,14 @@ class TestHold:
     def test_a_broken_sensor_is_outside(self, defaults: Tolerances):
         assert not defaults.path.hold(np.array([[np.nan, 0.0, 0.0]]))
 
+    def test_only_that_of_what_is_checked_is(self, ask: Ask):
+        bounds = ask(path_tolerance=[JointTolerance("j0", -1.0)]).path
+
+        assert bounds.hold(np.array([[np.nan, 0.0, 0.0], [np.nan, 0.0, 0.0]]))
+        assert bounds.excess(np.array([[np.nan, 0.0, np.nan]]), JOINTS) == (
+            "position error of joint j2 is nan, tolerance 0.100000"
+        )
+
     def test_what_is_not_checked_is_never_outside(self, defaults: Tolerances):
         off = defaults.switched_off()
 
