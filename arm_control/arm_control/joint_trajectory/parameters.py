@@ -210,6 +210,12 @@ class JointTrajectoryParameters(CommonParameters):
                     f"parameter 'gains.{joint}.u_clamp_min' is {gains.u_clamp_min:g}, above "
                     f"u_clamp_max {gains.u_clamp_max:g}"
                 )
+            pid = gains.as_pid_gains()
+            if not pid.i_min <= pid.i_max:
+                raise ParameterError(
+                    f"under 'gains.{joint}': i_clamp, i_clamp_min and i_clamp_max leave the "
+                    f"integral's part nothing: from {pid.i_min:g} to {pid.i_max:g}"
+                )
 
 
 def _take(group: type[Any], prefix: str, values: dict[str, Any]) -> Any:

@@ -100,6 +100,11 @@ def test_there_are_no_others():
         ({"interpolation_method": "cubic"}, "it may be splines or none"),
         ({"gains.j0.antiwindup_strategy": "magic"}, "it may be legacy or none or"),
         ({"gains.j0.u_clamp_min": 3.0, "gains.j0.u_clamp_max": 2.0}, "above u_clamp_max 2"),
+        ({"gains.j0.i_clamp": -1.0}, "under 'gains.j0': .* from 1 to -1"),
+        (
+            {"gains.j0.i_clamp_min": 5.0, "gains.j0.i_clamp_max": 1.0},
+            "under 'gains.j0': .* from 5 to 1",
+        ),
         ({"gains.j0.q": 3.0}, "under 'gains.j0': unknown parameter q"),
         ({"gains.j9.p": 3.0}, "unknown parameter gains.j9.p"),
         ({"constraints.j0.goal": "near"}, "under 'constraints.j0': parameter 'goal' must be"),
