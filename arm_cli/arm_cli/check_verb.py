@@ -50,12 +50,12 @@ def run(options: argparse.Namespace) -> int:
     from arm_description.xacro_expansion import expand_xacro_file
     from arm_gazebo.check.description import check_description
     from arm_gazebo.errors import SettingsError
-    from arm_gazebo.launching.robot_setup import folders, model_arguments, model_file
+    from arm_gazebo.launching.robot_setup import folders, model_arguments, path_of
     from arm_gazebo.mesh.cache import cache_folder
     from arm_gazebo.robot.build_options import BuildOptions
 
     try:
-        file = model_file(options.file)
+        file = path_of(options.file)
         given = folders(options.package_path)
         urdf = expand_xacro_file(file, model_arguments(options.arguments), given).text
     except (DescriptionError, SettingsError) as error:

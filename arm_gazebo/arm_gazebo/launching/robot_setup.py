@@ -64,8 +64,8 @@ def set_up_robot(
     Args:
         model: URDF or xacro file, also as a package:// URI.
         model_args: xacro arguments, "a:=1 b:=2".
-        controllers: parameter file, in which ${name} stands for an argument of the model; ""
-            makes one up.
+        controllers: parameter file, also as a package:// URI, in which ${name} stands for an
+            argument of the model; "" makes one up.
         spawn: names with commas; "auto" for every controller whose joints are free.
         package_path: folders with colons.
 
@@ -73,7 +73,7 @@ def set_up_robot(
         SettingsError: arguments that make no sense; DescriptionError: no such model, or it is no
             robot.
     """
-    file = model_file(model)
+    file = path_of(model)
     given = folders(package_path)
     expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
     description = expansion.text
@@ -83,7 +83,7 @@ def set_up_robot(
         # Only here: a robot that comes with everything starts without being parsed twice.
         description, commanded = _completed(description, file, remarks)
     if controllers:
-        content = fill_in(Path(controllers), expansion.arguments)
+        content = fill_in(path_of(controllers), expansion.arguments)
     else:
         content = default_parameters(commanded or ())
         remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
@@ -100,9 +100,13 @@ def set_up_robot(
     )
 
 
-def model_file(model: str) -> Path:
-    """Return the file that a model is named by; ResourceNotFoundError where there is none."""
-    return resolve_uri(model) if "://" in model else Path(model).expanduser()
+def path_of(file: str) -> Path:
+    """Return the path of a file that is named by a path or a URI.
+
+    Raises:
+        ResourceNotFoundError: there is nothing under the URI.
+    """
+    return resolve_uri(file) if "://" in file else Path(file).expanduser()
 
 
 def model_arguments(words: Iterable[str]) -> dict[str, str]:

@@ -1,7 +1,10 @@
 """A file that names the robots of one world, each with its own namespace."""
 
+import math
+import os
 import re
-from collections.abc import Mapping
+import shlex
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,12 @@ from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.robot_setup import SPAWN_AUTO
 
 NAMESPACE = re.compile(r"[A-Za-z]\w*", re.ASCII)
+JOINED: Mapping[str, Callable[[list[str]], str]] = {
+    "model_args": shlex.join,
+    "spawn": ",".join,
+    "package_path": os.pathsep.join,
+}
+"""What may be a list in the file, and how sim.launch.py's argument of that name says it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,15 +76,29 @@ def _request(file: Path, name: str, entry: object) -> RobotRequest:
     unknown = [str(key) for key in entry if key not in known]
     if unknown:
         raise SettingsError(f"{where} has the key '{unknown[0]}'; it takes {listing(known)}")
-    texts = {key: str(value) for key, value in entry.items() if key != "pose"}
+    # What stands there without a value is as if it did not.
+    filled = {key: value for key, value in entry.items() if value is not None}
+    pose = _pose(where, filled.pop("pose", []))
+    texts = {key: _text(where, key, value) for key, value in filled.items()}
     for key in ("model", "controllers"):
         if texts.get(key) and "://" not in texts[key]:
             texts[key] = str(file.parent / Path(texts[key]).expanduser())
-    return RobotRequest(**texts, pose=_pose(where, entry.get("pose", ())))
+    return RobotRequest(**texts, pose=pose)
+
+
+def _text(where: str, key: str, value: Any) -> str:
+    if isinstance(value, list) and key in JOINED:
+        return JOINED[key]([str(word) for word in value])
+    if isinstance(value, (list, Mapping)):
+        raise SettingsError(f"{where}: {key} takes a text, not {value!r}")
+    return str(value)
 
 
 def _pose(where: str, value: Any) -> tuple[float, ...]:
     try:
-        return tuple(float(number) for number in value)
-    except (TypeError, ValueError) as error:
-        raise SettingsError(f"{where}: pose takes x y z roll pitch yaw, not {value!r}") from error
+        pose = tuple(map(float, value if isinstance(value, list) else [value]))
+    except (TypeError, ValueError):
+        pose = (math.nan,)
+    if len(pose) not in (0, 6) or not all(map(math.isfinite, pose)):
+        raise SettingsError(f"{where}: pose takes x y z roll pitch yaw, not {value!r}")
+    return pose

@@ -100,6 +100,17 @@ def test_given_controllers_stand(bare, tmp_path):
     assert setup.spawn == ("states",)
 
 
+def test_controllers_may_be_named_by_a_uri_or_below_the_home(bare, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    file = tmp_path / "controllers.yaml"
+    file.write_text(
+        "controller_manager: {ros__parameters: {"
+        "states: {type: joint_state_broadcaster/JointStateBroadcaster}}}"
+    )
+    for name in (file.as_uri(), "~/controllers.yaml"):
+        assert set_up_robot(str(bare), controllers=name).controllers == file
+
+
 def test_places_in_the_controllers_are_filled_with_the_models_arguments(tmp_path, parts):
     text = parts.robot(parts.link("$(arg side)base")).replace(
         ">",

@@ -28,6 +28,24 @@ def test_robots_by_namespace_with_files_beside_the_file(file, tmp_path):
     assert robots["third"].model == "package://a/arm.urdf"
 
 
+def test_lists_are_taken_as_the_arguments_of_the_launch_file(file):
+    file.write_text(
+        "left:\n"
+        "  model: /a.urdf\n"
+        "  spawn: [states, arm]\n"
+        "  package_path: [/a, /b]\n"
+        "  model_args: ['a:=1', 'b:=two words']\n"
+    )
+    request = read_robots_file(file)["left"]
+    assert (request.spawn, request.package_path) == ("states,arm", "/a:/b")
+    assert request.model_args == "a:=1 'b:=two words'"
+
+
+def test_what_has_no_value_is_as_if_it_were_not_there(file):
+    file.write_text("left: {model: /a.urdf, controllers: , spawn: , pose: , base: }")
+    assert read_robots_file(file)["left"] == RobotRequest("/a.urdf")
+
+
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
@@ -39,6 +57,10 @@ def test_robots_by_namespace_with_files_beside_the_file(file, tmp_path):
         ("a/b: {model: x}", "'a/b': no namespace"),
         ("left: {model: x, modelargs: y}", "has the key 'modelargs'; it takes model, model_args"),
         ("left: {model: x, pose: here}", "pose takes x y z roll pitch yaw, not 'here'"),
+        ("left: {model: x, pose: [0, 1, 0]}", r"yaw, not \[0, 1, 0\]"),
+        ("left: {model: x, pose: [0, 0, 0, 0, 0, .nan]}", "yaw, not .*nan"),
+        ("left: {model: x, pose: '123456'}", "yaw, not '123456'"),
+        ("left: {model: x, base: [free]}", r"base takes a text, not \['free'\]"),
     ],
 )
 def test_nonsense_is_a_sentence(file, content, sentence):
