@@ -31,6 +31,7 @@ LABELS = (
 
 _FIELDS = tuple(f"{name.replace(' ', '_').replace('boolean', 'bool')}_value" for name in TYPE_NAMES)
 _SCALARS: tuple[tuple[type, int], ...] = ((bool, 1), (int, 2), (float, 3), (str, 4))
+_INTEGERS = range(-(2**63), 2**63)
 NOT_SET = 0
 _ARRAY_OFFSET = 5
 
@@ -56,7 +57,8 @@ def write_value(value: Any, text: str) -> None:
 
     try:
         content = yaml.safe_load(text)
-    except yaml.YAMLError:
+    # PyYAML's constructors raise a ValueError: the 30th of February is no date, but a word.
+    except (yaml.YAMLError, ValueError):
         content = text
     if not set_value(value, content):
         set_value(value, text)
@@ -67,7 +69,7 @@ def set_value(value: Any, content: Any) -> bool:
     if isinstance(content, list):
         return _set_list(value, content)
     for class_, number in _SCALARS:
-        if type(content) is class_:
+        if _type_of(content) is class_:
             value.type = number
             setattr(value, _FIELDS[number], content)
             return True
@@ -75,7 +77,7 @@ def set_value(value: Any, content: Any) -> bool:
 
 
 def _set_list(value: Any, content: list[Any]) -> bool:
-    kinds = {type(item) for item in content}
+    kinds = {_type_of(item) for item in content}
     if kinds == {int, float}:
         content, kinds = [float(item) for item in content], {float}
     for class_, number in _SCALARS:
@@ -84,3 +86,8 @@ def _set_list(value: Any, content: list[Any]) -> bool:
             setattr(value, _FIELDS[value.type], content)
             return True
     return False
+
+
+def _type_of(content: Any) -> type | None:
+    """Return a value's type; None for an integer that is too large for a message."""
+    return None if type(content) is int and content not in _INTEGERS else type(content)

@@ -52,15 +52,19 @@ def run(words: Sequence[str]) -> NoReturn:
 
     Raises:
         NotFoundError: there is no such package or executable; the message names near ones.
-        UsageError: the prefix cannot be started.
+        UsageError: the prefix cannot be started, or a quotation in it has no end.
     """
     from arm_cli.command_parser import CommandParser
 
     parser = CommandParser("arm run", "Run an executable of a package.")
     add_arguments(parser)
     options = parser.parse_args(words)
+    try:
+        prefix = shlex.split(options.prefix)
+    except ValueError as error:
+        raise UsageError(f"--prefix {options.prefix!r}: {error}") from error
     command = find_command(options.package_name, options.executable_name)
-    become([*shlex.split(options.prefix), *command, *options.argv])
+    become([*prefix, *command, *options.argv])
 
 
 def become(command: list[str]) -> NoReturn:

@@ -38,6 +38,11 @@ def test_a_fraction_in_an_integer_field_is_truncated_and_said():
     assert result.notes == ["points[0].time_from_start.sec: 1.5 is truncated to 1 (int32)"]
 
 
+def test_a_whole_number_is_never_truncated():
+    result = filled(Int64, f"data: {2**53 + 1}")
+    assert (result.message.data, result.notes) == (2**53 + 1, [])
+
+
 def test_a_goal_with_a_nested_message_of_another_package():
     goal = filled(FollowJointTrajectory.Goal, "trajectory: {joint_names: [j0]}").message
     assert goal.trajectory.joint_names == ["j0"]
@@ -102,7 +107,11 @@ def test_what_does_not_fit_is_named(class_, text, sentence):
 
 @pytest.mark.parametrize(
     ("text", "part"),
-    [("data: [0.0", "are no YAML at character"), ("[1, 2]", "is it quoted for the shell?")],
+    [
+        ("data: [0.0", "are no YAML at character"),
+        ("data: 2001-13-45", "are no YAML: month must be in 1..12"),
+        ("[1, 2]", "is it quoted for the shell?"),
+    ],
 )
 def test_what_is_no_mapping_is_refused(text, part):
     with pytest.raises(MessageError, match="values") as error:

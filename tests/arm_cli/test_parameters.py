@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+import yaml
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
 from arm_cli.errors import MessageError, NotFoundError
@@ -27,6 +28,12 @@ from arm_cli.parameter_values import LABELS, TYPE_NAMES, read_value, write_value
         ("{a: 1}", ParameterType.PARAMETER_STRING, "{a: 1}"),
         ("a: b: c", ParameterType.PARAMETER_STRING, "a: b: c"),
         ("", ParameterType.PARAMETER_STRING, ""),
+        ("2024-02-30", ParameterType.PARAMETER_STRING, "2024-02-30"),
+        (f"{2**63 - 1}", ParameterType.PARAMETER_INTEGER, 2**63 - 1),
+        (f"{2**63}", ParameterType.PARAMETER_STRING, f"{2**63}"),
+        (f"[{-(2**63)}]", ParameterType.PARAMETER_INTEGER_ARRAY, [-(2**63)]),
+        (f"[1, {2**63}]", ParameterType.PARAMETER_STRING, f"[1, {2**63}]"),
+        (f"[0.5, {10**400}]", ParameterType.PARAMETER_STRING, f"[0.5, {10**400}]"),
     ],
 )
 def test_a_word_becomes_a_value_of_the_type_it_looks_like(text, type_, content):
@@ -43,6 +50,13 @@ def test_names_and_labels_are_in_the_order_of_the_types():
 
 def test_dotted_names_become_dicts():
     assert nest({"a.b.c": 1, "a.d": 2, "e": 3}) == {"a": {"b": {"c": 1}, "d": 2}, "e": 3}
+
+
+def test_a_name_that_is_a_value_and_a_group_keeps_its_dot(tmp_path):
+    values = {"x.a.b": 2, "x.a": 1, "c.d": 4, "c": 3}
+    nested = nest(values)
+    assert nested == {"x": {"a": 1, "a.b": 2}, "c": 3, "c.d": 4}
+    assert read(tmp_path, yaml.safe_dump({"/n": {"ros__parameters": nested}}), "/n") == values
 
 
 def read(tmp_path: Path, text: str, *sections: str):
@@ -67,6 +81,7 @@ def test_a_file_may_leave_out_the_slash(tmp_path):
         ("/n: {a: 1}\n", MessageError, "no 'ros__parameters:' below"),
         ("[1]\n", MessageError, "is no parameter file"),
         ("{", MessageError, "is no YAML"),
+        ("/n:\n  ros__parameters: {a: 2001-13-45}\n", MessageError, "is no YAML: month must be"),
     ],
 )
 def test_a_file_that_does_not_fit_is_refused(tmp_path, text, error, sentence):

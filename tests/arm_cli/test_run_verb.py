@@ -56,6 +56,11 @@ def test_an_unknown_executable_names_the_near_one(capsys):
         find_command("arm_controler", "x")
 
 
+def test_a_prefix_without_its_closing_quotation_is_a_sentence(capsys):
+    assert main(["run", "--prefix", '"', "arm_controller", "publisher_terminal"]) == 2
+    assert capsys.readouterr().err == "arm run: --prefix '\"': No closing quotation\n"
+
+
 def test_pkg_lists_packages_and_executables(capsys):
     assert main(["pkg", "list", "--json"]) == 0
     assert {"arm_cli", "std_msgs"} <= set(json.loads(capsys.readouterr().out))

@@ -16,7 +16,7 @@ def load_yaml(text: str) -> Any:
     """
     try:
         return yaml.load(text, Loader=_LOADER)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError) as error:
         raise ValueError(f"no YAML: {error}") from error
 
 

@@ -53,7 +53,8 @@ def read_yaml(text: str, type_: str) -> Any:
 
     try:
         values = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+    # PyYAML's constructors raise a ValueError: the 45th of a month is no date.
+    except (yaml.YAMLError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         where = f" at character {mark.index + 1}" if mark else ""
         problem = getattr(error, "problem", None) or str(error)
@@ -151,7 +152,7 @@ class _Filler:
             raise MessageError(f"{path}: {value!r} is no whole number ({name})")
         # A float has 53 bits: what is an int already must not go through one.
         whole = value if isinstance(value, int) else int(number)
-        if whole != number:
+        if not isinstance(value, int) and whole != number:
             self._filled.notes.append(f"{path}: {value} is truncated to {whole} ({name})")
         low, high = INTEGER_RANGES.get(name, (0, 255))
         if not low <= whole <= high:

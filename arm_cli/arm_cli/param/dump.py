@@ -60,12 +60,15 @@ def _save(text: str, folder: Path, node: str) -> None:
 
 
 def nest(values: dict[str, Any]) -> dict[str, Any]:
-    """Return values of dotted names as dicts in dicts."""
+    """Return values of dotted names as dicts in dicts.
+
+    Where `a` is a value itself, `a.b` keeps its dot: both forms mean the same.
+    """
     nested: dict[str, Any] = {}
-    for name, value in values.items():
-        *groups, last = name.split(".")
-        inner = nested
-        for group in groups:
-            inner = inner.setdefault(group, {})
-        inner[last] = value
+    # A name comes before those that begin with it.
+    for name, value in sorted(values.items()):
+        group, (first, dot, rest) = nested, name.partition(".")
+        while dot and isinstance(group.setdefault(first, {}), dict):
+            group, (first, dot, rest) = group[first], rest.partition(".")
+        group[f"{first}{dot}{rest}"] = value
     return nested

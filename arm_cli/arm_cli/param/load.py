@@ -63,7 +63,7 @@ def read_parameters(path: Path, sections: list[str]) -> dict[str, Any]:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise NotFoundError(f"no parameter file {path}: {error.strerror}") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+    except (yaml.YAMLError, ValueError) as error:
         raise MessageError(f"{path} is no YAML: {error}") from error
     if not isinstance(content, dict):
         raise MessageError(f"{path} is no parameter file: no 'node: {PARAMETERS}:' in it")
