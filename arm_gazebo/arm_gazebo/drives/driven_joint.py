@@ -101,13 +101,18 @@ class DrivenJoint:
         setpoint = self.setpoint
         lead = setpoint.position - position
         slack = self._slack
+        # Something holds the joint or drags it. A set-point that ran on would fling it, once free;
+        # but one that the joint merely ran ahead of between two ticks keeps its speed.
         if lead > slack:
-            # Something is in the way. A set-point that ran on would fling the joint, once free.
             setpoint.position = position + slack
-            setpoint.velocity = velocity if velocity > 0.0 else 0.0
+            fastest = velocity if velocity > 0.0 else 0.0
+            if setpoint.velocity > fastest:
+                setpoint.velocity = fastest
         elif lead < -slack:
             setpoint.position = position - slack
-            setpoint.velocity = velocity if velocity < 0.0 else 0.0
+            fastest = velocity if velocity < 0.0 else 0.0
+            if setpoint.velocity < fastest:
+                setpoint.velocity = fastest
         start = self.start_position = setpoint.position
         self.start_velocity = setpoint.velocity
         if self.mode is DriveMode.VELOCITY:

@@ -48,6 +48,8 @@ LEAST_EFFORT_SHARE = 0.1
 PERIODS_TO_FULL_SPEED = 2
 """Bound on acceleration where effort is plenty: what changes within a period is not planned."""
 ENDLESS_RANGE = (-math.pi, math.pi)
+LONGEST_SLIDE_M = 20.0
+"""Ranges of sliding joints above this are taken for limits that nobody meant, as -1000 to 1000."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +269,8 @@ def _sample(
 
 
 def _range(joint: RobotJoint) -> tuple[float, float]:
-    bounded = math.isfinite(joint.upper - joint.lower)
+    width = joint.upper - joint.lower
+    bounded = math.isfinite(width) and not (joint.linear and width > LONGEST_SLIDE_M)
     return (joint.lower, joint.upper) if bounded else ENDLESS_RANGE
 
 

@@ -15,6 +15,7 @@ ARMS = [
     (7, 30.0, 1.2),
 ]
 DIRECTIONS = [(1, 1, 1, 1, 1, 1, 1), (1, -1, 1, -1, 1, -1, 1)]
+LIGHT = 'lower="-1" upper="1" effort="10" velocity="1"'
 POSE = (0.0, 0.6, 0.8, 0.3, 0.5, 0.2, 0.1)
 
 
@@ -199,6 +200,61 @@ def test_drive_at_its_effort_limit_does_not_chatter(bench, parts, rate_hz):
     arm.simulation.data.qvel[:] = (8, 3, -6, 10)
     arm.run(0.3)
     assert np.abs(arm.run(0.2)).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "inertia", "effort", "seconds"),
+    [(10, 30.0, 30.0, 3.0), (10, 1.0, 10.0, 1.3), (10, 3.0, 10.0, 1.7), (100, 1.0, 10.0, 1.3)],
+)
+def test_slow_control_moves_a_heavy_joint_as_fast_as_its_effort(
+    bench, parts, rate_hz, inertia, effort, seconds
+):
+    moments = " ".join(f'{name}="{inertia}"' for name in ("ixx", "iyy", "izz"))
+    urdf = parts.robot(
+        parts.link("base"),
+        f'<link name="wheel"><inertial><mass value="10"/><inertia {moments}/></inertial></link>',
+        parts.joint(
+            "j",
+            "base",
+            "wheel",
+            "continuous",
+            axis="0 0 1",
+            limit=f'effort="{effort}" velocity="1"',
+        ),
+        parts.ros2_control(["j"]),
+    )
+    wheel = bench(urdf, rate_hz)
+    wheel.claim()
+    wheel.command(1.0)
+    positions = wheel.run(2 * seconds)
+    assert positions[round(seconds * rate_hz)] == pytest.approx([1.0], abs=1e-3)
+    assert overshoot(positions, 0.0, 1.0) < 1e-3
+
+
+@pytest.mark.parametrize("rate_hz", [10, 100, 500])
+@pytest.mark.parametrize("stroke", ["3", "1000"], ids=["long", "placeholder"])
+def test_joint_above_a_slide_is_not_slowed_by_how_far_that_may_go(bench, parts, stroke, rate_hz):
+    urdf = parts.robot(
+        parts.link("base"),
+        parts.link("boom", 1.0, centre="0.1 0 0"),
+        parts.link("trolley", 1.0),
+        parts.joint("yaw", "base", "boom", axis="0 0 1", limit=LIGHT),
+        parts.joint(
+            "slide",
+            "boom",
+            "trolley",
+            "prismatic",
+            axis="1 0 0",
+            limit=f'lower="-{stroke}" upper="{stroke}" effort="100" velocity="1"',
+        ),
+        parts.ros2_control(["yaw", "slide"]),
+    )
+    boom = bench(urdf, rate_hz)
+    boom.claim()
+    boom.command(0.5, 0.0)
+    positions = boom.run(2.0)[:, 0]
+    assert positions[-1] == pytest.approx(0.5, abs=1e-3)
+    assert overshoot(positions, 0.0, 0.5) < 1e-3
 
 
 def test_unknown_payload_is_carried(bench, parts):
