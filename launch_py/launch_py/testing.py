@@ -70,6 +70,7 @@ class FakeRunner:
         self.started: list[str] = []
         """The names in the order of their starts, restarts included."""
         self.watched: dict[Probe, Callable[[], None]] = {}
+        self.doomed: dict[Probe, Callable[[str], None]] = {}
         self.is_settled = False
         self._cannot_start = cannot_start
 
@@ -87,10 +88,19 @@ class FakeRunner:
         return child
 
     def watch(
-        self, step: ProcessStep, condition: Probe, on_met: Callable[[], None]
+        self,
+        step: ProcessStep,
+        condition: Probe,
+        on_met: Callable[[], None],
+        on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Remember the condition; a test meets it by calling `watched[condition]`."""
+        """Remember the condition.
+
+        A test meets it by calling `watched[condition]`, and says why it can never be met by
+        calling `doomed[condition]`.
+        """
         self.watched[condition] = on_met
+        self.doomed[condition] = on_failed
         return lambda: None
 
     def settled(self) -> None:

@@ -38,8 +38,8 @@ class MemberListener(Protocol):
         """All its conditions of readiness have been met, for the first time."""
         ...
 
-    def member_late(self, member: Member, missing: str) -> None:
-        """It is not ready within its time."""
+    def member_not_ready(self, member: Member, why: str) -> None:
+        """It is not ready within its time, or can never be."""
         ...
 
     def member_ended(self, member: Member) -> None:
@@ -86,9 +86,13 @@ class ProcessRunner(Protocol):
         ...
 
     def watch(
-        self, step: ProcessStep, condition: Probe, on_met: Callable[[], None]
+        self,
+        step: ProcessStep,
+        condition: Probe,
+        on_met: Callable[[], None],
+        on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Call back once the condition is met; return how to stop watching."""
+        """Call back once the condition is met, or can never be; return how to stop watching."""
         ...
 
     def settled(self) -> None:
@@ -205,7 +209,12 @@ class Member:
             self._cancel.append(timer.cancel)
             if isinstance(condition, Probe):
                 self._cancel.append(
-                    self._runner.watch(self.step, condition, lambda c=condition: self._met(c))
+                    self._runner.watch(
+                        self.step,
+                        condition,
+                        lambda c=condition: self._met(c),
+                        lambda why, c=condition: self._never_met(c, why),
+                    )
                 )
 
     def _met(self, condition: Readiness) -> None:
@@ -220,9 +229,13 @@ class Member:
         self.ready = True
         self._listener.member_ready(self)
 
+    def _never_met(self, condition: Readiness, why: str) -> None:
+        if condition in self._pending:
+            self._listener.member_not_ready(self, f"cannot become ready: {why}")
+
     def _too_late(self, condition: Readiness) -> None:
         if condition in self._pending:
-            self._listener.member_late(
+            self._listener.member_not_ready(
                 self, f"is not ready after {condition.timeout_s:g} s: {self.missing()}"
             )
 

@@ -12,7 +12,8 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from contextlib import suppress
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from launch_py.readiness import Probe
@@ -29,44 +30,67 @@ class ProbeClient:
     Args:
         loop: the event loop.
         log_file: where a probe's own complaints go.
-        on_message: called with what a probe has to say to the user.
     """
 
-    def __init__(self, loop: EventLoop, log_file: Path, on_message: Callable[[str], None]) -> None:
+    def __init__(self, loop: EventLoop, log_file: Path) -> None:
         self._loop = loop
         self._log_file = log_file
-        self._on_message = on_message
-        self._processes: dict[str, _ProbeProcess] = {}
+        self._processes: list[_ProbeProcess] = []
 
     def watch(
-        self, condition: Probe, environment: Mapping[str, str], on_met: Callable[[], None]
+        self,
+        condition: Probe,
+        environment: Mapping[str, str],
+        on_met: Callable[[], None],
+        on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
         """Call back once the condition is met, seen from a process with this environment.
+
+        Args:
+            condition: what is watched for.
+            environment: that of the process.
+            on_met: called when the condition is met.
+            on_failed: called instead, with the reason, where that can never be known.
 
         Returns:
             A function that stops watching.
         """
         domain = environment.get("ROS_DOMAIN_ID", "")
-        process = self._processes.get(domain)
-        if process is None or process.ended:
-            process = _ProbeProcess(self._loop, environment, self._log_file, self._on_message)
-            self._processes[domain] = process
-        return process.watch(condition, on_met)
+        open_ones = (p for p in self._processes if p.domain == domain and not p.closed)
+        process = next(open_ones, None)
+        if process is None:
+            process = _ProbeProcess(self._loop, domain, environment, self._log_file)
+            self._processes.append(process)
+        return process.watch(condition, _Watch(on_met, on_failed))
 
     @property
     def pids(self) -> set[int]:
         """The process ids of the running probes."""
-        return {process.pid for process in self._processes.values() if not process.ended}
+        return {process.pid for process in self._processes if not process.ended}
 
     def reap(self) -> None:
         """Notice ended probes; to be called when SIGCHLD has come."""
-        for process in self._processes.values():
+        for process in self._processes:
             process.reap()
+
+    def close_idle(self) -> None:
+        """End the probes that have nothing to watch."""
+        for process in self._processes:
+            if process.idle:
+                process.close()
 
     def close(self) -> None:
         """End all probes."""
-        for process in self._processes.values():
+        for process in self._processes:
             process.close()
+
+
+@dataclass(frozen=True, slots=True)
+class _Watch:
+    """Whom to tell what has become of a condition."""
+
+    on_met: Callable[[], None]
+    on_failed: Callable[[str], None]
 
 
 class _ProbeProcess:
@@ -75,19 +99,21 @@ class _ProbeProcess:
     def __init__(
         self,
         loop: EventLoop,
+        domain: str,
         environment: Mapping[str, str],
         log_file: Path,
-        on_message: Callable[[str], None],
     ) -> None:
         self.ended = False
+        self.domain = domain
         self._loop = loop
-        self._on_message = on_message
+        self._log_file = log_file
         self._ids = itertools.count()
-        self._watched: dict[int, Callable[[], None]] = {}
+        self._watched: dict[int, _Watch] = {}
         self._splitter = LineSplitter()
         with log_file.open("ab") as log:
             self._process = subprocess.Popen(
                 PROBE_COMMAND,
+                bufsize=0,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,
@@ -103,9 +129,17 @@ class _ProbeProcess:
         os.set_blocking(self._stdout.fileno(), False)
         loop.add_reader(self._stdout.fileno(), self._read)
 
-    def watch(self, condition: Probe, on_met: Callable[[], None]) -> Callable[[], None]:
+    @property
+    def closed(self) -> bool:
+        return self._stdin.closed
+
+    @property
+    def idle(self) -> bool:
+        return not self._watched
+
+    def watch(self, condition: Probe, watch: _Watch) -> Callable[[], None]:
         number = next(self._ids)
-        self._watched[number] = on_met
+        self._watched[number] = watch
         self._send({"id": number, "kind": type(condition).__name__, **asdict(condition)})
 
         def stop_watching() -> None:
@@ -120,33 +154,34 @@ class _ProbeProcess:
 
     def close(self) -> None:
         """Ask the probe to end, which it does when its standard input ends."""
-        if not self.ended and not self._stdin.closed:
-            self._stdin.close()
+        self._stdin.close()
 
     def _send(self, message: Mapping[str, object]) -> None:
-        if self.ended or self._stdin.closed:
-            return
-        try:
-            self._stdin.write(json.dumps(message).encode() + b"\n")
-            self._stdin.flush()
-        except BrokenPipeError:
-            self._on_message("the probe for readiness conditions has ended unexpectedly")
+        if not self.closed:
+            with suppress(BrokenPipeError):  # Then its output ends, too.
+                self._stdin.write(json.dumps(message).encode() + b"\n")
 
     def _read(self) -> None:
         data = os.read(self._stdout.fileno(), 65536)
         if not data:
             self._end()
         for line in self._splitter.feed(data):
-            message = json.loads(line)
-            if "error" in message:
-                self._on_message(message["error"])
-            on_met = self._watched.pop(message.get("id", -1), None)
-            if on_met is not None:
-                on_met()
+            answer = json.loads(line)
+            watch = self._watched.pop(answer["id"], None)
+            if watch is None:
+                continue
+            if "error" in answer:
+                watch.on_failed(answer["error"])
+            else:
+                watch.on_met()
 
     def _end(self) -> None:
-        if not self.ended:
-            self.ended = True
-            self._loop.remove_reader(self._stdout.fileno())
-            self._stdout.close()
-            self._stdin.close()
+        if self.ended:
+            return
+        self.ended = True
+        self._loop.remove_reader(self._stdout.fileno())
+        self._stdout.close()
+        self._stdin.close()
+        watched, self._watched = self._watched, {}
+        for watch in watched.values():
+            watch.on_failed(f"the probe that watches for it has ended; see {self._log_file}")

@@ -56,15 +56,19 @@ class LocalRunner:
         return ChildProcess(self._loop, spec, on_line, on_end, self._look_at_segments)
 
     def watch(
-        self, step: ProcessStep, condition: Probe, on_met: Callable[[], None]
+        self,
+        step: ProcessStep,
+        condition: Probe,
+        on_met: Callable[[], None],
+        on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Call back once the condition is met; return how to stop watching."""
-        return self._probes.watch(condition, self._merged_environment(step), on_met)
+        """Call back once the condition is met, or can never be; return how to stop watching."""
+        return self._probes.watch(condition, self._merged_environment(step), on_met, on_failed)
 
     def settled(self) -> None:
-        """End the probes; a later condition starts a new one."""
+        """End the probes that nothing waits for; a later condition starts a new one."""
         self._look_at_segments()
-        self._probes.close()
+        self._probes.close_idle()
 
     def _merged_environment(self, step: ProcessStep) -> dict[str, str]:
         inherited = {} if step.replace_environment else self._environment

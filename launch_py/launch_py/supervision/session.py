@@ -86,7 +86,7 @@ class Session:
         self._reporter = Reporter(_screen(options, terminal, colours), logs, options.show_all)
         self._notify = NotifySocket(self._take_notification)
         self._ledger = SharedMemoryLedger(self._is_ours)
-        self._probes = ProbeClient(self._loop, logs.path / "probe.log", self._reporter.problem)
+        self._probes = ProbeClient(self._loop, logs.path / "probe.log")
         added = default_environment(environ, logs.path, self._notify.address, colours)
         runner = LocalRunner(
             self._loop, {**environ, **added}, logs, self._probes, self._ledger.observe

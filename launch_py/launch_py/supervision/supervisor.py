@@ -154,12 +154,12 @@ class Supervisor:
             self._runner.settled()
             self._reporter.ready(self._loop.clock() - self._started_s, self._summary)
 
-    def member_late(self, member: Member, missing: str) -> None:
+    def member_not_ready(self, member: Member, why: str) -> None:
         """Give up: what depends on the process could never start."""
         if self.stopping:
             return
-        self._fail(Failure(f"{member.name} {missing}", EXIT_NOT_READY))
-        self.stop(f"{member.name} is not ready in time")
+        self._fail(Failure(f"{member.name} {why}", EXIT_NOT_READY))
+        self.stop(f"{member.name} is not ready")
 
     def member_ended(self, member: Member) -> None:
         """Take the steps that wait for the end, or go on stopping."""
