@@ -22,6 +22,8 @@ COLOR_FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
 TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
+_SLASHES = re.compile(r"/+")
+_DIGIT_FIRST = re.compile(r"(^|/)(?=[0-9])")
 
 
 def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
@@ -132,7 +134,7 @@ class SensorTags:
 
     def own_topics(self) -> tuple[str, ...]:
         """Return what `<topic>` says; where it says nothing, the name made into a topic."""
-        return self.topics("topic") or (_NO_TOPIC.sub("_", self.name),)
+        return self.topics("topic") or (_topic_of(self.name),)
 
     def frame(self, default: str) -> str:
         """Return the frame of the messages' headers."""
@@ -150,3 +152,9 @@ class SensorTags:
                 raise self.error("pose", f"{text!r} is not six numbers", element)
             return values
         return (0.0,) * 6
+
+
+def _topic_of(name: str) -> str:
+    """Return the valid ROS topic name that is nearest to any name."""
+    topic = _SLASHES.sub("/", _NO_TOPIC.sub("_", name)).rstrip("/")
+    return _DIGIT_FIRST.sub(r"\1_", topic) or "sensor"

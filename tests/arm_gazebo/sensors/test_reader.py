@@ -1,5 +1,7 @@
 """IMUs, force-torque and contact sensors as a URDF describes them."""
 
+from collections.abc import Sequence
+
 import pytest
 
 from arm_description.urdf import parse_urdf
@@ -12,12 +14,12 @@ from arm_gazebo.sensors.noise import NoiseModel
 from arm_gazebo.sensors.reader import parse_link_sensors
 
 
-def sensors(*tags: tuple[str, str, str]) -> tuple[LinkSensor, ...]:
-    """Read sensors of a reference, a type and what stands inside, named a, b and so on."""
+def sensors(*tags: tuple[str, str, str], names: Sequence[str] = "abc") -> tuple[LinkSensor, ...]:
+    """Read sensors of a reference, a type and what stands inside, with names of their own."""
     gazebo = "".join(
         f'<gazebo reference="{reference}">'
         f'<sensor name="{name}" type="{kind}">{inside}</sensor></gazebo>'
-        for name, (reference, kind, inside) in zip("abc", tags, strict=False)
+        for name, (reference, kind, inside) in zip(names, tags, strict=False)
     )
     urdf = (
         '<robot name="r"><link name="base"/><link name="hand"/><joint name="wrist" type="fixed">'
@@ -37,6 +39,22 @@ def test_what_is_left_out_has_defaults():
         ForceTorqueSensor("b", "hand", "hand", "b", parent="base"),
         ContactSensor("c", "hand", "hand", "c"),
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "topic"),
+    [
+        ("front imu", "front_imu"),
+        ("9dof_imu", "_9dof_imu"),
+        ("hand/9dof", "hand/_9dof"),
+        ("/hand//imu/", "/hand/imu"),
+        ("/", "sensor"),
+        ("\u0661", "_"),
+    ],
+)
+def test_any_name_makes_a_topic(name, topic):
+    (imu,) = sensors(("hand", "imu", ""), names=(name,))
+    assert (imu.name, imu.topic) == (name, topic)
 
 
 def test_every_tag_of_an_imu_is_read():
