@@ -5,7 +5,9 @@ from pathlib import Path
 from arm_description.xml_document import parse_xml
 from arm_gazebo.world.refusal import Refusal, RefusedError
 
-NAMING = ("file", "meshdir", "texturedir", "assetdir")
+SIDES = ("right", "left", "up", "down", "front", "back")
+"""Those of a cube that a texture has a file each for."""
+NAMING = ("file", "meshdir", "texturedir", "assetdir", *(f"file{side}" for side in SIDES))
 """Attributes that name a file, or the folder of files."""
 NESTING = ("include", "model")
 """Elements whose file is an MJCF, too, which may name further ones."""

@@ -93,10 +93,10 @@ class ModelSource:
         try:
             if not path.is_file():
                 raise RefusedError(Refusal.NO_RESOURCE, f"{path} is no file")
-            if path.suffix == ".xacro":
-                return self._read_text(expand_xacro_file(path, {}, self.package_path).text, path)
             if path.stat().st_size > LARGEST_CHARACTERS:
                 raise _too_large(str(path))
+            if path.suffix in (".xacro", ".urdf"):
+                return self._read_text(expand_xacro_file(path, {}, self.package_path).text, path)
             return self._read_text(path.read_text(encoding="utf-8"), path)
         except DescriptionError as error:
             raise RefusedError(Refusal.UNREADABLE, str(error)) from error

@@ -116,6 +116,16 @@ def test_files_that_are_none_are_refused(uri, refusal):
     assert caught.value.refusal is refusal
 
 
+@pytest.mark.parametrize("name", ["post.urdf", "post.urdf.xacro"])
+def test_a_file_with_xacro_in_it_is_expanded(tmp_path, name):
+    (tmp_path / name).write_text(
+        "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>"
+        "<xacro:property name='foot' value='post'/><link name='world'/><link name='${foot}'/>"
+        "<joint name='j' type='fixed'><parent link='world'/><child link='${foot}'/></joint></robot>"
+    )
+    assert SOURCE.read(str(tmp_path / name), "").root == "post"
+
+
 def test_a_folder_of_an_sdf_model_will_do(things, tmp_path, monkeypatch):
     folder = tmp_path / "my_ball"
     folder.mkdir()
@@ -144,6 +154,14 @@ def test_an_mjcf_file_brings_its_meshes(tmp_path):
 def test_an_mjcf_file_reads_nothing_from_elsewhere(tmp_path, name):
     file = tmp_path / "thing.xml"
     file.write_text(f"<mujoco><asset><mesh file='{name}'/></asset></mujoco>")
+    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+        SOURCE.read(str(file), "")
+
+
+@pytest.mark.parametrize("side", ["right", "left", "up", "down", "front", "back"])
+def test_the_sides_of_a_texture_are_files_too(tmp_path, side):
+    file = tmp_path / "thing.xml"
+    file.write_text(f"<mujoco><asset><texture file{side}='../x.png'/></asset></mujoco>")
     with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
         SOURCE.read(str(file), "")
 
