@@ -148,8 +148,8 @@ class RunServices:
             base, world = self._loader.load(
                 resource.uri, resource.resource_string, request.fail_on_unsupported_element
             )
-            self._run.stand(RunState.STOPPED)
-            self._keeper.replace_world(base)
+            with self._run.to_stand(RunState.STOPPED):
+                self._keeper.replace_world(base)
             self._world = world
             response.world = world_message(world)
 
@@ -158,8 +158,8 @@ class RunServices:
     def _unload(self, _request: Any, response: UnloadWorld.Response) -> Any:
         def unload() -> None:
             self._loaded()
-            self._run.stand(RunState.NO_WORLD)
-            self._keeper.replace_world(self._loader.nowhere())
+            with self._run.to_stand(RunState.NO_WORLD):
+                self._keeper.replace_world(self._loader.nowhere())
             self._world = None
 
         return answer(response, UNLOAD_CODES, unload)

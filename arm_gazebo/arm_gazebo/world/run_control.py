@@ -1,7 +1,8 @@
 """Whether the simulated time runs, and what may follow on what."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from contextlib import contextmanager
 from enum import Enum
 
 from arm_control.control_loop import ControlLoop
@@ -69,6 +70,19 @@ class RunControl:
         """Let time stand still, and call it this state."""
         self._loop.pause().result()
         self._standing = state
+
+    @contextmanager
+    def to_stand(self, state: RunState) -> Iterator[None]:
+        """Let time stand still for what leads to this state; where refused, all is as before."""
+        standing, paused = self._standing, self._loop.paused
+        self.stand(state)
+        try:
+            yield
+        except RefusedError:
+            self._standing = standing
+            if not paused:
+                self._loop.resume().result()
+            raise
 
     def step(self, count: int) -> "Future[int]":
         """Advance a paused simulation by control periods; see `ControlLoop.step`.

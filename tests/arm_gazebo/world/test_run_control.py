@@ -63,6 +63,22 @@ def test_without_a_world_nothing_plays(run):
     assert run.refusal(lambda: run.control.step(1)) is Refusal.INCORRECT_STATE
 
 
+@pytest.mark.parametrize("before", [RunState.PLAYING, RunState.PAUSED])
+def test_a_world_that_is_refused_leaves_the_state_as_it_was(run, before):
+    def refuse() -> None:
+        with run.control.to_stand(RunState.NO_WORLD):
+            assert run.control.state is RunState.NO_WORLD
+            raise RefusedError(Refusal.FAILED, "the world cannot be like that")
+
+    if before is RunState.PLAYING:
+        run.control.go_to(before)
+    assert run.refusal(refuse) is Refusal.FAILED
+    assert run.control.state is before
+    with run.control.to_stand(RunState.STOPPED):
+        pass
+    assert run.control.state is RunState.STOPPED
+
+
 def test_quitting_is_asked_for(run):
     run.control.go_to(RunState.QUITTING)
     assert run.did == ["quit"]
