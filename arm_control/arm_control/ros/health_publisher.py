@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 TOPIC = "/diagnostics"
 HARDWARE_ID = "ros2_control"
 
+SLICE_S = 1.0
+"""A period that is set shorter counts after this long at most."""
+
 
 class HealthPublisher:
     """Publishes one DiagnosticArray per `diagnostic_updater.period` of wall time.
@@ -44,9 +47,22 @@ class HealthPublisher:
 
     def _run(self) -> None:
         publisher = None
-        while not self._stopping.wait(self._node.settings.diagnostic_updater.period):
+        while self._wait():
             publisher = publisher or self._node.create_publisher(DiagnosticArray, TOPIC, 1)
             publisher.publish(self._message())
+
+    def _wait(self) -> bool:
+        """Let one period pass; return False as soon as there is nothing to publish any more.
+
+        In slices: the period may change meanwhile, and may be too long for a wait, infinite even.
+        """
+        waited_s = 0.0
+        while (rest_s := self._node.settings.diagnostic_updater.period - waited_s) > 0.0:
+            slice_s = min(rest_s, SLICE_S)
+            if self._stopping.wait(slice_s):
+                return False
+            waited_s += slice_s
+        return True
 
     def _message(self) -> DiagnosticArray:
         node, diagnostics = self._node, self._diagnostics
