@@ -93,7 +93,8 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         prepared = self._prepare(goal.trajectory)
         if isinstance(prepared, Refusal):
             return prepared.as_result()
-        haste = self._follower and self._follower.find_haste(prepared)
+        follower = self._follower  # which the loop thread may take away between two looks
+        haste = follower and follower.find_haste(prepared)
         if haste:
             self.logger.warning("Goal too fast: %s", haste)
         taken = self._inbox.put(GoalStart(goal, prepared))
