@@ -33,7 +33,8 @@ class LaunchContext:
     environment: dict[str, str | None] = field(default_factory=dict)
     """Variables that the launch file set, None for those that it unset."""
     namespace: str = ""
-    parameters: list[dict[str, Any]] = field(default_factory=list)
+    parameters: list[dict[str, Any] | str] = field(default_factory=list)
+    """What all nodes of this scope get before their own: dicts, and paths of parameter files."""
     remappings: list[tuple[str, str]] = field(default_factory=list)
     after: tuple[Trigger, ...] = ()
     delay_s: float = 0.0

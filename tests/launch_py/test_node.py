@@ -12,7 +12,9 @@ from launch_py.ros import (
     Node,
     PushRosNamespace,
     SetParameter,
+    SetParametersFromFile,
     SetRemap,
+    SetUseSimTime,
 )
 from launch_py.substitution import perform_text
 from launch_py.substitutions import LaunchConfiguration
@@ -119,6 +121,21 @@ def test_set_parameter_comes_first_so_that_own_values_win(expand):
     plan = expand([SetParameter("use_sim_time", True), node(parameters=[{"rate": 1}])])
     values = [next(iter(file.values()))["ros__parameters"] for file in parameters(plan)]
     assert values == [{"use_sim_time": True}, {"rate": 1}]
+
+
+@pytest.mark.parametrize("value", [True, "true", LaunchConfiguration("s", default="yes")])
+def test_sim_time_is_set_for_the_scope(expand, value):
+    plan = expand([GroupAction([SetUseSimTime(value), node()]), node()])
+    assert parameters(plan, 0) == [{"/**": {"ros__parameters": {"use_sim_time": True}}}]
+    assert parameters(plan, 1) == []
+
+
+def test_a_parameter_file_for_the_scope_comes_first(expand, tmp_path):
+    path = tmp_path / "params.yaml"
+    path.touch()
+    plan = expand([SetParametersFromFile(path), node(parameters=[{"rate": 1}])])
+    assert words(plan)[1:4] == ("--ros-args", "--params-file", str(path))
+    assert parameters(plan) == [{"/**": {"ros__parameters": {"rate": 1}}}]
 
 
 def test_a_parameter_file_is_passed_as_it_is(expand, tmp_path):

@@ -21,12 +21,15 @@ ROS_NAMES = {
         "AnyLaunchDescriptionSource PythonLaunchDescriptionSource"
     ),
     "launch_py.substitutions": (
-        "AndSubstitution Command EnvironmentVariable EqualsSubstitution FindExecutable "
-        "IfElseSubstitution LaunchConfiguration NotEqualsSubstitution NotSubstitution "
-        "OrSubstitution PathJoinSubstitution PythonExpression TextSubstitution ThisLaunchFile "
-        "ThisLaunchFileDir"
+        "AllSubstitution AndSubstitution AnySubstitution Command EnvironmentVariable "
+        "EqualsSubstitution FindExecutable IfElseSubstitution LaunchConfiguration "
+        "NotEqualsSubstitution NotSubstitution OrSubstitution PathJoinSubstitution "
+        "PythonExpression TextSubstitution ThisLaunchFile ThisLaunchFileDir"
     ),
-    "launch_py.ros.actions": "Node PushRosNamespace SetParameter SetRemap",
+    "launch_py.ros.actions": (
+        "Node PushROSNamespace PushRosNamespace SetParameter SetParametersFromFile SetRemap "
+        "SetUseSimTime"
+    ),
     "launch_py.ros.substitutions": "FindPackagePrefix FindPackageShare",
     "launch_py.ros.parameter_descriptions": "ParameterValue",
 }

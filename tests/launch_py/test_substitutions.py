@@ -9,7 +9,9 @@ from launch_py import LaunchContext
 from launch_py.errors import LaunchFileError, NotFoundError, SubstitutionError
 from launch_py.substitution import perform_text
 from launch_py.substitutions import (
+    AllSubstitution,
     AndSubstitution,
+    AnySubstitution,
     Call,
     Command,
     EnvironmentVariable,
@@ -140,6 +142,10 @@ def test_call_that_fails_is_a_sentence(context):
         (NotEqualsSubstitution("a", "b"), "true"),
         (AndSubstitution("true", LaunchConfiguration("no")), "false"),
         (OrSubstitution("true", LaunchConfiguration("no")), "true"),
+        (AllSubstitution("true", LaunchConfiguration("yes"), "1"), "true"),
+        (AllSubstitution("true", LaunchConfiguration("no"), "1"), "false"),
+        (AnySubstitution("false", LaunchConfiguration("yes"), "0"), "true"),
+        (AnySubstitution("false", LaunchConfiguration("no")), "false"),
         (NotSubstitution(LaunchConfiguration("no")), "true"),
         (IfElseSubstitution(LaunchConfiguration("yes"), "a", "b"), "a"),
         (IfElseSubstitution("false", "a", "b"), "b"),

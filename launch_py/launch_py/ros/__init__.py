@@ -1,6 +1,14 @@
 """Nodes and packages, named as in ROS 2's `launch_ros`."""
 
-from launch_py.ros.actions import Node, PushRosNamespace, SetParameter, SetRemap
+from launch_py.ros.actions import (
+    Node,
+    PushROSNamespace,
+    PushRosNamespace,
+    SetParameter,
+    SetParametersFromFile,
+    SetRemap,
+    SetUseSimTime,
+)
 from launch_py.ros.parameter_descriptions import ParameterValue
 from launch_py.ros.substitutions import FindPackagePrefix, FindPackageShare
 
@@ -9,7 +17,10 @@ __all__ = [
     "FindPackageShare",
     "Node",
     "ParameterValue",
+    "PushROSNamespace",
     "PushRosNamespace",
     "SetParameter",
+    "SetParametersFromFile",
     "SetRemap",
+    "SetUseSimTime",
 ]

@@ -13,6 +13,7 @@ from launch_py.names import join_names
 from launch_py.near_names import describe_known
 from launch_py.packages import Packages
 from launch_py.parameters import (
+    ParameterValue,
     evaluate_parameters,
     parameter_file_text,
     parameters_by_node,
@@ -163,6 +164,10 @@ class PushRosNamespace(Action):
         context.push_namespace(perform_text(context, self.namespace))
 
 
+PushROSNamespace = PushRosNamespace
+"""ROS has both spellings."""
+
+
 class SetParameter(Action):
     """Gives a parameter to all nodes that follow in this scope; their own values win."""
 
@@ -175,6 +180,26 @@ class SetParameter(Action):
         """Add the parameter to the scope."""
         name = perform_text(context, self.name)
         context.parameters.append(evaluate_parameters(context, {name: self.value}))
+
+
+class SetUseSimTime(SetParameter):
+    """Tells all nodes that follow in this scope whether time comes from /clock."""
+
+    def __init__(self, value: bool | Text, *, condition: Condition | None = None) -> None:
+        truth = ParameterValue(value, value_type=bool)
+        super().__init__("use_sim_time", truth, condition=condition)
+
+
+class SetParametersFromFile(Action):
+    """Gives a parameter file to all nodes that follow in this scope; their own values win."""
+
+    def __init__(self, filename: Text, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.filename = filename
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add the file to the scope."""
+        context.parameters.append(perform_text(context, self.filename))
 
 
 class SetRemap(Action):

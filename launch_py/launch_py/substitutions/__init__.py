@@ -4,7 +4,9 @@ from launch_py.substitution import Substitution
 from launch_py.substitutions.call import Call
 from launch_py.substitutions.command import Command, FindExecutable
 from launch_py.substitutions.logic import (
+    AllSubstitution,
     AndSubstitution,
+    AnySubstitution,
     EqualsSubstitution,
     IfElseSubstitution,
     NotEqualsSubstitution,
@@ -22,7 +24,9 @@ from launch_py.substitutions.text import (
 )
 
 __all__ = [
+    "AllSubstitution",
     "AndSubstitution",
+    "AnySubstitution",
     "Call",
     "Command",
     "EnvironmentVariable",

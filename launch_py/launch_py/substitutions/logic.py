@@ -69,6 +69,27 @@ class OrSubstitution(_Pair):
         return truth_text(_truth(context, self.left) or _truth(context, self.right))
 
 
+class _Several(Substitution):
+    def __init__(self, *args: Text) -> None:
+        self.args = args
+
+
+class AllSubstitution(_Several):
+    """Whether all of several are true."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return 'true' or 'false'."""
+        return truth_text(all(_truth(context, value) for value in self.args))
+
+
+class AnySubstitution(_Several):
+    """Whether one of several is true."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return 'true' or 'false'."""
+        return truth_text(any(_truth(context, value) for value in self.args))
+
+
 class NotSubstitution(Substitution):
     """The opposite."""
 
