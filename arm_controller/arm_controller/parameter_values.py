@@ -13,9 +13,12 @@ from typing import TypeGuard
 from arm_controller.errors import ParameterValueError
 from arm_controller.pose import JointPose
 
+LARGEST = 1e9
+"""No number may be greater: as a time it is thirty years, and ROS counts nanoseconds in 64 bits."""
+
 
 def read_number(value: object, *, positive: bool = True) -> float:
-    """Return a finite number, above zero or, if not `positive`, zero as well.
+    """Return a number up to `LARGEST`, above zero or, if not `positive`, zero as well.
 
     Raises:
         ParameterValueError: it is something else.
@@ -25,7 +28,22 @@ def read_number(value: object, *, positive: bool = True) -> float:
         raise ParameterValueError(f"must be {wanted}, not {value!r}")
     if value < 0 or (positive and value == 0):
         raise ParameterValueError(f"must be {wanted}, not {value:g}")
+    if value > LARGEST:
+        raise ParameterValueError(f"must be at most {LARGEST:g}, not {value:g}")
     return float(value)
+
+
+def read_rate(value: object) -> float:
+    """Return how often something happens per second, 0 for never; its period is up to `LARGEST`.
+
+    Raises:
+        ParameterValueError: it is something else.
+    """
+    rate = read_number(value, positive=False)
+    least = 1.0 / LARGEST
+    if 0.0 < rate < least:
+        raise ParameterValueError(f"must be 0 or at least {least:g}, not {rate:g}")
+    return rate
 
 
 def read_pose(value: object, joint_names: Sequence[str]) -> JointPose | None:

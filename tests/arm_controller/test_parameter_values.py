@@ -14,6 +14,7 @@ from arm_controller.parameter_values import (
     read_place,
     read_pose,
     read_prefix,
+    read_rate,
     read_topic,
 )
 
@@ -35,6 +36,24 @@ def test_zero_may_be_allowed():
     assert read_number(0, positive=False) == 0.0
     with pytest.raises(ParameterValueError, match="must be 0 or a number above, not -1"):
         read_number(-1, positive=False)
+
+
+@pytest.mark.parametrize("value", [1.1e9, 2**62])
+def test_a_number_that_no_timer_can_count_is_refused(value: float):
+    assert read_number(1e9) == 1e9
+    with pytest.raises(ParameterValueError, match=r"must be at most 1e\+09, not"):
+        read_number(value)
+
+
+@pytest.mark.parametrize("value", [0, 1e-9, 20])
+def test_a_rate_may_be_zero_and_slow(value: float):
+    assert read_rate(value) == value
+
+
+@pytest.mark.parametrize("value", [1e-10, 5e-324])
+def test_a_rate_whose_period_no_timer_can_count_is_refused(value: float):
+    with pytest.raises(ParameterValueError, match="must be 0 or at least 1e-09, not"):
+        read_rate(value)
 
 
 @pytest.mark.parametrize("value", [[1, 0.5], array("d", [1, 0.5]), "[1, 0.5]", " [ 1.0 ,0.5] "])

@@ -7,7 +7,7 @@ from rclpy.timer import Timer
 
 from arm_controller.errors import ArmControllerError, PoseError
 from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_flag, read_number, read_pose
+from arm_controller.parameter_values import read_flag, read_number, read_pose, read_rate
 from arm_controller.pose import JointPose
 from arm_controller.ros.clock_time import steady_clock
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
@@ -41,7 +41,7 @@ class ArmController(Node):
             self,
             "publish_rate",
             0.0,
-            self._read_not_negative,
+            read_rate,
             "How often a pose is published (Hz); 0 = once",
         )
         self._repeats = rate_hz > 0.0
