@@ -1,7 +1,6 @@
 """The ROS side of a running controller manager: services, topics, nodes of what it manages."""
 
 import logging
-import re
 from collections.abc import Sequence
 
 from controller_manager_msgs.msg import ControllerManagerActivity
@@ -21,6 +20,7 @@ from arm_control.ros.convert import activity_message
 from arm_control.ros.description_topic import LATCHED_QOS, DescriptionTopic
 from arm_control.ros.manager_services import ManagerServices
 from arm_control.ros.node_arguments import controller_arguments
+from arm_control.ros.node_name import as_node_name
 from arm_control.ros.service_executor import ServiceExecutor
 from arm_node.executor_thread import ExecutorThread
 
@@ -140,7 +140,7 @@ class ControllerManagerServer:
 
     def _make_component_node(self, component: str) -> Node:
         node = Node(
-            re.sub(r"\W", "_", component.lower(), flags=re.ASCII),
+            as_node_name(component.lower()),
             namespace=self._node.get_namespace(),
             cli_args=controller_arguments(self._node.arguments),
             use_global_arguments=False,

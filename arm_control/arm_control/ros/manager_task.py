@@ -1,10 +1,10 @@
 """Runs what spawner, unspawner and hardware_spawner do in a process of their own."""
 
-import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from arm_control.errors import ArmControlError, WaitInterruptedError
+from arm_control.ros.node_name import as_node_name
 from arm_node.process import EXIT_OK, NodeProcess
 from arm_node.task import Task, run_task
 
@@ -27,5 +27,5 @@ def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> int:
         except WaitInterruptedError:
             return EXIT_OK
 
-    name = re.sub(r"\W", "_", node_name, flags=re.ASCII)
+    name = as_node_name(node_name)
     return run_task(name, until_interrupted, argv, user_errors=(ArmControlError,))
