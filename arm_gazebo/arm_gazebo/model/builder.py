@@ -13,8 +13,9 @@ from arm_control.hardware_info import HardwareInfo
 from arm_description.robot import Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
+from arm_gazebo.free_name import free_name
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.element_names import free_name, name_elements
+from arm_gazebo.model.element_names import name_elements
 from arm_gazebo.model.world_file import check_world, load_world
 from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.collision_policy import MOST_LAYERS, CollisionLayer
@@ -57,7 +58,12 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
     parts = []
     for index, entry in enumerate(entries):
         report.add(*entry.tags.findings)
-        parts.append(RobotPart(spec, entry, CollisionLayer(index, len(entries)), report))
+        layer = CollisionLayer(index, len(entries))
+        try:
+            parts.append(RobotPart(spec, entry, layer, report))
+        except ValueError as error:
+            # MuJoCo's, where two things of a kind have one name.
+            raise ModelError(f"robot '{entry.robot.name}' cannot be built: {error}") from error
     names = " and ".join(f"robot '{entry.robot.name}'" for entry in entries)
     _set_physics(spec, entries[0].options.step_s)
     model = _compile(spec, names, world)

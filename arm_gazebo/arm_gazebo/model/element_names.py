@@ -1,8 +1,8 @@
 """Names for what a model's file left unnamed: states are carried from model to model by name."""
 
-from collections.abc import Collection
-
 import mujoco
+
+from arm_gazebo.free_name import free_name
 
 UNNAMED_BODY = "thing"
 
@@ -24,12 +24,3 @@ def name_elements(spec: mujoco.MjSpec) -> None:
         if not actuator.name:
             actuator.name = free_name(f"{actuator.target or UNNAMED_BODY}::actuator", actuators)
             actuators.add(actuator.name)
-
-
-def free_name(name: str, taken: Collection[str]) -> str:
-    """Return the name, or where it is taken the first of NAME_2, NAME_3 and so on that is not."""
-    candidate, number = name, 1
-    while candidate in taken:
-        number += 1
-        candidate = f"{name}_{number}"
-    return candidate

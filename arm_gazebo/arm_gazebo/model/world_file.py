@@ -53,9 +53,9 @@ def load_world(world: str | Path, report: BuildReport | None = None) -> mujoco.M
             the file.
     """
     path = find_world(world)
-    if path.suffix in SDF_SUFFIXES:
-        return read_sdf_world(path, report or BuildReport())
     try:
+        if path.suffix in SDF_SUFFIXES:
+            return read_sdf_world(path, report or BuildReport())
         return mujoco.MjSpec.from_file(str(path))
     except (ValueError, mujoco.FatalError) as error:
         raise _unusable(path, error) from error

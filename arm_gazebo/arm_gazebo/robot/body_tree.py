@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from arm_description.robot import Inertial, Joint, Link, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
+from arm_gazebo.free_name import free_name
 from arm_gazebo.quaternion import wxyz
 from arm_gazebo.robot.inertia_repair import (
     LARGEST_GYRATION_M2,
@@ -51,7 +52,8 @@ class TreeOptions:
 class BodyTree:
     """Adds the links of a robot to a specification, each a body of its own.
 
-    Fixed joints are not fused: every link keeps its frame. A link called `world` is the world.
+    Fixed joints are not fused: every link keeps its frame. A root link called `world` is the
+    world; one below the root is a body like the others, under another name.
 
     Raises:
         ModelError: the robot is too large to be simulated.
@@ -76,6 +78,7 @@ class BodyTree:
         self._spawn = options.spawn
         self._report = report
         self._bodies: dict[str, mujoco.MjsBody] = {}
+        self._joint_names = {joint.name for joint in (*spec.joints, *robot.joints)}
         # MuJoCo reads angles of the whole specification in the unit that the world file chose.
         self._angle = math.degrees(1.0) if spec.compiler.degree else 1.0
 
@@ -84,7 +87,7 @@ class BodyTree:
         self._add_root()
         for joint in self._robot.joints_in_tree_order:
             body = self._bodies[joint.parent].add_body(
-                name=joint.child, **self._placement(joint.parent, joint.origin)
+                name=self._body_name(joint.child), **self._placement(joint.parent, joint.origin)
             )
             self._bodies[joint.child] = body
             self._add_joints(body, joint)
@@ -94,19 +97,35 @@ class BodyTree:
     def _add_root(self) -> None:
         root = self._robot.link(self._robot.root)
         world = self._spec.worldbody
-        if root.name == WORLD_LINK:
+        if self._is_world(root.name):
             self._bodies[root.name] = world
             self._geometry.add(world, root)
             return
         body = world.add_body(name=root.name, pos=self._spawn.xyz, quat=wxyz(self._spawn.rpy))
         self._bodies[root.name] = body
         if self._free:
-            body.add_freejoint(name=f"{root.name}_free")
+            body.add_freejoint(name=self._joint_name(f"{root.name}_free"))
         self._add_link(body, root, moves=self._free)
+
+    def _is_world(self, link: str) -> bool:
+        return link == self._robot.root == WORLD_LINK
+
+    def _body_name(self, link: str) -> str:
+        """Return the name of a link that is not the root; MuJoCo's own world is a body too."""
+        if link != WORLD_LINK:
+            return link
+        taken = (*self._spec.bodies, *self._robot.links)
+        return free_name(link, {element.name for element in taken})
+
+    def _joint_name(self, name: str) -> str:
+        """Return a made-up name, or where some joint has it a similar one."""
+        name = free_name(name, self._joint_names)
+        self._joint_names.add(name)
+        return name
 
     def _placement(self, parent: str, origin: Pose) -> dict[str, NDArray[np.float64]]:
         """Return position and quaternion of a child; the spawn pose moves the `world` link."""
-        if parent != WORLD_LINK:
+        if not self._is_world(parent):
             return {"pos": np.asarray(origin.xyz), "quat": wxyz(origin.rpy)}
         matrix = self._spawn.matrix() @ origin.matrix()
         quaternion = np.zeros(4)
@@ -145,21 +164,21 @@ class BodyTree:
                 self._add_scalar(body, joint, HINGE)
             case "prismatic":
                 self._add_scalar(body, joint, SLIDE)
-            case "floating" if joint.parent == WORLD_LINK:
+            case "floating" if self._is_world(joint.parent):
                 body.add_freejoint(name=joint.name)
             case "floating":
                 # MuJoCo's free joint is for children of the world only.
                 for axis, direction in zip("xyz", np.eye(3), strict=True):
-                    body.add_joint(
-                        self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction
-                    )
-                body.add_joint(self._default, name=f"{joint.name}_rotation", type=BALL)
+                    name = self._joint_name(f"{joint.name}_{axis}")
+                    body.add_joint(self._default, name=name, type=SLIDE, axis=direction)
+                name = self._joint_name(f"{joint.name}_rotation")
+                body.add_joint(self._default, name=name, type=BALL)
             case "planar":
                 for axis, direction in zip("xy", _plane(joint.axis), strict=True):
-                    body.add_joint(
-                        self._default, name=f"{joint.name}_{axis}", type=SLIDE, axis=direction
-                    )
-                body.add_joint(self._default, name=f"{joint.name}_yaw", type=HINGE, axis=joint.axis)
+                    name = self._joint_name(f"{joint.name}_{axis}")
+                    body.add_joint(self._default, name=name, type=SLIDE, axis=direction)
+                name = self._joint_name(f"{joint.name}_yaw")
+                body.add_joint(self._default, name=name, type=HINGE, axis=joint.axis)
             case "fixed":
                 pass
 

@@ -110,7 +110,7 @@ class RobotPart:
 
     def leave_out_neighbours(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:
         """Exclude contacts within the robot that are there from the start."""
-        links = [name for name in self._bodies if name != WORLD_LINK]
+        links = [body.name for body in self._bodies.values() if body.name != WORLD_LINK]
         leave_out_neighbours(self._spec, model, qpos, links, self._report)
 
     def joints(self, model: mujoco.MjModel) -> dict[str, RobotJoint]:

@@ -24,7 +24,7 @@ class Measurement:
         type: what it measures.
         object_type: of what it is attached to.
         object_name: likewise.
-        reference: body whose axes and origin it is seen from; empty for the world.
+        reference: link whose axes and origin it is seen from; empty for the world.
         options: integers that the type takes.
     """
 
@@ -86,15 +86,17 @@ class LinkSensor(ABC):
         # In a group of its own, so that no picture shows it.
         bodies[self.link].add_site(name=self.key, pos=self.xyz, quat=wxyz(self.rpy), group=5)
         for part in self.measurements():
+            at_link = part.object_type == mujoco.mjtObj.mjOBJ_BODY
             sensor = spec.add_sensor(
                 name=f"{self.key}/{part.name}",
                 type=part.type,
                 objtype=part.object_type,
-                objname=part.object_name,
+                objname=bodies[part.object_name].name if at_link else part.object_name,
                 intprm=part.options,
             )
             if part.reference:
-                sensor.reftype, sensor.refname = mujoco.mjtObj.mjOBJ_XBODY, part.reference
+                sensor.reftype = mujoco.mjtObj.mjOBJ_XBODY
+                sensor.refname = bodies[part.reference].name
 
     def addresses(self, model: mujoco.MjModel) -> NDArray[np.intp]:
         """Return where in `sensordata` the measurements are."""

@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 
 from arm_description.names import listing
+from arm_gazebo.free_name import free_name
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.element_names import free_name
 from arm_gazebo.world.changes import WorldChanges
 from arm_gazebo.world.refusal import Refusal, RefusedError
 

@@ -90,6 +90,47 @@ def test_planar_joint_moves_in_the_plane_of_its_axis(parts):
     assert model.jnt_axis[2].tolist() == [0, 1, 0]
 
 
+@pytest.mark.parametrize(
+    ("kind", "taken"),
+    [("planar", "base_x"), ("planar", "base_yaw"), ("floating", "base_rotation")],
+)
+def test_joints_made_of_one_leave_the_others_their_names(parts, kind, taken):
+    urdf = parts.robot(
+        parts.link("base"),
+        parts.link("l", 1),
+        parts.link("m", 1),
+        parts.joint("base", "base", "l", kind, limit=""),
+        parts.joint(taken, "l", "m"),
+    )
+    built = parts.build(urdf, base="free")
+    assert [*built.joints] == [taken]
+    assert built.model.joint(taken).bodyid == built.bodies["m"]
+
+
+def test_free_root_leaves_the_joints_their_names(parts):
+    urdf = parts.robot(
+        parts.link("base", 1), parts.link("l", 1), parts.joint("base_free", "base", "l")
+    )
+    built = parts.build(urdf, base="free")
+    assert [*built.joints] == ["base_free"]
+    assert built.model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE
+
+
+def test_link_called_world_below_the_root_is_one_like_the_others(parts):
+    urdf = parts.robot(
+        parts.link("map"),
+        parts.link("world"),
+        parts.link("base", 1),
+        parts.joint("place", "map", "world", "fixed", "1 0 0"),
+        parts.joint("lift", "world", "base", "floating", "0 2 0", limit=""),
+    )
+    built = parts.build(urdf, spawn=Pose((0.0, 0.0, 3.0)), self_collide=True)
+    data = mujoco.MjData(built.model)
+    mujoco.mj_kinematics(built.model, data)
+    assert data.xpos[built.bodies["world"]] == pytest.approx([1, 0, 3])
+    assert data.xpos[built.bodies["base"]] == pytest.approx([1, 2, 3])
+
+
 def test_limits_and_dynamics_are_kept(parts):
     limit = 'lower="-0.5" upper="1.5" effort="7" velocity="2"'
     urdf = parts.pendulum('<dynamics damping="0.4" friction="0.3"/>', limit)

@@ -64,6 +64,16 @@ def test_robot_cannot_take_the_name_of_a_thing_in_the_world(parts, tmp_path):
         parts.build(parts.pendulum(), world)
 
 
+def test_names_that_only_mujoco_finds_taken_are_refused(parts, tmp_path):
+    world = tmp_path / "mine.xml"
+    world.write_text(
+        '<mujoco><worldbody><body><joint name="k"/><geom size="0.1"/></body></worldbody>'
+        '<actuator><motor name="j" joint="k"/></actuator></mujoco>'
+    )
+    with pytest.raises(ModelError, match=r"robot 'bench' cannot be built: .*'j' in actuator"):
+        parts.build(parts.pendulum(), world)
+
+
 def test_defaults_of_a_world_are_for_the_world(parts, tmp_path):
     world = tmp_path / "world.xml"
     world.write_text(

@@ -247,6 +247,12 @@ def test_what_is_no_world_is_refused(tmp_path, text, said):
         load_world(path)
 
 
+def test_lights_of_one_name_are_refused(write):
+    content = '<light name="sun" type="point"/><include><uri>model://sun</uri></include>'
+    with pytest.raises(WorldError, match=r"lab\.sdf is not usable SDF: .*'sun' in light"):
+        load_world(write(f'<world name="lab">{content}</world>'))
+
+
 def test_robot_is_put_into_an_sdf_world(parts, write):
     path = write(f'<world name="lab">{GROUND}{model("shelf", "2 0 0.3 0 0 0")}</world>')
     built = parts.build(parts.pendulum(), path)
