@@ -1,6 +1,5 @@
 """Which entities a client means."""
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,9 +7,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.world.entity import Category, Entities, Entity
 from arm_gazebo.world.entity_motion import EntityMotions
-from arm_gazebo.world.refusal import Refusal, RefusedError
-
-LONGEST_PATTERN = 200
+from arm_gazebo.world.name_pattern import NamePattern
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +35,7 @@ class EntityFilter:
     """Passes entities that fit all that is set.
 
     Attributes:
-        pattern: regular expression that is found in the name; "" for any.
+        pattern: regular expression, see `NamePattern`, that is found in the name; "" for any.
         categories: at least one of which they are in, none for any.
         tags: what they are marked with, none for any.
         all_tags: whether one of the tags is not enough.
@@ -57,20 +54,11 @@ class EntityFilter:
         Raises:
             RefusedError: the pattern is no regular expression.
         """
-        if len(self.pattern) > LONGEST_PATTERN:
-            raise RefusedError(
-                Refusal.FAILED, f"the filter has more than {LONGEST_PATTERN} characters"
-            )
-        try:
-            name = re.compile(self.pattern)
-        except (re.error, RecursionError, OverflowError) as error:
-            raise RefusedError(
-                Refusal.FAILED, f"the filter {self.pattern!r} is no regular expression: {error}"
-            ) from error
+        pattern = NamePattern(self.pattern)
         return [
             entity
             for entity in entities
-            if name.search(entity.name) and self._passes(entity, motions)
+            if pattern.is_in(entity.name) and self._passes(entity, motions)
         ]
 
     def _passes(self, entity: Entity, motions: EntityMotions) -> bool:
