@@ -15,10 +15,11 @@ from arm_control.controller import Controller
 from arm_control.errors import LoopStoppedError, ParameterError
 from arm_control.guarded import failure_of
 from arm_control.lifecycle import LifecycleState, Transition
-from arm_control.parameters import ParameterSpec
+from arm_control.parameters import ParameterSpec, specs_of
 from arm_control.registry import load_object
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_control.ros.convert import transition_events
+from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.parameter_node import ParameterNode
 
 EVENT_DEPTH = 10
@@ -65,7 +66,12 @@ class ControllerNode(ParameterNode):
         self._specs = controller.parameter_specs(self.given_parameters())
         general = _general_specs(controller.context.update_rate_hz)
         self.declare_specs((*self._specs, *general))
-        self.warn_of_unknown([spec.name for spec in (*self._specs, *general)], type_name)
+        self.warn_of_unknown(
+            [spec.name for spec in (*self._specs, *general)],
+            type_name,
+            # What is given without a node's name is given to every node of the process.
+            others=[spec.name for spec in specs_of(ManagerSettings)],
+        )
         self._adapter = self._make_adapter()
         self._events = self.create_publisher(
             TransitionEvent, "~/transition_event", QoSProfile(depth=EVENT_DEPTH)

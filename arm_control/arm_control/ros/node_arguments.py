@@ -23,7 +23,7 @@ def controller_arguments(argv: Sequence[str], extra: Sequence[str] = ()) -> list
     """Return the arguments that a controller's node takes over.
 
     As `manager_arguments`, but without the namespace, which is the manager's, and without a robot
-    description.
+    description that is given by itself: one in a parameter file comes along.
 
     Args:
         argv: of the process.

@@ -19,11 +19,17 @@ _LIST_TYPES = {
 }
 _ANY_NODE = (
     "fallback_controllers",
+    "node_options_args",
+    "params_file",
+    "robot_description",
     "start_type_description_service",
     "type",
     "use_sim_time",
 )
-"""What a parameter file may say about any controller, beside the controller's own parameters."""
+"""What a parameter file may say about any controller, beside the controller's own parameters.
+
+Also after the controller's name and a dot, as the manager takes it.
+"""
 
 
 class ParameterNode(Node):
@@ -80,13 +86,22 @@ class ParameterNode(Node):
             f"parameter '{name}' must be a string or a list of strings, not {value!r}"
         )
 
-    def warn_of_unknown(self, known: Iterable[str], owner: str) -> None:
-        """Say which of the given parameters mean nothing to this node."""
+    def warn_of_unknown(self, known: Iterable[str], owner: str, others: Iterable[str] = ()) -> None:
+        """Say which of the given parameters mean nothing.
+
+        Args:
+            known: to this node.
+            owner: whose parameters these are, for the message.
+            others: what means something to another node that is given the same ones.
+        """
         names = sorted(known)
+        harmless = {*names, *others}
         unknown = [
             name
             for name in self.given_parameters()
-            if name not in (*names, *_ANY_NODE) and not name.startswith("qos_overrides.")
+            if name not in harmless
+            and name.rpartition(".")[2] not in _ANY_NODE
+            and not name.startswith("qos_overrides.")
         ]
         if unknown:
             logging.getLogger(self.get_name()).warning(

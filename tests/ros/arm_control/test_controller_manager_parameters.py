@@ -145,6 +145,14 @@ def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
         "--start",
         "position_controller",
         parameters={
+            # These mean something to the manager, whose process the controllers share.
+            "/**": {
+                "ros__parameters": {
+                    "enforce_command_limits": False,
+                    "robot_description": "<robot name='r'/>",
+                    "another.type": BROADCASTER,
+                }
+            },
             "/**/controller_manager": {
                 "ros__parameters": {
                     "position_controller.type": POSITION,
