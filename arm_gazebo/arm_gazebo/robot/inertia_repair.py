@@ -12,13 +12,13 @@ from arm_description.transforms import rotation_from_rpy
 Array = NDArray[np.float64]
 
 SMALLEST_MASS_KG = 1e-3
-SMALLEST_INERTIA = 1e-9
-"""Below this, in kg m2, an inertia about an axis is taken for missing: a 1 mg bead of 30 mm."""
+SMALLEST_INERTIA = 1e-14
+"""Below this, in kg m2, an inertia is taken for missing; MuJoCo takes none below 1e-15."""
 DEFAULT_INERTIA = 1e-6
 HOLLOW_KG_M3 = 300.0
 """Mass of a robot's link over the volume of the box around it: between 200 and 500 in practice."""
 LARGEST_GYRATION_M2 = 4.0
-"""Inertia over mass that no link of an arm has: a mesh in millimetres taken for metres has it."""
+"""Inertia over mass that few links have: a mesh in millimetres taken for metres has it."""
 LARGEST_MOMENT = 1e300
 """Larger ones, in kg m2, are nonsense whose sums no float can hold."""
 ROUNDING = 1e-3
@@ -77,7 +77,8 @@ def repair_inertia(inertial: Inertial, box: NDArray[np.float64] | None = None) -
     moments, axes = np.linalg.eigh(np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]))
     moments = np.clip(moments, -LARGEST_MOMENT, LARGEST_MOMENT)
     axes = rotation_from_rpy(inertial.origin.rpy) @ axes
-    if moments[2] > LARGEST_GYRATION_M2 * mass:
+    large = moments[2] > LARGEST_GYRATION_M2 * mass
+    if large and not _fits(mass, moments[2], np.array(inertial.origin.xyz), box):
         moments, axes = _implausible(mass, moments, axes, box, remarks)
     moments = _physical(moments, remarks)
     if np.linalg.det(axes) < 0:
@@ -87,6 +88,14 @@ def repair_inertia(inertial: Inertial, box: NDArray[np.float64] | None = None) -
     return PrincipalInertia(
         mass, np.array(inertial.origin.xyz), quaternion, moments, tuple(remarks)
     )
+
+
+def _fits(mass: float, moment: float, centre: Array, box: Array | None) -> bool:
+    """Return whether a mass with that centre can have the moment and lie within the box."""
+    if box is None:
+        return False
+    reach = np.sort(np.abs(box - centre).max(axis=0))
+    return moment <= mass * (reach[1] ** 2 + reach[2] ** 2)
 
 
 def _implausible(
@@ -116,7 +125,7 @@ def _physical(moments: Array, remarks: list[str]) -> Array:
         remarks.append(f"it has no inertia; {DEFAULT_INERTIA:g} kg m2 is used")
         return np.full(3, DEFAULT_INERTIA)
     largest = moments.max()
-    floor = ROUNDING * largest
+    floor = max(ROUNDING * largest, SMALLEST_INERTIA)
     if moments.min() < -floor:
         remarks.append(f"its inertia has a principal moment below 0 ({moments.min():.3g} kg m2)")
     moments = np.maximum(moments, floor)

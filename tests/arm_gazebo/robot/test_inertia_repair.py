@@ -91,6 +91,30 @@ def test_inertia_in_the_wrong_unit_is_taken_from_the_shapes_where_there_are_any(
     assert "that of its bounding box is used" in inertia.remarks[0]
 
 
+def test_inertia_of_a_huge_link_is_kept_where_its_shapes_have_room_for_it():
+    """1000 kg, most of it at the ends of 20 m."""
+    box = np.array([[-10.0, -0.5, -0.5], [10.0, 0.5, 0.5]])
+    inertia = repair_inertia(inertial(500, 9e4, 9e4, mass=1000.0), box)
+    assert sorted(inertia.moments) == pytest.approx([500, 9e4, 9e4])
+    assert inertia.remarks == ()
+
+
+@pytest.mark.parametrize("moment", [4e-10, 1e-12, 1e-14])
+def test_inertia_of_a_tiny_link_is_kept(moment):
+    inertia = repair_inertia(inertial(moment, moment, moment, mass=1e-3))
+    assert inertia.moments == pytest.approx([moment] * 3, abs=0.0)
+    assert inertia.remarks == ()
+
+
+def test_tiny_rod_is_one_that_mujoco_takes(parts):
+    rod = (
+        '<link name="rod"><inertial><mass value="1e-6"/><inertia ixx="1e-17" iyy="1e-14" '
+        'izz="1e-14" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
+    built = parts.build(parts.robot(parts.link("base"), rod, parts.joint("j", "base", "rod")))
+    assert built.model.body("rod").inertia == pytest.approx([1e-14] * 3, abs=0.0)
+
+
 def test_missing_mass_goes_by_size():
     inertia = missing_inertia(np.array([[0, 0, 0], [0.1, 0.1, 1.0]]))
     assert inertia.mass == pytest.approx(3.0)
