@@ -265,12 +265,13 @@ class SimulatedHardware:
     def _limit_interfaces(self, first: int) -> tuple[_LimitInterface, ...]:
         drives = {joint.name: drive for drive, joint in enumerate(self._servo.joints)}
         limited = [
-            name
-            for name in self.info.command_interface_names
-            if name.partition("/")[0] in drives and name.partition("/")[2] == MAX_EFFORT
+            part.name
+            for part in self.info.joints
+            for command in part.command_interfaces
+            if part.name in drives and command.name == MAX_EFFORT
         ]
         return tuple(
-            _LimitInterface(name, first + place, drives[name.partition("/")[0]])
+            _LimitInterface(f"{name}/{MAX_EFFORT}", first + place, drives[name])
             for place, name in enumerate(limited)
         )
 

@@ -275,6 +275,17 @@ def test_max_effort_limits_a_drive_as_long_as_it_is_claimed(bench, parts):
     assert pendulum.state("velocity") == pytest.approx([0.0], abs=1e-3)
 
 
+def test_slash_in_the_name_of_a_joint_is_part_of_it(bench, parts, caplog):
+    urdf = parts.robot(
+        parts.link("base"),
+        parts.link("bob", 1.0),
+        parts.joint("left/j", "base", "bob"),
+        parts.ros2_control(["left/j"], ("position", "max_effort")),
+    )
+    assert bench(urdf).hardware.command_interfaces == ("left/j/position", "left/j/max_effort")
+    assert "left out" not in caplog.text
+
+
 def test_a_weakened_drive_still_stops_where_it_is_told(bench, parts):
     commands = ("position", "max_effort")
     pendulum = bench(
