@@ -27,6 +27,8 @@ MOST_MOVING = 1000
 """Joints that move, whose inertia matrix is dense where drives are sized: 8 MB in each pose."""
 LOCKED_RANGE = 1e-4
 """Half width, in rad or m, of the range of a joint whose two limits are equal."""
+SHORTEST_STROKE = 1e-9
+"""Limits less than this apart, in rad or m, are equal."""
 HINGE = mujoco.mjtJoint.mjJNT_HINGE
 SLIDE = mujoco.mjtJoint.mjJNT_SLIDE
 BALL = mujoco.mjtJoint.mjJNT_BALL
@@ -199,7 +201,7 @@ class BodyTree:
         if joint.limit is None or not math.isfinite(joint.limit.upper - joint.limit.lower):
             return None
         lower, upper = joint.limit.lower, joint.limit.upper
-        if upper - lower > LOCKED_RANGE:
+        if upper > lower and not math.isclose(upper, lower, abs_tol=SHORTEST_STROKE):
             return lower, upper
         self._report.warn(
             f"joint '{joint.name}'",

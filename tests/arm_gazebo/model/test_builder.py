@@ -12,6 +12,7 @@ from arm_gazebo.sensors.camera import CameraSensor
 
 BOX = '<geometry><box size="0.2 0.1 0.4"/></geometry>'
 CUBE = '<geometry><box size="0.1 0.1 0.1"/></geometry>'
+STROKE = 'lower="0" upper="5e-5" effort="5" velocity="0.01"'
 
 
 def state(built):
@@ -146,6 +147,21 @@ def test_limits_that_leave_no_room_lock_the_joint(parts):
     built = parts.build(parts.pendulum(limit='lower="0" upper="0" effort="7" velocity="2"'))
     assert "leave it no way to move" in warnings(built)[0]
     assert np.ptp(built.model.jnt_range[0]) < 1e-3
+
+
+def test_short_stroke_is_kept_and_run_through(bench, parts):
+    stage = parts.robot(
+        parts.link("base"),
+        parts.link("stage", 0.1),
+        parts.joint("j", "base", "stage", "prismatic", limit=STROKE),
+        parts.ros2_control(["j"]),
+    )
+    piezo = bench(stage)
+    assert warnings(piezo.built) == []
+    assert piezo.built.model.jnt_range[0] == pytest.approx([0.0, 5e-5], abs=0.0)
+    piezo.claim()
+    piezo.command(4e-5)
+    assert piezo.run(0.5)[-1] == pytest.approx([4e-5], abs=1e-6)
 
 
 def test_zero_effort_and_velocity_limits_are_taken_for_missing(parts):
