@@ -77,6 +77,39 @@ def test_a_message_larger_than_the_cache_is_written_all_the_same(tmp_path):
     assert recording.finish().message_count == 1
 
 
+class Listing(BagWriter):
+    """A writer that lists the messages."""
+
+    def __init__(self, folder) -> None:
+        super().__init__(folder, BagSettings())
+        self.written: list[int] = []
+
+    def write(self, message) -> None:
+        super().write(message)
+        self.written.append(message.log_time_ns)
+
+
+def test_without_a_cache_each_message_is_written_at_once(tmp_path):
+    writer = Listing(tmp_path / "bag")
+    recording = Recording(writer, 0)
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    for number in range(200):
+        recording.put(message(number))
+        assert writer.written == list(range(number + 1))
+    assert recording.finish().message_count == 200
+    assert not recording.dropped
+
+
+def test_without_a_cache_a_full_disk_is_known_at_once(tmp_path):
+    recording = Recording(FullDisk(tmp_path / "bag", BagSettings()), 0)
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    for number in range(5):
+        recording.put(message(number))
+        assert (recording.failure is not None) == (number >= 3)
+    with pytest.raises(BagError, match="No space left on device"):
+        recording.finish()
+
+
 def test_a_full_disk_ends_the_recording(tmp_path):
     recording = Recording(FullDisk(tmp_path / "bag", BagSettings()), 1000)
     recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))

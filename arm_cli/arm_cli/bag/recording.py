@@ -2,12 +2,14 @@
 
 The writing thread looks every 50 ms what has come, so that taking a message in costs an append and
 wakes nobody. When the disk is slower than the messages for so long that the cache is full, messages
-are dropped and counted.
+are dropped and counted. Without a cache whoever puts a message in writes it, too, as in rosbag2:
+what the disk is too slow for then waits in the subscription's queue.
 """
 
 import threading
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from arm_cli.bag.bag_metadata import BagMetadata
@@ -34,12 +36,13 @@ class Recording:
         """Start the writing thread.
 
         Args:
-            writer: belongs to the writing thread from now on.
-            max_cache_bytes: of messages that wait to be written.
+            writer: belongs to the recording from now on.
+            max_cache_bytes: of messages that wait to be written; with 0 none waits.
         """
         self.dropped: Counter[str] = Counter()
         """Messages for which there was no room in the cache, by topic."""
         self._writer = writer
+        self._writer_lock = threading.Lock()
         self._max_cache_bytes = max_cache_bytes
         self._lock = threading.Lock()
         self._waiting: list[BagMessage | _NewTopic] = []
@@ -60,15 +63,17 @@ class Recording:
             self._waiting.append(_NewTopic(topic, definition))
 
     def put(self, message: BagMessage) -> None:
-        """Take a message in, or drop and count it."""
-        size = len(message.data)
+        """Take a message in, or drop and count it; without a cache, write it."""
+        size, room = len(message.data), self._max_cache_bytes
         with self._lock:
             # A message that is larger than the whole cache has it to itself.
-            if self._waiting_bytes and self._waiting_bytes + size > self._max_cache_bytes:
+            if room and self._waiting_bytes and self._waiting_bytes + size > room:
                 self.dropped[message.topic] += 1
                 return
             self._waiting.append(message)
             self._waiting_bytes += size
+        if not room:
+            self._step(self._write_waiting)
 
     def finish(self) -> BagMetadata:
         """Write what waits, finish the bag, and return what it holds.
@@ -84,24 +89,28 @@ class Recording:
 
     def _run(self) -> None:
         flushed_s = time.monotonic()
-        try:
-            while not self._ending.wait(LOOK_PERIOD_S):
-                self._write(self._take())
-                if time.monotonic() - flushed_s >= FLUSH_PERIOD_S:
-                    self._writer.flush()
-                    flushed_s = time.monotonic()
-            self._write(self._take())
-            self._writer.close()
-        except BagError as error:
-            self._writer.abandon()
-            self._failure = error
+        while not self._ending.wait(LOOK_PERIOD_S):
+            self._step(self._write_waiting)
+            if time.monotonic() - flushed_s >= FLUSH_PERIOD_S:
+                self._step(self._writer.flush)
+                flushed_s = time.monotonic()
+        self._step(self._write_waiting)
+        self._step(self._writer.close)
 
-    def _take(self) -> list[BagMessage | _NewTopic]:
+    def _step(self, action: Callable[[], object]) -> None:
+        """Do something with the writer, unless it has failed; an error ends the writing."""
+        with self._writer_lock:
+            if self._failure is not None:
+                return
+            try:
+                action()
+            except BagError as error:
+                self._writer.abandon()
+                self._failure = error
+
+    def _write_waiting(self) -> None:
         with self._lock:
-            taken, self._waiting = self._waiting, []
-            return taken
-
-    def _write(self, items: list[BagMessage | _NewTopic]) -> None:
+            items, self._waiting = self._waiting, []
         for item in items:
             if isinstance(item, _NewTopic):
                 self._writer.add_topic(item.topic, item.definition)
