@@ -1,6 +1,7 @@
 """The argument parser of every verb: errors are one sentence and name what was near."""
 
 import argparse
+import re
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -50,11 +51,25 @@ def positive_number(text: str) -> float:
     return value
 
 
+def positive_number_or_zero(text: str) -> float:
+    """Convert an option's value to a float of at least 0, for argparse."""
+    return 0.0 if text in ("0", "0.0") else positive_number(text)
+
+
 def whole_number(text: str) -> int:
     """Convert an option's value to an int of at least 0, for argparse."""
     if not text.isascii() or not text.isdigit():
         raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
     return int(text)
+
+
+def node_name(text: str) -> str:
+    """Check the name that an option gives to a node, by the rules of ROS, for argparse."""
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,254}", text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no name of a node: letters, digits and underscores, no digit first"
+        )
+    return text
 
 
 def positive_whole_number(text: str) -> int:

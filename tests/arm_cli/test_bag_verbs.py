@@ -96,6 +96,7 @@ def test_an_unfinished_bag_is_said_to_be_one(capsys, bag):
         ("record", 1, "Need to specify at least one option out of --all"),
         ("record -a -o {bag}", 1, "Output folder '{bag}' already exists."),
         ("record -e '*'", 1, "--regex"),
+        ("record -a --node-name a-b", 2, "'a-b' is no name of a node: letters, digits"),
         ("record -a -b -3", 2, "argument -b/--max-bag-size/--max-size"),
         ("play {bag} --rate 0", 2, "argument -r/--rate: '0' is no number above 0"),
         ("play {bag} --topics /c", 1, "no topic '/c' in {bag}; it has /a, /b"),
@@ -170,6 +171,7 @@ def test_overrides_are_by_topic_and_the_rest_is_default(tmp_path):
     [
         ("- /tf", "has no topics"),
         ("/tf: [", "is no YAML"),
+        ("/tf: 2001-13-45", "is no YAML: month must be"),
         ("/tf: best_effort", "/tf has no policies, such as"),
         ("/tf: {reliabilty: reliable}", "/tf has no policy 'reliabilty'; did you mean"),
         ("/tf: {reliability: best}", "/tf: reliability cannot be 'best'; did you mean"),

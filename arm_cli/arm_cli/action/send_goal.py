@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from arm_cli.errors import UsageError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.names import absolute_name
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with
@@ -48,7 +47,7 @@ def run(options: argparse.Namespace) -> None:
     with connect() as session:
         from arm_cli.ros.goal import GoalSender
 
-        sender = GoalSender(session, class_, absolute_name(options.action_name))
+        sender = GoalSender(session, class_, session.full_name(options.action_name))
         _wait_for_server(session, sender, type_.full_name)
         sender.send(filled, options.feedback)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.bag.bag_path import existing_path
-from arm_cli.command_parser import positive_number, positive_whole_number
+from arm_cli.command_parser import positive_number, positive_number_or_zero, positive_whole_number
 from arm_cli.errors import BagError, NotFoundError, StoppedError, UsageError
 from arm_cli.names import absolute_name
 from arm_cli.ros.connection import connect
@@ -34,17 +34,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-l", "--loop", action="store_true", help="begin anew at the end")
     parser.add_argument(
         "--start-offset",
-        type=_no_negative_number,
+        type=positive_number_or_zero,
         default=0.0,
         metavar="SECONDS",
         help="leave out so much of the beginning",
     )
     parser.add_argument(
         "--playback-duration",
-        type=positive_number,
+        type=_duration,
         default=float("inf"),
         metavar="SECONDS",
-        help="play only so much of the bag",
+        help="play only so much of the bag; a negative number: all",
     )
     parser.add_argument(
         "--clock",
@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-d",
         "--delay",
-        type=_no_negative_number,
+        type=positive_number_or_zero,
         default=0.0,
         metavar="SECONDS",
         help="wait so long before each time it is played",
@@ -97,8 +97,10 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _no_negative_number(text: str) -> float:
-    return 0.0 if text in ("0", "0.0") else positive_number(text)
+def _duration(text: str) -> float:
+    # rosbag2's own default is -1.
+    duration_s = positive_number(text.removeprefix("-"))
+    return float("inf") if text.startswith("-") else duration_s
 
 
 def run(options: argparse.Namespace) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.command_parser import (
+    node_name,
     positive_number,
     positive_whole_number,
     whole_number,
@@ -53,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=CACHE_BYTES,
         metavar="BYTES",
         help="messages that wait for the disk; when there are more, messages are dropped and "
-        f"counted (default {CACHE_BYTES})",
+        f"counted (default {CACHE_BYTES}); 0: each is written at once",
     )
     parser.add_argument(
         "--use-sim-time", action="store_true", help="take the messages' times from /clock"
@@ -67,7 +68,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     # There are no such controls; but lines written for ros2 switch them off.
     parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument(
-        "--node-name", default=NODE_NAME, metavar="NAME", help=f"default {NODE_NAME}"
+        "--node-name",
+        type=node_name,
+        default=NODE_NAME,
+        metavar="NAME",
+        help=f"default {NODE_NAME}",
     )
 
 

@@ -32,6 +32,8 @@ def add_manager_arguments(parser: argparse.ArgumentParser) -> None:
         ),
         completers.nodes,
     )
+    # A manager that is named may always be a hidden node; but lines written for ros2 say so.
+    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
 
 
 @contextmanager

@@ -2,18 +2,13 @@
 
 import argparse
 
-from arm_cli.lifecycle.managed_nodes import managed_node
-from arm_cli.ros import completers
+from arm_cli.lifecycle.managed_nodes import add_node_argument, managed_node
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("node_name", help="one that `arm lifecycle nodes` lists"),
-        completers.nodes,
-    )
+    add_node_argument(parser)
     parser.add_argument(
         "-a", "--all", action="store_true", help="also those that its state does not allow"
     )

@@ -4,10 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from arm_cli.errors import NotFoundError, UnansweredError
-from arm_cli.lifecycle.managed_nodes import managed_node
-from arm_cli.ros import completers
+from arm_cli.lifecycle.managed_nodes import add_node_argument, managed_node
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 from launch_py.near_names import describe_known
 
 if TYPE_CHECKING:
@@ -18,10 +16,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("node_name", help="one that `arm lifecycle nodes` lists"),
-        completers.nodes,
-    )
+    add_node_argument(parser)
     parser.add_argument("transition", help="its label, such as configure, or its id")
 
 

@@ -5,7 +5,6 @@ from typing import Any
 from rclpy.client import Client
 
 from arm_cli.errors import UnansweredError
-from arm_cli.names import absolute_name
 from arm_cli.ros.session import Session
 
 SERVER_TIMEOUT_S = 10.0
@@ -25,7 +24,7 @@ def call_service(
     Raises:
         UnansweredError: nobody offers it, or nobody answers.
     """
-    client = session.node.create_client(service_class, absolute_name(name))
+    client = session.node.create_client(service_class, session.full_name(name))
     try:
         wait_for_server(session, client, server_timeout_s)
         answer = session.result(client.call_async(request), answer_timeout_s)

@@ -16,15 +16,18 @@ from typing import Any
 
 import rclpy
 from rclpy.duration import Duration
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.exceptions import NameValidationException
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from rclpy.utilities import try_shutdown
+from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from arm_cli.errors import StoppedError, UsageError
+from arm_cli.names import absolute_name
 from arm_node.discovery import answers_held_back
 from arm_node.process import first_line
 
@@ -37,7 +40,7 @@ ACKNOWLEDGED_WITHIN_S = 1.0
 class Session:
     """The node of this command, and the ways to wait with it. Use it in the main thread."""
 
-    def __init__(self, node: Node, executor: SingleThreadedExecutor) -> None:
+    def __init__(self, node: Node, executor: Executor) -> None:
         """Take over a node that the executor has."""
         self.node = node
         self.started_s = time.monotonic()
@@ -59,6 +62,16 @@ class Session:
     def clock_s(self) -> float:
         """Return the time of the node's clock in s."""
         return self.clock_ns() * 1e-9
+
+    def full_name(self, name: str) -> str:
+        """Return the name of a topic, service or action as the graph has it.
+
+        Raises:
+            NameValidationException: there can be no such name; `open_session` says so to the user.
+        """
+        full_name = absolute_name(name)
+        validate_full_topic_name(full_name)
+        return full_name
 
     def spin_once(self, timeout_s: float = POLL_S) -> None:
         """Serve one callback, or wait that long for one.
@@ -140,22 +153,25 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
         use_sim_time: whether the node's clock follows /clock.
 
     Raises:
-        UsageError: ROS cannot start; its log folder may not be writable.
+        UsageError: ROS cannot start; its log folder may not be writable. Or nothing in ROS can have
+            a name that was given.
     """
     try:
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         raise UsageError(f"cannot start ROS: {first_line(error)}") from error
-    executor = SingleThreadedExecutor()
     try:
-        with answers_held_back():
-            node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
-        executor.add_node(node)
-        session = Session(node, executor)
-        with _signals_handled(session):
-            yield session
-        executor.shutdown(timeout_sec=1.0)
+        with SingleThreadedExecutor() as executor:
+            with answers_held_back():
+                node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
+            executor.add_node(node)
+            session = Session(node, executor)
+            with _signals_handled(session):
+                yield session
         node.destroy_node()
+    except NameValidationException as error:
+        reason, quoted_name, *_ = str(error).splitlines()
+        raise UsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error
     finally:
         try_shutdown()
 

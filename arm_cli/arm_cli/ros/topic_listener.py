@@ -8,7 +8,7 @@ from rclpy.subscription import Subscription
 
 from arm_cli.errors import NotFoundError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.names import absolute_name, is_hidden, this_domain
+from arm_cli.names import is_hidden, this_domain
 from arm_cli.ros.graph import Graph
 from arm_cli.ros.qos import MEASURING, matching_profile
 from arm_cli.ros.session import Session
@@ -23,8 +23,12 @@ class TopicListener:
     """
 
     def __init__(self, session: Session, topic: str) -> None:
-        """Prepare to listen with a session's node."""
-        self.topic = absolute_name(topic)
+        """Prepare to listen with a session's node.
+
+        Raises:
+            NameValidationException: no topic can have this name.
+        """
+        self.topic = session.full_name(topic)
         self._session = session
         self._graph = Graph(session)
 

@@ -8,7 +8,6 @@ from typing import Any
 from arm_cli.command_parser import positive_number
 from arm_cli.errors import UsageError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.names import absolute_name
 from arm_cli.output import add_json_argument, print_json
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -49,12 +48,12 @@ def run(options: argparse.Namespace) -> None:
     filled = fill_message(class_.Request(), read_yaml(text, f"{type_.full_name} request"))
     for note in filled.notes:
         print(f"arm service call: {note}", file=sys.stderr)
-    name = absolute_name(options.service_name)
     with connect() as session:
-        client = session.node.create_client(class_, name)
+        client = session.node.create_client(class_, session.full_name(options.service_name))
         _wait_for_server(session, client, type_.full_name)
         while True:
             start_s = time.monotonic()
+            filled.stamp(session.node.get_clock().now().to_msg())
             if not options.json:
                 print(f"requester: making request: {filled.message!r}\n")
             answer = session.result(client.call_async(filled.message))

@@ -41,8 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "-i", "--include-message-info", action="store_true", help="also when it was sent and came"
     )
     # What they are about goes without saying here; but lines written for ros2 have them.
-    for option in ("--use-sim-time", "--no-lost-messages"):
-        parser.add_argument(option, action="store_true", help=argparse.SUPPRESS)
+    for options in (("-s", "--use-sim-time"), ("--no-lost-messages",)):
+        parser.add_argument(*options, action="store_true", help=argparse.SUPPRESS)
     _add_format_arguments(parser)
     add_qos_arguments(parser, "what fits the topic's publishers")
 

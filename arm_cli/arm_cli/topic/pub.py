@@ -6,10 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
+from arm_cli.command_parser import (
+    node_name,
+    positive_number,
+    positive_number_or_zero,
+    positive_whole_number,
+    whole_number,
+)
 from arm_cli.errors import NotFoundError, UnansweredError, UsageError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.names import absolute_name
 from arm_cli.qos_options import add_qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -68,12 +73,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--keep-alive",
-        type=positive_number,
+        type=positive_number_or_zero,
         default=KEEP_ALIVE_S,
         metavar="SECONDS",
         help=f"stay so long after the last message has arrived (default {KEEP_ALIVE_S})",
     )
-    parser.add_argument("-n", "--node-name", metavar="NAME", help="name of the publishing node")
+    parser.add_argument(
+        "-n", "--node-name", type=node_name, metavar="NAME", help="name of the publishing node"
+    )
     parser.add_argument(
         "-s", "--use-sim-time", action="store_true", help="'auto' and 'now' go by /clock"
     )
@@ -99,7 +106,7 @@ def run(options: argparse.Namespace) -> None:
     with connect(options.node_name, options.use_sim_time) as session:
         publication = _Publication(
             session,
-            absolute_name(options.topic_name),
+            session.full_name(options.topic_name),
             type_.full_name,
             filled,
             options.print,

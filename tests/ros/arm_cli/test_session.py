@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from arm_cli.errors import UsageError
+from arm_cli.names import absolute_name
 from arm_cli.ros.session import ACKNOWLEDGED_WITHIN_S, open_session
 
 pytestmark = pytest.mark.ros
@@ -43,3 +45,23 @@ def test_readers_that_never_acknowledge_are_waited_for_no_longer_than_a_second_i
         session.let_arrive([first, second], 0.01)
     assert len(first.waited_s) == 1
     assert sum(first.waited_s + second.waited_s) <= ACKNOWLEDGED_WITHIN_S
+
+
+@pytest.mark.parametrize("name", ["my topic", "/7th", "/", "/a//b", "/a{b}", "~/a"])
+def test_a_name_that_nothing_in_ros_can_have_is_one_sentence(name):
+    with pytest.raises(UsageError) as error, open_session() as session:
+        session.full_name(name)
+    assert str(error.value).startswith(f"'{absolute_name(name)}': Invalid topic name: topic name")
+    assert not {"\n", "^"} & set(str(error.value))
+    assert str(error.value)[-1] != ":"
+
+
+def test_a_name_that_no_node_can_have_is_one_sentence():
+    with pytest.raises(UsageError, match=r"^'a b': Invalid node name: "), open_session("a b"):
+        pass
+
+
+def test_a_name_is_completed_as_the_graph_has_it():
+    with open_session() as session:
+        assert session.full_name("_hidden/joint_states") == "/_hidden/joint_states"
+        assert session.full_name("/tf") == "/tf"
