@@ -10,7 +10,7 @@ from arm_gazebo.world.name_pattern import NamePattern
 from arm_gazebo.world.refusal import RefusedError
 
 ITEMS = st.sampled_from(["a", "b", ".", "^", "$", "[ab]", "[^a]", r"\w", r"\b", ""])
-TIMES = st.sampled_from(["*", "+", "?", "{2}", "{1,2}", "{2,}", "{,1}", "*?"])
+TIMES = st.sampled_from(["*", "+", "?", "{2}", "{1,2}", "{2,}", "*?"])
 
 
 def _larger(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
@@ -40,7 +40,7 @@ def test_what_re_finds_is_found_and_nothing_else(pattern, name):
         ("^(red|green)_", "green_cube", True),
         ("^(red|)_", "_cube", True),
         ("^x{0}$", "", True),
-        ("^(a{300}){300}$", "a" * 60, False),
+        ("^(a{30}){30}$", "a" * 60, False),
     ],
 )
 def test_posix_expressions_with_escapes(pattern, name, found):
@@ -50,9 +50,8 @@ def test_posix_expressions_with_escapes(pattern, name, found):
 @pytest.mark.parametrize(
     "pattern",
     [
-        *("(", ")", "a)", "[", "[]", "*", "a**", "|*", "{2}", "a{", "a}", "a{}", "a{,}", "a{2,1}"),
-        *("(?P<a", "(?i)a", "(?=a)", r"(a)\1", "\\", "[b-a]", "[[:letter:]]", r"\q", "a" * 201),
-        "(" * 200,
+        *("(", ")", "a)", "[", "[]", "*", "a**", "|*", "a{2,1}", "(a{30}){300}", "(?P<a"),
+        *("(?=a)", r"(a)\1", "\\", "[b-a]", "[[:letter:]]", r"\q", "a" * 201, "(" * 200, "\ud800"),
     ],
 )
 def test_what_is_no_expression_is_refused(pattern):
@@ -68,7 +67,7 @@ def test_what_is_no_expression_is_refused(pattern):
         "(a|a)" * 39 + "!",
         ".*" * 99 + "!",
         "(" * 32 + "a*" + "b|a)*" * 32 + "!",
-        "^(((a{1,99}){1,99}){1,99}){1,99}!",
+        "^((a{1,30}){1,30})!",
     ],
 )
 def test_patterns_that_fit_in_too_many_ways_to_try_them_come_to_an_end(pattern):
