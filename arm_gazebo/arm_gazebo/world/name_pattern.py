@@ -1,8 +1,9 @@
 """Regular expressions that are found, or not, in a time that no pattern can blow up.
 
 `re` tries the ways in which a pattern may fit one after the other. There may be 2 to the power of
-the name's length, and it keeps all other threads waiting meanwhile, the control loop among them. RE2
-follows all ways at once. It takes POSIX extended expressions, which simulation_interfaces asks for.
+the name's length, and it keeps all other threads waiting meanwhile, the control loop among them.
+RE2 follows all ways at once. It takes the POSIX extended expressions that simulation_interfaces asks
+for.
 """
 
 import re2
