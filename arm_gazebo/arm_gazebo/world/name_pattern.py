@@ -2,8 +2,7 @@
 
 `re` tries the ways in which a pattern may fit one after the other. There may be 2 to the power of
 the name's length, and it keeps all other threads waiting meanwhile, the control loop among them.
-RE2 follows all ways at once. It takes the POSIX extended expressions that simulation_interfaces asks
-for.
+RE2 follows all ways at once. It takes POSIX extended expressions, those of simulation_interfaces.
 """
 
 import re2
