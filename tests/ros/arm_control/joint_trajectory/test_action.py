@@ -204,7 +204,9 @@ def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
 
 
 def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
-    goal = send((FOR_EVER_S, THERE))
+    # Then the server knows its client whole: who asks for a result unknown to it has none coming.
+    assert send((0.1, THERE)).result() == REACHED
+    goal = send((FOR_EVER_S, HERE))
     goal.wait_until_running()
     assert active.call("reload_controller_libraries", force_kill=True).ok
     assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
