@@ -178,14 +178,13 @@ def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[
         sys.stdout.write(list_plan(plan, environ))
         return 0
     before_start()
-    from launch_py.supervision.linux import seconds_since_start
+    from launch_py.supervision.linux import start_of_program
     from launch_py.supervision.session import SessionOptions, run_plan
 
-    age_s = seconds_since_start()
     sys.stdout.reconfigure(errors="replace")  # pyright: ignore[reportAttributeAccessIssue]
     options = SessionOptions(
         title=request.launch_file.name.removesuffix(".launch.py"),
-        started_s=min(started_s, time.monotonic() - age_s),
+        started_s=start_of_program(started_s),
         show_all=request.show_all,
     )
     return run_plan(plan, environ, options)

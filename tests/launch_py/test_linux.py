@@ -1,5 +1,8 @@
 import subprocess
 import sys
+import time
+
+import pytest
 
 CHILDREN = """
 import os, signal, subprocess
@@ -23,3 +26,26 @@ def test_a_child_that_stops_has_not_ended_and_one_that_ended_is_left_to_be_reape
         [sys.executable, "-c", CHILDREN], capture_output=True, text=True, check=True, timeout=60
     ).stdout.splitlines()
     assert answers == ["without children False", "stopped False", "ended True True", "reaped False"]
+
+
+START = """
+import sys, time
+entered_s = time.monotonic()
+from launch_py.supervision import linux
+linux.LONGEST_INTERPRETER_START_S = float(sys.argv[1])
+print(entered_s, linux.start_of_program(entered_s))
+"""
+
+
+@pytest.mark.parametrize("longest_s", [1000.0, 0.0])
+def test_a_program_began_with_its_process_unless_that_was_another_programs_before(longest_s):
+    before_s = time.monotonic()
+    answer = subprocess.run(
+        [sys.executable, "-c", START, str(longest_s)], capture_output=True, text=True, timeout=60
+    ).stdout
+    entered_s, start_s = map(float, answer.split())
+    if longest_s:
+        # The system tells the start of a process in steps of 10 ms.
+        assert before_s - 0.02 <= start_s < entered_s
+    else:
+        assert start_s == entered_s

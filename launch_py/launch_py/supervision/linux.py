@@ -5,11 +5,13 @@ from __future__ import annotations
 import ctypes
 import os
 import signal
+import time
 from collections.abc import Callable
 from contextlib import suppress
 
 _PR_SET_PDEATHSIG = 1
 _PR_SET_CHILD_SUBREAPER = 36
+LONGEST_INTERPRETER_START_S = 3.0
 
 
 def _prctl(option: int, value: int) -> None:
@@ -108,12 +110,23 @@ def session_of(pid: int) -> int | None:
         return None
 
 
-def seconds_since_start() -> float:
-    """Return how long ago this process was started, its interpreter's start included."""
-    import time
+def start_of_program(entered_s: float) -> float:
+    """Return when this program was started, its interpreter's start included.
 
+    A shell may have become this process: `bash -c "pip install . && arm launch"` ends so. How long
+    the shell had lived by then is nobody's start.
+
+    Args:
+        entered_s: when its first line ran, of `time.monotonic`, as is the result.
+    """
+    forked_s = _forked_s()
+    return forked_s if 0.0 <= entered_s - forked_s <= LONGEST_INTERPRETER_START_S else entered_s
+
+
+def _forked_s() -> float:
+    """Return when this process was made, of `time.monotonic`."""
     with open("/proc/self/stat", encoding="utf-8") as file:
-        # The name in parentheses may hold spaces; the start time is field 22.
-        started_ticks = int(file.read().rpartition(")")[2].split()[19])
-    started_s = started_ticks / os.sysconf("SC_CLK_TCK")
-    return max(0.0, time.clock_gettime(time.CLOCK_BOOTTIME) - started_s)
+        # The name in parentheses may hold spaces; the start time is field 22, since the boot.
+        forked_ticks = int(file.read().rpartition(")")[2].split()[19])
+    age_s = time.clock_gettime(time.CLOCK_BOOTTIME) - forked_ticks / os.sysconf("SC_CLK_TCK")
+    return time.monotonic() - max(0.0, age_s)
