@@ -50,25 +50,15 @@ class FrameSchedule:
         if time_s < self._last_s:
             self._numbers = [-1] * len(self._rates_hz)
         self._last_s = time_s
-        due = tuple(
-            frame
-            for camera in range(len(self._rates_hz))
-            if (frame := self._take(camera, time_s)) is not None
-        )
-        self._next_s = min(
-            (
-                (number + 1) / rate_hz - TOLERANCE_S
-                for number, rate_hz in zip(self._numbers, self._rates_hz, strict=True)
-            ),
-            default=math.inf,
-        )
-        return due
-
-    def _take(self, camera: int, time_s: float) -> FrameDue | None:
-        number = math.floor((time_s + TOLERANCE_S) * self._rates_hz[camera])
-        if number <= self._numbers[camera]:
-            return None
-        self._numbers[camera] = number
-        frame = FrameDue(camera, number, self._serials[camera])
-        self._serials[camera] += 1
-        return frame
+        due: list[FrameDue] = []
+        self._next_s = math.inf
+        for camera, rate_hz in enumerate(self._rates_hz):
+            number = math.floor((time_s + TOLERANCE_S) * rate_hz)
+            if number > self._numbers[camera]:
+                self._numbers[camera] = number
+                due.append(FrameDue(camera, number, self._serials[camera]))
+                self._serials[camera] += 1
+            next_s = (self._numbers[camera] + 1) / rate_hz - TOLERANCE_S
+            if next_s < self._next_s:
+                self._next_s = next_s
+        return tuple(due)

@@ -12,7 +12,6 @@ from arm_gazebo.feed.schedule import FrameDue
 HEADER = struct.Struct("<IdHII")
 """Model version, time, and how many frames, positions and mocap bodies follow."""
 FRAME = struct.Struct("<HQQ")
-POSE_SIZE = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +23,16 @@ class CameraSnapshot:
         time_s: simulation time of the state.
         frames: pictures to take of it.
         qpos: (nq,) generalised positions.
-        mocap_poses: (nmocap, 7) position and quaternion (w x y z) of the mocap bodies.
+        mocap_positions: (nmocap, 3) of the mocap bodies.
+        mocap_quaternions: (nmocap, 4) of the mocap bodies, w x y z.
     """
 
     model_version: int
     time_s: float
     frames: tuple[FrameDue, ...]
     qpos: NDArray[np.float64]
-    mocap_poses: NDArray[np.float64]
+    mocap_positions: NDArray[np.float64]
+    mocap_quaternions: NDArray[np.float64]
 
     def pack(self) -> bytes:
         """Return the snapshot as bytes."""
@@ -42,11 +43,12 @@ class CameraSnapshot:
                     self.time_s,
                     len(self.frames),
                     len(self.qpos),
-                    len(self.mocap_poses),
+                    len(self.mocap_positions),
                 ),
                 *(FRAME.pack(frame.camera, frame.number, frame.serial) for frame in self.frames),
                 self.qpos.tobytes(),
-                self.mocap_poses.tobytes(),
+                self.mocap_positions.tobytes(),
+                self.mocap_quaternions.tobytes(),
             )
         )
 
@@ -64,10 +66,12 @@ class CameraSnapshot:
                 FrameDue(*fields) for fields in FRAME.iter_unpack(packed[HEADER.size : values_at])
             )
             values = np.frombuffer(packed, np.float64, offset=values_at)
-            expected = positions + mocaps * POSE_SIZE
+            quaternions_at = positions + 3 * mocaps
+            expected = quaternions_at + 4 * mocaps
             if len(values) != expected:
                 raise ValueError(f"{len(values)} numbers, not {expected}")
-            mocap_poses = values[positions:].reshape(mocaps, POSE_SIZE)
+            mocap_positions = values[positions:quaternions_at].reshape(mocaps, 3)
+            mocap_quaternions = values[quaternions_at:].reshape(mocaps, 4)
         except (struct.error, ValueError) as error:
             raise CameraError(f"{len(packed)} bytes are not a camera snapshot: {error}") from error
-        return cls(version, time_s, due, values[:positions], mocap_poses)
+        return cls(version, time_s, due, values[:positions], mocap_positions, mocap_quaternions)

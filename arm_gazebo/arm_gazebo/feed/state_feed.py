@@ -112,9 +112,10 @@ class StateFeed:
             frames: pictures to take of it.
             data: the state.
         """
-        mocap_poses = np.hstack((data.mocap_pos, data.mocap_quat))
         self._channel.send_snapshot(
-            CameraSnapshot(self._version, time_s, frames, data.qpos, mocap_poses)
+            CameraSnapshot(
+                self._version, time_s, frames, data.qpos, data.mocap_pos, data.mocap_quat
+            )
         )
 
     def supervise(self) -> None:

@@ -105,6 +105,7 @@ class SimulatedHardware:
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
         """Keep these views; see `Hardware.bind`."""
         self._state_values = states
+        self._sensor_values = states[len(self._states) :]
         self._commands = commands
         self._taken = b""
         self._find_sources()
@@ -184,7 +185,7 @@ class SimulatedHardware:
         """Fill the states from the physics."""
         for target, source, there in self._copies:
             target[:] = source[there]
-        self._sensors.fill(self._state_values[len(self._states) :])
+        self._sensors.fill(self._sensor_values)
         return HardwareReturn.OK
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:

@@ -40,8 +40,8 @@ class Scene:
             )
         data.time = snapshot.time_s
         data.qpos[:] = snapshot.qpos
-        data.mocap_pos[:] = snapshot.mocap_poses[:, :3]
-        data.mocap_quat[:] = snapshot.mocap_poses[:, 3:]
+        data.mocap_pos[:] = snapshot.mocap_positions
+        data.mocap_quat[:] = snapshot.mocap_quaternions
         mujoco.mj_kinematics(self.model, data)
         # Cameras and lights may track a centre of mass.
         mujoco.mj_comPos(self.model, data)

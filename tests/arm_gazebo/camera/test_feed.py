@@ -116,7 +116,8 @@ def test_the_child_gets_the_model_and_then_states(world):
     (model,), (state,) = world.child.receive()
     assert model.version == state.model_version == 1
     np.testing.assert_array_equal(state.qpos, [0.5])
-    np.testing.assert_array_equal(state.mocap_poses, [[1, 2, 3, 1, 0, 0, 0]])
+    np.testing.assert_array_equal(state.mocap_positions, [[1, 2, 3]])
+    np.testing.assert_array_equal(state.mocap_quaternions, [[1, 0, 0, 0]])
 
 
 def test_only_ticks_at_which_a_frame_is_due_send(started):

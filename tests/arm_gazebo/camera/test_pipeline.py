@@ -109,8 +109,8 @@ class Process:
             serial = self._serials[camera]
             frames.append(FrameDue(camera, serial, serial))
             self._serials[camera] += 1
-        poses = np.array([[time_s, 0, 0, 1, 0, 0, 0]], float)
-        return CameraSnapshot(version, time_s, tuple(frames), np.array([float(level)]), poses)
+        qpos, at, upright = np.array([float(level)]), np.array([[time_s, 0, 0]]), np.eye(1, 4)
+        return CameraSnapshot(version, time_s, tuple(frames), qpos, at, upright)
 
 
 @pytest.fixture

@@ -12,7 +12,9 @@ from arm_gazebo.feed.snapshot import CameraSnapshot
 
 
 def snapshot(time_s: float = 0.0, positions: int = 4) -> CameraSnapshot:
-    return CameraSnapshot(1, time_s, (FrameDue(0, 0, 0),), np.zeros(positions), np.zeros((0, 7)))
+    due = (FrameDue(0, 0, 0),)
+    qpos, no_positions, no_quaternions = np.zeros(positions), np.zeros((0, 3)), np.zeros((0, 4))
+    return CameraSnapshot(1, time_s, due, qpos, no_positions, no_quaternions)
 
 
 @pytest.fixture

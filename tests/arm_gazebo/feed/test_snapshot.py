@@ -15,6 +15,10 @@ from arm_gazebo.feed.snapshot import CameraSnapshot
 frames = st.builds(FrameDue, st.integers(0, 9), st.integers(0, 2**63), st.integers(0, 2**63))
 
 
+def poses(count):
+    return np.zeros((count, 3)), np.zeros((count, 4))
+
+
 @given(
     version=st.integers(0, 2**32 - 1),
     time_s=st.floats(0, 1e9),
@@ -23,12 +27,14 @@ frames = st.builds(FrameDue, st.integers(0, 9), st.integers(0, 2**63), st.intege
     mocaps=st.integers(0, 3),
 )
 def test_what_is_packed_comes_out_again(version, time_s, due, qpos, mocaps):
-    mocap_poses = np.arange(7.0 * mocaps).reshape(mocaps, 7)
-    packed = CameraSnapshot(version, time_s, due, qpos, mocap_poses).pack()
+    positions = np.arange(3.0 * mocaps).reshape(mocaps, 3)
+    quaternions = np.arange(4.0 * mocaps).reshape(mocaps, 4) + 0.5
+    packed = CameraSnapshot(version, time_s, due, qpos, positions, quaternions).pack()
     found = CameraSnapshot.unpack(packed)
     assert (found.model_version, found.time_s, found.frames) == (version, time_s, due)
     np.testing.assert_array_equal(found.qpos, qpos)
-    np.testing.assert_array_equal(found.mocap_poses, mocap_poses)
+    np.testing.assert_array_equal(found.mocap_positions, positions)
+    np.testing.assert_array_equal(found.mocap_quaternions, quaternions)
 
 
 @given(st.binary(max_size=200))
@@ -40,12 +46,12 @@ def test_garbage_is_refused_or_is_a_snapshot_after_all(packed):
 
 
 def test_a_snapshot_with_fewer_positions_than_it_says_is_refused():
-    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), np.zeros((0, 7))).pack()
+    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), *poses(0)).pack()
     with pytest.raises(CameraError, match="3 numbers, not 4"):
         CameraSnapshot.unpack(packed[:-8])
 
 
 def test_a_truncated_snapshot_is_refused():
-    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), np.zeros((1, 7))).pack()
+    packed = CameraSnapshot(1, 0.0, (), np.zeros(4), *poses(1)).pack()
     with pytest.raises(CameraError, match=f"{len(packed) - 8} bytes are not"):
         CameraSnapshot.unpack(packed[:-8])
