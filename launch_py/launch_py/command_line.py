@@ -243,7 +243,11 @@ def _parser(program: str, short_names: Mapping[str, PackagedFile]) -> argparse.A
 
 def _refuse_unknown_options(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
     if unknown:
-        known = parser._option_string_actions
+        known = [
+            name
+            for name, action in parser._option_string_actions.items()
+            if action.help != argparse.SUPPRESS
+        ]
         text = f"no option {unknown[0]}; {describe_known(unknown[0], known)}"
         dashes, name = unknown[0][:2], unknown[0][2:].partition("=")[0]
         if dashes == "--":

@@ -1,5 +1,6 @@
 """What may be typed, what is refused, what is listed; nothing starts here."""
 
+import re
 import sys
 
 import pytest
@@ -74,6 +75,16 @@ def test_a_missing_required_argument(refused, demo):
 def test_an_unknown_option(refused, demo):
     assert "no option --show-arg; did you mean '--show-args'" in refused(str(demo), "--show-arg")
     assert ":=" not in refused(str(demo), "-x")
+
+
+def test_an_unknown_option_is_answered_with_those_that_help_shows(refused, demo, capsys):
+    line = refused(str(demo), "-x")
+    with pytest.raises(SystemExit):
+        command_line.run(["--help"], "prog")
+    shown = re.split(r"[\s,]+", capsys.readouterr().out)
+    named = line.partition("there is ")[2].split(", ")
+    assert "--print" in named
+    assert [name for name in named if name not in shown] == []
 
 
 @pytest.mark.parametrize("words", [("--world", "objects"), ("--world=objects",)])
