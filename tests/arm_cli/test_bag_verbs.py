@@ -94,7 +94,6 @@ def test_an_unfinished_bag_is_said_to_be_one(capsys, bag):
         ("play /nowhere", 2, "Bag path '/nowhere' does not exist!"),
         ("info {bag}/metadata.yaml", 1, "metadata.yaml is no MCAP file"),
         ("record", 1, "Need to specify at least one option out of --all"),
-        ("record -a -o {bag}", 1, "Output folder '{bag}' already exists."),
         ("record -e '*'", 1, "--regex"),
         ("record -a --node-name a-b", 2, "'a-b' is no name of a node: letters, digits"),
         ("record -a -b -3", 2, "argument -b/--max-bag-size/--max-size"),

@@ -148,6 +148,7 @@ def run(options: argparse.Namespace) -> None:
 
     Raises:
         BagError: nothing is selected, the file of overrides is none, or the bag cannot be written.
+        UsageError: no topic can have a name that was given.
     """
     from arm_cli.bag.qos_overrides import read_qos_overrides
 
@@ -158,10 +159,12 @@ def run(options: argparse.Namespace) -> None:
     from arm_cli.bag.bag_writer import BagWriter
     from arm_cli.bag.recording import Recording
 
-    writer = BagWriter(folder, settings)
     with connect(options.node_name, options.use_sim_time) as session:
         from arm_cli.ros.bag_recorder import BagRecorder
 
+        for name in selection.names:
+            session.full_name(name)  # which refuses one that would be waited for in vain
+        writer = BagWriter(folder, settings)
         recording = Recording(writer, options.max_cache_size)
         recorder = BagRecorder(
             session,

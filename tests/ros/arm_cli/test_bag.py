@@ -150,3 +150,17 @@ def test_a_topic_that_is_not_there_is_waited_for(start, client, tmp_path):
     command.wait_until(lambda: counts(folder)["/late"] == 1, "the message is in the bag")
     command.process.send_signal(signal.SIGTERM)
     assert command.wait() == 0, command.err
+
+
+def test_names_that_no_topic_can_have_are_refused_and_leave_no_bag(run, tmp_path):
+    folder = tmp_path / "none"
+    for line in (f"'/a b' -o {folder}", f"/tf --topics 7th -o {folder}"):
+        text = run(f"arm bag record {line}", code=2)
+        assert "': Invalid topic name: topic name" in text
+        assert text.count("\n") == 1
+        assert not folder.exists()
+
+
+def test_a_bag_that_is_there_is_not_written_over(run, bag):
+    text = run(f"arm bag record -a -o {bag}", code=1)
+    assert text == f"arm bag record: Output folder '{bag}' already exists.\n"
