@@ -5,17 +5,19 @@ from collections.abc import Sequence
 import lxml.etree as etree
 import numpy as np
 
-from arm_description.robot import Pose
+from arm_description.robot import Pose, Robot
 from arm_description.transforms import rpy_from_rotation
 from arm_description.urdf import parse_urdf
 from arm_description.xml_document import parse_xml
+from arm_gazebo.free_name import free_name
 from arm_gazebo.robot.body_tree import WORLD_LINK
 
 
 def placed(urdf: str, pose: Sequence[float]) -> str:
     """Return the description with its root fixed to the link "world", where the pose says.
 
-    For the state publisher, so that /tf has the robots of one world beside each other.
+    For the state publisher, so that /tf has the robots of one world beside each other. Where a
+    link below the root is called "world", the one above the root is "ROOT_world".
 
     Args:
         urdf: of a robot whose root stays where it is.
@@ -34,13 +36,22 @@ def placed(urdf: str, pose: Sequence[float]) -> str:
             if element.get("name") in moved:
                 _set_origin(element, place.matrix() @ moved[element.get("name")].matrix())
     else:
-        etree.SubElement(document, "link", name=WORLD_LINK)
-        name = f"{WORLD_LINK}_to_{robot.root}"
+        world = _world_of(robot)
+        etree.SubElement(document, "link", name=world)
+        name = free_name(f"{world}_to_{robot.root}", {joint.name for joint in robot.joints})
         element = etree.SubElement(document, "joint", name=name, type="fixed")
-        etree.SubElement(element, "parent", link=WORLD_LINK)
+        etree.SubElement(element, "parent", link=world)
         etree.SubElement(element, "child", link=robot.root)
         _set_origin(element, place.matrix())
     return etree.tostring(document, encoding="unicode")
+
+
+def _world_of(robot: Robot) -> str:
+    """Return a name for the link to add: with the root's, no two robots of one world share it."""
+    links = {link.name for link in robot.links}
+    if WORLD_LINK not in links:
+        return WORLD_LINK
+    return free_name(f"{robot.root}_{WORLD_LINK}", links)
 
 
 def _set_origin(joint: etree._Element, matrix: np.ndarray) -> None:

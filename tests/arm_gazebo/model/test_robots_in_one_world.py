@@ -14,6 +14,7 @@ from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.part import RobotInWorld
+from arm_gazebo.robot.placed_description import placed
 
 BALL = '<collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>'
 
@@ -53,6 +54,22 @@ def test_each_has_its_joints_and_stands_where_it_is_put(pair):
     mujoco.mj_forward(built.model, data)
     assert data.xpos[built.bodies["left_bob"]] == pytest.approx([0, 0, 2])
     assert data.xpos[built.bodies["right_bob"]] == pytest.approx([0, 0.3, 2])
+
+
+def test_robots_that_hold_a_link_called_world_are_put_in_places_too(parts):
+    pair = []
+    for prefix, y in (("left_", 1.0), ("right_", -1.0)):
+        urdf = pendulum(parts, prefix).replace(
+            "</robot>",
+            f"<link name='world'/><joint name='{prefix}w' type='fixed'>"
+            f"<parent link='{prefix}base'/><child link='world'/></joint></robot>",
+        )
+        pair.append(entry(placed(urdf, (0.0, y, 0.0, 0.0, 0.0, 0.0))))
+    built = build_world(pair)
+    data = mujoco.MjData(built.model)
+    mujoco.mj_forward(built.model, data)
+    assert data.body("left_bob").xpos == pytest.approx([0, 1, 2])
+    assert data.body("right_bob").xpos == pytest.approx([0, -1, 2])
 
 
 def test_each_follows_its_own_commands(pair):

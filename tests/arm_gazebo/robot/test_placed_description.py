@@ -26,6 +26,26 @@ def test_what_stands_on_a_world_of_its_own_is_moved_with_it():
     assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2 + 0.5))
 
 
+def test_a_link_of_this_name_elsewhere_in_the_robot_keeps_it():
+    text = f"""<robot name='r'>{BASE}<link name='world'/><joint name='arm' type='fixed'>
+      <parent link='base'/><child link='world'/></joint></robot>"""
+    robot = parse_urdf(placed(text, POSE))
+    (joint,) = robot.children(robot.root)
+    assert (robot.root, joint.child) == ("base_world", "base")
+    assert joint.origin.xyz == pytest.approx((0.0, 2.0, 0.5))
+    assert [below.child for below in robot.children("base")] == ["world"]
+
+
+def test_a_joint_that_has_the_name_of_the_added_one_keeps_it():
+    text = f"""<robot name='r'>{BASE}<link name='tip'/><joint name='world_to_base' type='fixed'>
+      <parent link='base'/><child link='tip'/></joint></robot>"""
+    robot = parse_urdf(placed(text, POSE))
+    assert [joint.name for joint in robot.joints_in_tree_order] == [
+        "world_to_base_2",
+        "world_to_base",
+    ]
+
+
 def test_what_is_in_a_namespace_is_moved_too():
     text = ON_WORLD.replace("<robot", "<robot xmlns='http://www.ros.org'")
     (joint,) = parse_urdf(placed(text, POSE)).children("world")
