@@ -59,7 +59,7 @@ class ControllerManager:
     Attributes:
         update_rate_hz: ticks per second.
         resources: the components, and the arrays of states and commands.
-        updates: its latest updates, in its own time.
+        updates: its latest updates, with the periods of its cycles.
     """
 
     def __init__(
@@ -120,7 +120,7 @@ class ControllerManager:
         failed = [c for c in self._commanding if not c.run(time_s, period_s)]
         if failed:
             self._replace_failed(failed)
-        self.updates.add(time_s, self._supervision.now_s() - began_s)
+        self.updates.add(period_s, self._supervision.now_s() - began_s)
 
     def write(self, time_s: float, period_s: float) -> None:
         """Hand the commands, within their limits, to the hardware."""

@@ -20,8 +20,8 @@ class HardwareComponent:
         hardware: the driver.
         rate_hz: how often it is really read and written.
         state: of its life cycle.
-        reads: its latest reads, in the manager's time.
-        writes: its latest writes, in the manager's time.
+        reads: its latest reads, with the periods that they were told.
+        writes: its latest writes, likewise.
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class HardwareComponent:
             # A driver is outside code; as a rule the manager takes it down and goes on.
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
-        runs.add(time_s, self._now_s() - began_s)
+        runs.add(period_s, self._now_s() - began_s)
         return outcome
 
     def _step_towards(self, target: LifecycleState) -> Transition:

@@ -27,7 +27,7 @@ class ManagedController:
         commands: full names of the command interfaces it asks for; empty while unconfigured.
         states: full names of the state interfaces it asks for; empty while unconfigured.
         named_states: these, where it asks for them by name; empty where it takes what there is.
-        runs: its latest updates, in the manager's time.
+        runs: its latest updates, with the periods that they were told.
     """
 
     def __init__(
@@ -127,7 +127,7 @@ class ManagedController:
             # A controller is outside code; as a rule the manager deactivates it and goes on.
             self._on_exception(f"controller '{self.name}' raised in its update", error)
             return False
-        self.runs.add(time_s, self._now_s() - began_s)
+        self.runs.add(due_s, self._now_s() - began_s)
         return outcome is ReturnType.OK
 
     def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:

@@ -2,6 +2,7 @@
 
 import logging
 from dataclasses import dataclass
+from math import nan
 
 from arm_control.clock import Clock, MonotonicClock
 from arm_control.run_record import RunRecord
@@ -109,6 +110,7 @@ class Pacer:
     def restart(self) -> None:
         """Forget the deadlines, for example after a pause: the next tick is due now."""
         self._due_s = self._window_start_s = self._began_s = self._now_s()
+        self._last_began_s = nan
         self._window_ticks = self._window_overruns = 0
         self._window_lost_s = self._window_max_lag_s = 0.0
         self.runs.clear()
@@ -135,7 +137,8 @@ class Pacer:
     def end(self) -> None:
         """Note that the tick is done."""
         now_s = self._now_s()
-        self.runs.add(self._began_s, now_s - self._began_s)
+        self.runs.add(self._began_s - self._last_began_s, now_s - self._began_s)
+        self._last_began_s = self._began_s
         self._ticks += 1
         self._window_ticks += 1
         if self.wall_period_s and now_s > self._due_s:

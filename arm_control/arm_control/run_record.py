@@ -39,28 +39,26 @@ class RunRecord:
     other thread may ask for the statistics at any time.
     """
 
-    __slots__ = ("_durations_s", "_last_start_s", "_periods_s")
+    __slots__ = ("_durations_s", "_periods_s")
 
     def __init__(self, size: int) -> None:
         """Keep this many runs."""
         self._periods_s: deque[float] = deque(maxlen=size)
         self._durations_s: deque[float] = deque(maxlen=size)
-        self._last_start_s = float("nan")
 
-    def add(self, start_s: float, duration_s: float) -> None:
+    def add(self, period_s: float, duration_s: float) -> None:
         """Note a run.
 
         Args:
-            start_s: when it began, by any clock; all starts by the same one.
+            period_s: from the start of the run before; where it is not positive, or NaN, nothing
+                is known of it.
             duration_s: wall time that it took.
         """
-        self._periods_s.append(start_s - self._last_start_s)
+        self._periods_s.append(period_s)
         self._durations_s.append(duration_s)
-        self._last_start_s = start_s
 
     def clear(self) -> None:
-        """Forget all runs; the time until the next one is no period. The adding thread."""
-        self._last_start_s = float("nan")
+        """Forget all runs. The adding thread."""
         self._periods_s.clear()
         self._durations_s.clear()
 
@@ -86,7 +84,7 @@ def _rate(periods_s: NDArray[np.float64]) -> Spread | None:
     The latter would let two runs in quick succession, as they make up for a late one, outweigh
     all the others. The deviation is that of the periods, carried over to first order.
     """
-    # NaN before the first run, not positive where a simulation's time was set back.
+    # NaN before the first run, not positive where the clock has stood still.
     periods_s = periods_s[periods_s > 0.0]
     if not periods_s.size:
         return None

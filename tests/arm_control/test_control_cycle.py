@@ -72,6 +72,12 @@ def test_a_date_that_is_set_changes_no_period(bench: Any, step_s: float) -> None
     assert [p for _, p in every.updates] == pytest.approx([0.01] * 5)
     assert [p for _, p in second.updates] == pytest.approx([0.02] * 3)
     assert every.updates[-1][0] == pytest.approx(1.7e9 + 0.05 + step_s)
+    # Nor do the statistics of /diagnostics know another one.
+    records = [runs for _, runs in bench.manager.controller_runs()]
+    records += [runs for _, *both in bench.manager.component_runs() for runs in both]
+    for record in (*records, bench.manager.updates):
+        rate = record.statistics().periodicity_hz
+        assert rate.minimum == pytest.approx(rate.maximum)
 
 
 def test_the_system_clock_is_the_date() -> None:
