@@ -157,7 +157,7 @@ class ControllerManager:
         try:
             self._keeper.bring_up(unconfigured, inactive)
         finally:
-            self._hardware_changed()
+            self._select_active()
         self.read(0.0, 1.0 / self.update_rate_hz)
         for component in self.resources.components.values():
             component.restart_cadence()
@@ -167,7 +167,7 @@ class ControllerManager:
         try:
             self._keeper.set_state(name, target)
         finally:
-            self._hardware_changed()
+            self._select_active()
 
     def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
         """Return every component."""
@@ -302,10 +302,6 @@ class ControllerManager:
 
     def _stop_troubled(self, trouble: Sequence[Trouble], exchange: str) -> None:
         self._keeper.stop_troubled(trouble, exchange)
-        self._hardware_changed()
-
-    def _hardware_changed(self) -> None:
-        self._resolve_inactive()
         self._select_active()
 
     def _resolve_inactive(self) -> None:
@@ -320,8 +316,7 @@ class ControllerManager:
         self._broadcasting = tuple(c for c in active if c not in self._commanding)
         if self._limiter is not None:
             self._limiter.claimed({name for c in active for name in c.commands})
-        if self.resources.exported.states():
-            self._resolve_inactive()
+        self._resolve_inactive()
         self._activity_changed()
 
     def _controller_transitioned(

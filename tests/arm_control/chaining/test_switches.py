@@ -152,6 +152,19 @@ def test_whoever_reads_all_there_is_keeps_nobody_from_stopping(
     assert chain.states()["every"] == "active"
 
 
+def test_whoever_reads_all_there_is_starts_after_the_only_exporter_failed_to_stop(
+    chain: Any,
+) -> None:
+    exporter = chain.link("filter", states=("j0/position",), exported=("sum/position",))
+    every = chain.broadcaster("every")
+    chain.switch("filter")
+    exporter.refuses_to_stop = True
+    chain.switch("", "filter")
+    assert chain.states() == {"filter": "unconfigured", "every": "inactive"}
+    assert chain.switch("every").ok
+    assert not any(name.startswith("filter/") for name in every.states.names)
+
+
 @pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
 def test_without_whom_it_commands_a_leader_does_not_start(
     chain: Any, strictness: Strictness
