@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from launch_py.errors import LaunchFileError
-from launch_py.names import join_names
+from launch_py.names import graph_name
 from launch_py.substitution import Text
 
 DEFAULT_TIMEOUT_S = 60.0
@@ -30,7 +30,11 @@ class Readiness(ABC):
         """Return what is missing while the condition does not hold, as part of a sentence."""
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
-        """Return the condition with its texts performed and relative names in `namespace`."""
+        """Return the condition with its texts performed and relative names in `namespace`.
+
+        Raises:
+            LaunchFileError: a text is not what it should be, so the condition could never hold.
+        """
         return self
 
 
@@ -97,7 +101,7 @@ class TopicPublished(Probe):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, topic=join_names(namespace, perform(self.topic)))
+        return replace(self, topic=graph_name(namespace, perform(self.topic)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +116,7 @@ class ServiceAvailable(Probe):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, service=join_names(namespace, perform(self.service)))
+        return replace(self, service=graph_name(namespace, perform(self.service)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +131,7 @@ class ActionAvailable(Probe):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, action=join_names(namespace, perform(self.action)))
+        return replace(self, action=graph_name(namespace, perform(self.action)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,4 +146,7 @@ class HttpOk(Probe):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, url=perform(self.url))
+        url = perform(self.url)
+        if not url.startswith(("http://", "https://")):
+            raise LaunchFileError(f"HttpOk({url!r}): a page's URL begins with http:// or https://")
+        return replace(self, url=url)

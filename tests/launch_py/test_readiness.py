@@ -1,0 +1,46 @@
+"""Conditions of readiness that could never hold are refused before anything starts."""
+
+import pytest
+
+from launch_py import (
+    ActionAvailable,
+    ExecuteProcess,
+    HttpOk,
+    LogLine,
+    ServiceAvailable,
+    TopicPublished,
+)
+from launch_py.errors import LaunchFileError
+from launch_py.ros import PushRosNamespace
+
+
+def waiting_for(*conditions):
+    return ExecuteProcess(cmd=["true"], name="p", ready=conditions)
+
+
+def test_names_are_meant_in_the_namespace(expand):
+    conditions = (TopicPublished("chat"), ServiceAvailable("/serve"), ActionAvailable("_a/move2"))
+    plan = expand([PushRosNamespace("ns"), waiting_for(*conditions)])
+    assert plan.processes[0].ready == (
+        TopicPublished("/ns/chat"),
+        ServiceAvailable("/serve"),
+        ActionAvailable("/ns/_a/move2"),
+    )
+
+
+@pytest.mark.parametrize("condition", [TopicPublished, ServiceAvailable, ActionAvailable])
+@pytest.mark.parametrize("name", ["a b", "", "/", "2a", "~/a", "a//b", "a__b", "ä", "a\n"])
+def test_what_no_name_of_the_graph_can_be_is_refused(expand, condition, name):
+    with pytest.raises(LaunchFileError, match="is no name of a topic, service or action"):
+        expand([waiting_for(condition(name))])
+
+
+@pytest.mark.parametrize("url", ["localhost:8080", "", "file:///etc/hostname"])
+def test_a_url_of_no_page_is_refused(expand, url):
+    with pytest.raises(LaunchFileError, match="begins with http:// or https://"):
+        expand([waiting_for(HttpOk(url))])
+
+
+def test_a_pattern_that_is_none_is_refused():
+    with pytest.raises(LaunchFileError, match=r"LogLine\('\('\) is not a regular expression"):
+        LogLine("(")
