@@ -104,6 +104,17 @@ def test_the_panel_has_everything_and_commands_paste(terminal, stream):
     assert f"    {SUMMARY.commands[0][1]}\n" in text
 
 
+def test_a_narrow_panel_cuts_nothing_off(terminal, stream, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    topic = ("/position_controller/commands", "std_msgs/msg/Float64MultiArray, j0 to j3")
+    path = "/home/somebody/.ros/log/2026-01-01-12-00-00-a1b2c3d4e5f6-1234567"
+    terminal.ready(1.434, ReadySummary("the arm", (topic,), (), (("logs", path),)))
+    rows = [line.strip("│ ") for line in stream.getvalue().splitlines()]
+    assert path in "".join(row.removeprefix("logs").strip() for row in rows)
+    assert re.search(r"│ /position_controller/commands +std_msgs/msg/Float", stream.getvalue())
+    assert "…" not in stream.getvalue()
+
+
 class Terminal:
     """The launcher under a pseudo terminal."""
 
@@ -164,6 +175,8 @@ def test_on_a_terminal_there_is_a_panel_a_status_line_and_colour(on_terminal):
     terminal.read_all()
     assert "the arm: ready in" in terminal.text
     assert "╭" in terminal.text
+    assert "waiting for sim\x1b" in terminal.text
+    assert "waiting for \x1b" not in terminal.text
     assert "\x1b[36msim" in terminal.text
     assert re.search(r"stopped after \d", terminal.text)
     assert not re.search(r"^ready \d", terminal.text, re.MULTILINE)

@@ -77,6 +77,8 @@ class TerminalScreen:
         from rich.text import Text
 
         table = Table.grid(padding=(0, 2))
+        table.add_column(no_wrap=True)
+        table.add_column(overflow="fold")  # Who reads half a path cannot open it.
         for label, text in summary.topics:
             table.add_row(Text(label, "cyan"), Text(text))
         for label, text in summary.notes:

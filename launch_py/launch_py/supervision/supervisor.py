@@ -128,8 +128,7 @@ class Supervisor:
         facts.append(f"{len(running)} process{'' if len(running) == 1 else 'es'}")
         if self.stopping and running:
             facts.append("stopping " + ", ".join(m.name for m in running))
-        elif not self._announced:
-            late = sorted(name for name in self._start_up if not self.members[name].ready)
+        elif late := sorted(name for name in self._start_up if not self.members[name].ready):
             facts.append("waiting for " + ", ".join(late))
         facts += [member.status for member in running if member.status]
         return " · ".join(facts)
