@@ -147,10 +147,12 @@ def test_a_parameter_file_is_passed_as_it_is(expand, tmp_path):
     assert words(plan)[1:] == ("--ros-args", "--params-file", str(path))
 
 
-def test_a_missing_parameter_file_names_its_neighbours(expand, tmp_path):
+@pytest.mark.parametrize("folder", ["", "{tmp_path}/"])
+def test_a_missing_parameter_file_names_its_neighbours(expand, tmp_path, monkeypatch, folder):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "params.yaml").touch()
     with pytest.raises(ParameterError, match=r"talker: no parameter file .*mean 'params.yaml'"):
-        expand([node(parameters=[tmp_path / "parms.yaml"])])
+        expand([node(parameters=[folder.format(tmp_path=tmp_path) + "parms.yaml"])])
 
 
 def test_a_bad_parameter_names_node_and_parameter(expand):

@@ -139,11 +139,11 @@ class Node(ExecuteProcess):
                 continue
             path = perform_text(context, parameters)
             if not os.path.isfile(path):
-                folder, name = os.path.split(path)
+                folder, name = os.path.split(os.path.abspath(path))
                 known = os.listdir(folder) if os.path.isdir(folder) else []
                 raise ParameterError(
                     f"{self.process_name(context)}: no parameter file {path}; "
-                    + describe_known(name, known, f"{folder or 'it'} holds")
+                    + describe_known(name, known, f"{folder} holds")
                 )
             yield path
 
