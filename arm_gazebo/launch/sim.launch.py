@@ -106,11 +106,13 @@ def simulate(context: LaunchContext) -> list[Action]:
     """Return the nodes of a robot, or of several, and what was made up for them."""
     # Here, so that --show-args needs nothing but this file.
     from arm_gazebo.launching.robot_setup import set_up_robot
+    from arm_gazebo.model.world_path import find_world
     from arm_gazebo.window.display import check_display
 
     words = context.launch_configurations
     if words["headless"] == "false":
         check_display()
+    find_world(words["world"])  # The simulation would say so, too, but among what has started.
     if words["robots"]:
         return simulate_several(words["robots"])
     if not words["model"]:

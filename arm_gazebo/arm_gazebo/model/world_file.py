@@ -1,44 +1,15 @@
-"""World files: MuJoCo XML or SDF by path, or one of the shipped worlds by name."""
+"""What world files hold: MuJoCo XML or SDF."""
 
 from pathlib import Path
 
 import mujoco
 
-from arm_description.errors import ResourceNotFoundError
-from arm_description.resources import resolve_uri
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
+from arm_gazebo.model.world_path import find_world
 from arm_gazebo.sdf.world import read_sdf_world
 
 SDF_SUFFIXES = (".sdf", ".world")
-SHIPPED_WORLDS_URI = "package://arm_gazebo/worlds"
-
-
-def shipped_worlds() -> dict[str, Path]:
-    """Return the files of the shipped worlds by name."""
-    try:
-        folder = resolve_uri(SHIPPED_WORLDS_URI)
-    except ResourceNotFoundError:
-        return {}
-    return {file.stem: file for file in sorted(folder.glob("*.xml"))}
-
-
-def find_world(world: str | Path) -> Path:
-    """Return the file of a world that is named or given by its path.
-
-    Raises:
-        WorldError: neither a shipped name nor an existing file.
-    """
-    shipped = shipped_worlds()
-    if str(world) in shipped:
-        return shipped[str(world)]
-    path = Path(world).expanduser()
-    if path.is_file():
-        return path
-    raise WorldError(
-        f"no world '{world}': it is no file ({path.absolute()}), and the shipped worlds are "
-        f"{', '.join(shipped) or 'not installed'}"
-    )
 
 
 def load_world(world: str | Path, report: BuildReport | None = None) -> mujoco.MjSpec:

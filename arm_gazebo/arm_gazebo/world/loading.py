@@ -12,7 +12,8 @@ from arm_gazebo.build_report import BuildReport, Outcome
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.world_file import SDF_SUFFIXES, find_world, load_world, shipped_worlds
+from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
+from arm_gazebo.model.world_path import find_world, shipped_worlds
 from arm_gazebo.robot.part import RobotInWorld
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RefusedError

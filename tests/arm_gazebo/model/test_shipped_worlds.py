@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
-from arm_gazebo.model.world_file import find_world, load_world, shipped_worlds
+from arm_gazebo.model.world_file import load_world
+from arm_gazebo.model.world_path import find_world, shipped_worlds
 
 HOUSE = Path(__file__).parents[3] / "arm_gazebo" / "scripts" / "house"
 

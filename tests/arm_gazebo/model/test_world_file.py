@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from arm_gazebo.errors import ModelError, WorldError
-from arm_gazebo.model.world_file import find_world, load_world, shipped_worlds
+from arm_gazebo.model.world_file import load_world
+from arm_gazebo.model.world_path import find_world, shipped_worlds
 from arm_gazebo.sensors.camera_reader import parse_cameras
 
 FRONT_CAMERA_SEES = {
