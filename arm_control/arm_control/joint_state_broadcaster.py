@@ -111,9 +111,10 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
         """Take the parameters."""
         self._parameters = parameters
         self._quantity_of = {}
+        listed = parameters.interfaces if parameters.joints else ()
         for quantity in QUANTITIES:
             interface = getattr(parameters.map_interface_to_joint_state, quantity)
-            if quantity in parameters.interfaces and interface in parameters.interfaces:
+            if quantity in listed:
                 if interface != quantity:
                     self.logger.warning(
                         "interface '%s' is not shown as '%s', because '%s' is among the "

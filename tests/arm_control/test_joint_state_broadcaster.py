@@ -212,17 +212,29 @@ def test_a_read_that_fails_does_not_mix_up_the_joints(start: Start) -> None:
     np.testing.assert_array_equal(sink.published[1][1][:4], [0.0, 0.1, np.nan, 0.3])
 
 
-def test_the_standard_interface_wins_where_both_are_listed(
-    start: Start, caplog: pytest.LogCaptureFixture
+@pytest.mark.parametrize("other", ["velocity", "measured"])
+def test_a_standard_interface_that_is_listed_stands_for_itself(
+    start: Start, caplog: pytest.LogCaptureFixture, other: str
 ) -> None:
     parameters = Parameters(
         joints=("j0",),
         interfaces=("position", "velocity"),
-        map_interface_to_joint_state=InterfaceMap(position="velocity"),
+        map_interface_to_joint_state=InterfaceMap(position=other),
     )
     _, sink = start(parameters)
     assert sink.layouts[0].components == (("j0", ("position", "velocity")),)
-    assert "interface 'velocity' is not shown as 'position'" in caplog.text
+    assert f"interface '{other}' is not shown as 'position'" in caplog.text
+
+
+def test_interfaces_without_joints_do_not_keep_another_one_from_being_shown(start: Start) -> None:
+    states = (InterfaceInfo("measured", initial_value=3.0),)
+    joint = JointInfo("j0", state_interfaces=states)
+    hardware = FakeHardware(HardwareInfo("H", "system", "x/Y", joints=(joint,)))
+    parameters = Parameters(
+        interfaces=("position",), map_interface_to_joint_state=InterfaceMap(position="measured")
+    )
+    _, sink = start(parameters, hardware)
+    assert sink.layouts[0].components == (("j0", ("position",)),)
 
 
 def test_a_new_activation_lays_the_messages_out_anew(start: Start) -> None:
