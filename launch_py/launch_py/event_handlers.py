@@ -2,21 +2,38 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from launch_py.actions.action import Action, check_actions
 from launch_py.errors import LaunchFileError
-from launch_py.plan import Trigger, TriggerKind
+from launch_py.events import ProcessIO
+from launch_py.plan import FarewellStep, ListeningStep, Trigger, TriggerKind
 
 if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
 
 HandlerFunction = Callable[[Any, "LaunchContext"], Iterable[Action] | Action | None]
 Reaction = Iterable[Action] | Action | HandlerFunction
+LineFunction = Callable[[ProcessIO], Iterable[Action] | Action | None]
 
 
-class ProcessEventHandler:
+class EventHandler(ABC):
+    """What follows an event; see `RegisterEventHandler`.
+
+    Attributes:
+        actions: those that are known before the event happens.
+    """
+
+    actions: list[Action]
+
+    @abstractmethod
+    def expand(self, context: LaunchContext) -> None:
+        """Add to the plan what waits for the event."""
+
+
+class ProcessEventHandler(EventHandler):
     """Actions that follow something that a process does.
 
     Given as a list they are expanded with the launch file, so mistakes in them show before
@@ -28,11 +45,7 @@ class ProcessEventHandler:
 
     def __init__(self, target_action: Action | str | None, reaction: Reaction) -> None:
         name = type(self).__name__
-        if not isinstance(target_action, Action | str):
-            raise LaunchFileError(
-                f"{name} needs target_action=, the action or the name of one process"
-            )
-        self.target_action = target_action
+        self.target_action = _check_target(target_action, name)
         self.function = reaction if callable(reaction) else None
         self.actions = [] if callable(reaction) else check_actions(reaction, name)
 
@@ -63,3 +76,68 @@ class OnProcessExit(ProcessEventHandler):
 
     def __init__(self, *, target_action: Action | str | None = None, on_exit: Reaction) -> None:
         super().__init__(target_action, on_exit)
+
+
+class OnProcessIO(EventHandler):
+    """What follows each line that a process writes, until everything is to stop.
+
+    The functions are called as `function(event)` and return actions, or None. The event's text is
+    one line, as bytes and with its newline.
+    """
+
+    def __init__(
+        self,
+        *,
+        target_action: Action | str | None = None,
+        on_stdout: LineFunction | None = None,
+        on_stderr: LineFunction | None = None,
+    ) -> None:
+        self.target_action = _check_target(target_action, type(self).__name__)
+        self.on_stdout = on_stdout
+        self.on_stderr = on_stderr
+        self.actions = []
+
+    def expand(self, context: LaunchContext) -> None:
+        """Listen to the process."""
+        context.plan.add(
+            ListeningStep(
+                after=context.after,
+                delay_s=context.delay_s,
+                processes=(self.target_action,),
+                expand=context.at_event(self._react),
+            )
+        )
+
+    def _react(self, event: ProcessIO, _context: LaunchContext) -> Iterable[Action] | Action | None:
+        function = self.on_stdout if event.from_stdout else self.on_stderr
+        return function(event) if function is not None else None
+
+
+class OnShutdown(EventHandler):
+    """What is said and called when everything is to stop, before the first process is asked to.
+
+    The actions, also those of a function `function(event, context)`, are expanded only then. No
+    process can be among them. Where everything has ended by itself the event's reason is "idle";
+    an end by SIGQUIT, or without the launcher, leaves them out.
+    """
+
+    def __init__(self, *, on_shutdown: Reaction) -> None:
+        known = [] if callable(on_shutdown) else check_actions(on_shutdown, type(self).__name__)
+        self.actions = known
+        self.function = on_shutdown if callable(on_shutdown) else lambda _event, _context: known
+
+    def expand(self, context: LaunchContext) -> None:
+        """Wait for the shutdown."""
+        context.plan.add(
+            FarewellStep(
+                after=context.after,
+                delay_s=context.delay_s,
+                expand=context.at_event(self.function),
+            )
+        )
+
+
+def _check_target(target_action: Action | str | None, handler: str) -> Action | str:
+    if isinstance(target_action, Action | str):
+        return target_action
+    raise LaunchFileError(f"{handler} needs target_action=, the action or the name of one process")

@@ -27,7 +27,25 @@ class ProcessExited(ProcessEvent):
 
 
 @dataclass(frozen=True, slots=True)
+class ProcessIO(ProcessEvent):
+    """The process has written a line; `text` is that line with its newline, `fd` 1 or 2."""
+
+    text: bytes
+    fd: int
+
+    @property
+    def from_stdout(self) -> bool:
+        """Whether it came on stdout, as all does of a process on a pseudo terminal."""
+        return self.fd == 1
+
+    @property
+    def from_stderr(self) -> bool:
+        """Whether it came on stderr."""
+        return self.fd == 2
+
+
+@dataclass(frozen=True, slots=True)
 class Shutdown:
-    """Everything is to stop; see `EmitEvent`."""
+    """Everything is to stop; see `EmitEvent` and `OnShutdown`."""
 
     reason: str = "the launch file asks for it"

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from launch_py.actions.action import Action, check_actions
 from launch_py.child_environment import for_program
@@ -16,7 +16,8 @@ from launch_py.names import join_names
 from launch_py.plan import DeferredStep, PlanBuilder, Step, Trigger
 from launch_py.substitution import Text, perform_text
 
-DeferredFunction = Callable[[ProcessEvent, "LaunchContext"], Iterable[Action] | Action | None]
+EventT = TypeVar("EventT")
+DeferredFunction = Callable[[EventT, "LaunchContext"], Iterable[Action] | Action | None]
 
 
 @dataclass(slots=True)
@@ -65,10 +66,17 @@ class LaunchContext:
             inner.included_files = (*self.included_files, path)
         return inner
 
-    def deferred(self, function: DeferredFunction) -> DeferredStep:
+    def deferred(self, function: DeferredFunction[ProcessEvent]) -> DeferredStep:
         """Return the step that asks `function(event, context)` for actions when its time comes."""
+        return DeferredStep(after=self.after, delay_s=self.delay_s, expand=self.at_event(function))
 
-        def expand(event: ProcessEvent) -> Sequence[Step]:
+    def at_event(self, function: DeferredFunction[EventT]) -> Callable[[EventT], Sequence[Step]]:
+        """Return what turns an event into the steps of `function(event, context)`'s actions.
+
+        It raises a LaunchError where the function does, or its actions make no sense.
+        """
+
+        def expand(event: EventT) -> Sequence[Step]:
             inner = self.scoped()
             inner.after, inner.delay_s = (), 0.0
             who = "an event handler"
@@ -77,7 +85,7 @@ class LaunchContext:
                     action.visit(inner)
                 return self.plan.finish_steps()
 
-        return DeferredStep(after=self.after, delay_s=self.delay_s, expand=expand)
+        return expand
 
     def perform_substitution(self, value: Text) -> str:
         """Return the text that a substitution stands for here."""

@@ -19,7 +19,7 @@ from launch_py.restart_policy import RestartPolicy
 
 if TYPE_CHECKING:
     from launch_py.actions.action import Action
-    from launch_py.events import ProcessEvent
+    from launch_py.events import ProcessEvent, ProcessIO, Shutdown
 
 SIGTERM_TIMEOUT_S = 5.0
 """From SIGINT to SIGTERM, as ros2 launch has it."""
@@ -108,6 +108,24 @@ class DeferredStep(Step):
     """Asks a function of the launch file, at its time, for the steps that follow."""
 
     expand: Callable[[ProcessEvent], Sequence[Step]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListeningStep(Step):
+    """From its time on, asks a function of the launch file at every line of some processes.
+
+    Before `finish`, a process may be an action.
+    """
+
+    processes: tuple[str | Action, ...]
+    expand: Callable[[ProcessIO], Sequence[Step]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FarewellStep(Step):
+    """From its time on, it is said when everything is to stop what the function returns then."""
+
+    expand: Callable[[Shutdown], Sequence[Step]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,6 +241,8 @@ class PlanBuilder:
         self._steps = self._without_unreachable(self._steps)
         _refuse_cycles(self._steps)
         added = tuple(step for step in resolved if any(step is s for s in self._steps))
+        # Only processes can be referred to later; there may be messages without end.
+        self._steps = [step for step in self._steps if isinstance(step, ProcessStep)]
         self._finished = len(self._steps)
         return added
 
@@ -237,14 +257,16 @@ class PlanBuilder:
     def _resolve(self, step: Step) -> Step | None:
         triggers: list[Trigger] = []
         for trigger in step.after:
-            names = self._names_of(trigger, step)
+            names = self._names_of(trigger.process, step)
             if not names and trigger.kind is TriggerKind.EXITED:
                 return None  # It waits for the end of something that is switched off.
             triggers.extend(Trigger(trigger.kind, name) for name in names)
+        if isinstance(step, ListeningStep):
+            names = [name for target in step.processes for name in self._names_of(target, step)]
+            step = replace(step, processes=tuple(names))
         return replace(step, after=tuple(dict.fromkeys(triggers)))
 
-    def _names_of(self, trigger: Trigger, step: Step) -> list[str]:
-        target = trigger.process
+    def _names_of(self, target: str | Action, step: Step) -> list[str]:
         if not isinstance(target, str):
             if target in self._processes_of:
                 return self._processes_of[target]

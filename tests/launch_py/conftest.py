@@ -22,6 +22,12 @@ from launch_py.expansion import expand_description
 from launch_py.launch_description import LaunchDescription
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan import Plan
+from launch_py.screen import ReadySummary
+from launch_py.supervision.event_loop import EventLoop
+from launch_py.supervision.log_folder import LogFolder
+from launch_py.supervision.reporter import Reporter
+from launch_py.supervision.supervisor import Supervisor
+from launch_py.testing import FakeRunner, ManualClock, RecordingScreen
 
 TIMEOUT_S = 30.0
 T = TypeVar("T")
@@ -30,7 +36,7 @@ import sys
 from textwrap import dedent
 from launch_py import *
 from launch_py.conditions import IfCondition, UnlessCondition
-from launch_py.event_handlers import OnProcessExit, OnProcessStart
+from launch_py.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import Node, PushRosNamespace
 from launch_py.substitutions import *
@@ -127,6 +133,43 @@ class Launched:
         self.process.stdout.close()
 
 
+class Trial:
+    """A supervisor whose processes, time and screen belong to the test."""
+
+    def __init__(self, plan, logs: LogFolder, cannot_start=()) -> None:
+        self.clock = ManualClock()
+        self.loop = EventLoop(self.clock)
+        self.runner = FakeRunner(cannot_start)
+        self.screen = RecordingScreen()
+        self.supervisor = Supervisor(
+            plan,
+            self.loop,
+            self.runner,
+            Reporter(self.screen, logs),
+            ReadySummary("test", (), (), ()),
+            started_s=0.0,
+        )
+        self.supervisor.begin()
+
+    def __getitem__(self, name):
+        return self.runner.children[name]
+
+    @property
+    def started(self) -> list[str]:
+        return self.runner.started
+
+    def advance(self, seconds: float) -> None:
+        self.clock.advance(seconds)
+        self.loop.call_due_timers()
+
+    def asked_to_stop(self) -> set[str]:
+        return {n for n, child in self.runner.children.items() if child.stop_delays is not None}
+
+    def finish(self) -> int:
+        assert self.supervisor.done
+        return self.supervisor.finish()
+
+
 def is_running(pid: int) -> bool:
     """Return whether a process exists and is not a zombie."""
     try:
@@ -203,6 +246,22 @@ def expand():
         return expand_description(description, arguments, environ or dict(os.environ))
 
     return expand_actions
+
+
+@pytest.fixture
+def trial(expand, tmp_path: Path):
+    """Begin to supervise the plan of some actions, with fake processes."""
+    trials: list[Trial] = []
+    logs = LogFolder(tmp_path)
+
+    def begin(*actions, cannot_start=()) -> Trial:
+        trials.append(Trial(expand(actions), logs, cannot_start))
+        return trials[-1]
+
+    yield begin
+    logs.close()
+    for one in trials:
+        one.loop.close()
 
 
 @pytest.fixture

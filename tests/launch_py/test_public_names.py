@@ -15,7 +15,7 @@ ROS_NAMES = {
         "UnsetEnvironmentVariable"
     ),
     "launch_py.conditions": "IfCondition UnlessCondition",
-    "launch_py.event_handlers": "OnProcessExit OnProcessStart",
+    "launch_py.event_handlers": "OnProcessExit OnProcessIO OnProcessStart OnShutdown",
     "launch_py.events": "Shutdown",
     "launch_py.launch_description_sources": (
         "AnyLaunchDescriptionSource PythonLaunchDescriptionSource"

@@ -1,7 +1,5 @@
 """Order of starts and stops, readiness, restarts, exit codes: with fake processes and clock."""
 
-from pathlib import Path
-
 import pytest
 
 from launch_py import (
@@ -18,70 +16,12 @@ from launch_py import (
     TopicPublished,
 )
 from launch_py.event_handlers import OnProcessExit, OnProcessStart
-from launch_py.screen import ReadySummary
-from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.log_folder import LogFolder
-from launch_py.supervision.reporter import Reporter
-from launch_py.supervision.supervisor import Supervisor
-from launch_py.testing import FakeRunner, ManualClock, RecordingScreen
 
 UP = LogLine("up")
 
 
 def process(name, **options):
     return ExecuteProcess(cmd=["true"], name=name, **options)
-
-
-class Trial:
-    """A supervisor whose processes, time and screen belong to the test."""
-
-    def __init__(self, plan, logs: LogFolder, cannot_start=()) -> None:
-        self.clock = ManualClock()
-        self.loop = EventLoop(self.clock)
-        self.runner = FakeRunner(cannot_start)
-        self.screen = RecordingScreen()
-        self.supervisor = Supervisor(
-            plan,
-            self.loop,
-            self.runner,
-            Reporter(self.screen, logs),
-            ReadySummary("test", (), (), ()),
-            started_s=0.0,
-        )
-        self.supervisor.begin()
-
-    def __getitem__(self, name):
-        return self.runner.children[name]
-
-    @property
-    def started(self) -> list[str]:
-        return self.runner.started
-
-    def advance(self, seconds: float) -> None:
-        self.clock.advance(seconds)
-        self.loop.call_due_timers()
-
-    def asked_to_stop(self) -> set[str]:
-        return {n for n, child in self.runner.children.items() if child.stop_delays is not None}
-
-    def finish(self) -> int:
-        assert self.supervisor.done
-        return self.supervisor.finish()
-
-
-@pytest.fixture
-def trial(expand, tmp_path: Path):
-    trials: list[Trial] = []
-    logs = LogFolder(tmp_path)
-
-    def begin(*actions, cannot_start=()) -> Trial:
-        trials.append(Trial(expand(actions), logs, cannot_start))
-        return trials[-1]
-
-    yield begin
-    logs.close()
-    for one in trials:
-        one.loop.close()
 
 
 def test_a_process_without_condition_is_ready_when_started(trial):

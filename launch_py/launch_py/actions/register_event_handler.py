@@ -8,7 +8,7 @@ from launch_py.actions.action import Action
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
-    from launch_py.event_handlers import ProcessEventHandler
+    from launch_py.event_handlers import EventHandler
     from launch_py.launch_context import LaunchContext
     from launch_py.survey import Survey
 
@@ -16,9 +16,7 @@ if TYPE_CHECKING:
 class RegisterEventHandler(Action):
     """Takes the actions of an event handler when its event happens."""
 
-    def __init__(
-        self, event_handler: ProcessEventHandler, *, condition: Condition | None = None
-    ) -> None:
+    def __init__(self, event_handler: EventHandler, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
         self.event_handler = event_handler
 

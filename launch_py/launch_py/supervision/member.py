@@ -42,6 +42,10 @@ class MemberListener(Protocol):
         """It is not ready within its time, or can never be."""
         ...
 
+    def member_wrote(self, member: Member, stream: str, text: str) -> None:
+        """It has written a line to "stdout" or "stderr"."""
+        ...
+
     def member_ended(self, member: Member) -> None:
         """It has ended and will not be restarted."""
         ...
@@ -251,6 +255,7 @@ class Member:
         for condition, pattern in list(self._patterns.items()):
             if pattern.search(text):
                 self._met(condition)
+        self._listener.member_wrote(self, stream, text)
 
     def _on_end(self, exit_code: int) -> None:
         self._stop_watching()

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from launch_py.errors import LaunchError
-from launch_py.events import ProcessEvent, ProcessExited, ProcessStarted
+from launch_py.events import ProcessEvent, ProcessExited, ProcessIO, ProcessStarted, Shutdown
 from launch_py.plan import (
     DeferredStep,
+    FarewellStep,
+    ListeningStep,
     MessageStep,
     Plan,
     ProcessStep,
@@ -24,9 +27,15 @@ from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.member import Member, MemberState, ProcessRunner
 from launch_py.supervision.reporter import Reporter
 
+EventT = TypeVar("EventT")
+
 EXIT_NOT_READY = 1
 EXIT_KILLED = 137
 EXIT_FORCED = 130
+
+REASON_IDLE = "idle"
+"""Why handlers of the shutdown are told that it ends where everything has ended by itself, as in
+ros2 launch."""
 
 HASTY_DELAYS = StopDelays(sigterm_timeout_s=1.0, sigkill_timeout_s=1.0)
 """For an end that nobody watches any more: the launcher itself was killed."""
@@ -73,6 +82,8 @@ class Supervisor:
         self._start_up = plan.start_up()
         self._announced = not self._start_up
         self._pending: list[Step] = []
+        self._listening: list[ListeningStep] = []
+        self._farewells: list[FarewellStep] = []
         self._delayed = 0
         self._add(plan.steps)
 
@@ -96,6 +107,7 @@ class Supervisor:
             self.stopping = True
             self._pending.clear()
             self._reporter.note(f"stopping: {reason}")
+            self._bid_farewell(reason)
             self._stop_next()
 
     def stop_hastily(self, reason: str) -> None:
@@ -160,6 +172,14 @@ class Supervisor:
         self._fail(Failure(f"{member.name} {why}", EXIT_NOT_READY))
         self.stop(f"{member.name} is not ready")
 
+    def member_wrote(self, member: Member, stream: str, text: str) -> None:
+        """Ask those who listen what follows."""
+        for step in self._listening:
+            if not self.stopping and member.name in step.processes:
+                fd = 2 if stream == "stderr" else 1
+                event = ProcessIO(*_identity(member), f"{text}\n".encode(), fd)
+                self._expand(step.expand, event)
+
     def member_ended(self, member: Member) -> None:
         """Take the steps that wait for the end, or go on stopping."""
         text = f"{member.name} {member.ending}"
@@ -178,10 +198,11 @@ class Supervisor:
 
     def finish(self) -> int:
         """Return the exit code, after everything has ended; the last line names what failed."""
-        if not self.stopping and self.failure is None:
+        if not self.stopping:
             failed = [m for m in self.members.values() if m.exit_code]
             if failed:
                 self._fail(Failure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code))
+            self._bid_farewell(REASON_IDLE)
         elapsed_s = self._loop.clock() - self._started_s
         if self.failure is None:
             self._reporter.end(f"stopped after {elapsed_s:.2f} s", failed=False)
@@ -244,7 +265,11 @@ class Supervisor:
             case ShutdownStep():
                 self._shut_down(step)
             case DeferredStep():
-                self._expand(step)
+                self._expand(step.expand, self._event(step))
+            case ListeningStep():
+                self._listening.append(step)
+            case FarewellStep():
+                self._farewells.append(step)
 
     def _shut_down(self, step: ShutdownStep) -> None:
         ended = [self.members[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
@@ -254,13 +279,27 @@ class Supervisor:
         reason = step.reason or " and ".join(f"{m.name} {m.ending}" for m in ended)
         self.stop(reason or "the launch file asks for it")
 
-    def _expand(self, step: DeferredStep) -> None:
+    def _expand(self, expand: Callable[[EventT], Sequence[Step]], event: EventT) -> None:
         try:
-            self._add(step.expand(self._event(step)))
+            self._add(expand(event))
         except LaunchError as error:
             self._fail(Failure(str(error), EXIT_NOT_READY))
             self.stop("an event handler failed")
         self._advance()
+
+    def _bid_farewell(self, reason: str) -> None:
+        """Say what there is to say at the end; nothing is started any more."""
+        steps: list[Step] = []
+        for farewell in self._farewells:
+            try:
+                steps += farewell.expand(Shutdown(reason))
+            except LaunchError as error:
+                self._fail(Failure(str(error), EXIT_NOT_READY))
+        for step in steps:
+            if isinstance(step, MessageStep):
+                self._reporter.note(step.text)
+            elif isinstance(step, ProcessStep):
+                self._reporter.problem(f"{step.name} is not started: everything stops")
 
     def _event(self, step: DeferredStep) -> ProcessEvent:
         """Return the event that the step's function is told of: the last one it waited for."""
@@ -268,11 +307,9 @@ class Supervisor:
             return ProcessEvent("", (), 0)
         trigger = step.after[-1]
         member = self.members[str(trigger.process)]
-        pid = member.child.pid if member.child is not None else 0
-        command = tuple(str(word) for word in member.step.command)
         if trigger.kind is TriggerKind.EXITED:
-            return ProcessExited(member.name, command, pid, member.exit_code)
-        return ProcessStarted(member.name, command, pid)
+            return ProcessExited(*_identity(member), member.exit_code)
+        return ProcessStarted(*_identity(member))
 
     def _check_ended(self, member: Member, text: str) -> None:
         """Fail where something can never happen because this process has ended."""
@@ -303,3 +340,9 @@ class Supervisor:
         for member in active:
             if member.name not in needed and not member.stopping:
                 member.stop()
+
+
+def _identity(member: Member) -> tuple[str, tuple[str, ...], int]:
+    """Return what every event tells of its process: name, command and process id."""
+    pid = member.child.pid if member.child is not None else 0
+    return member.name, tuple(str(word) for word in member.step.command), pid
