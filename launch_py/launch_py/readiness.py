@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from launch_py.errors import LaunchFileError
 from launch_py.names import graph_name
+from launch_py.seconds import check_seconds
 from launch_py.substitution import Text
 
 DEFAULT_TIMEOUT_S = 60.0
@@ -24,6 +25,9 @@ class Readiness(ABC):
     """A condition of readiness that must hold within `timeout_s` of the start."""
 
     timeout_s: float = DEFAULT_TIMEOUT_S
+
+    def __post_init__(self) -> None:
+        check_seconds(self.timeout_s, f"timeout_s of a {type(self).__name__}")
 
     @abstractmethod
     def missing(self) -> str:
@@ -45,6 +49,7 @@ class LogLine(Readiness):
     pattern: str
 
     def __post_init__(self) -> None:
+        Readiness.__post_init__(self)
         try:
             re.compile(self.pattern)
         except re.error as error:

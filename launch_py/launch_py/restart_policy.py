@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from launch_py.errors import LaunchFileError
+from launch_py.seconds import check_seconds
 
 RestartWhen = Literal["never", "on-failure", "always"]
 
@@ -32,6 +33,8 @@ class RestartPolicy:
             raise LaunchFileError(
                 f"a restart policy is never, on-failure or always, not {self.when!r}"
             )
+        for name in ("first_delay_s", "max_delay_s", "within_s"):
+            check_seconds(getattr(self, name), f"{name} of a RestartPolicy")
 
     @classmethod
     def never(cls) -> "RestartPolicy":

@@ -253,6 +253,36 @@ def test_stop_delays_may_be_substitutions(expand):
     assert step.stop_delays == StopDelays(1.5, 2.0)
 
 
+@pytest.mark.parametrize("value", ["soon", -1, "-0.5", "nan"])
+@pytest.mark.parametrize(
+    ("action", "name"),
+    [
+        (lambda value: sh(sigterm_timeout=value), "sigterm_timeout"),
+        (lambda value: sh(sigkill_timeout=value), "sigkill_timeout"),
+        (lambda value: TimerAction(period=value, actions=[]), "TimerAction's period"),
+    ],
+)
+def test_what_is_no_time_is_refused(expand, action, name, value):
+    with pytest.raises(LaunchFileError, match=f"^{name} is .*, not seconds$"):
+        expand([action(value)])
+
+
+def test_a_restart_policy_is_asked_for():
+    with pytest.raises(LaunchFileError, match="restart= takes a RestartPolicy, not 'always'"):
+        sh(restart="always")
+
+
+def test_an_unknown_event_is_refused():
+    with pytest.raises(LaunchFileError, match=r"EmitEvent takes events\.Shutdown.*, not 'stop'"):
+        EmitEvent(event="stop")  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("cmd", [[], "", [""]])
+def test_a_command_is_asked_for(expand, cmd):
+    with pytest.raises(LaunchFileError, match=r"ExecuteProcess needs cmd=\[program"):
+        expand([ExecuteProcess(cmd=cmd)])
+
+
 def test_unknown_output_is_refused(expand):
     with pytest.raises(LaunchFileError, match="output='scren' of sh; did you mean 'screen'"):
         expand([sh(output="scren")])

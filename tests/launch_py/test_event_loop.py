@@ -1,5 +1,6 @@
 """Timers, readers and signals of the supervisor's loop."""
 
+import math
 import os
 import signal
 
@@ -37,6 +38,19 @@ def test_run_waits_for_a_timer(loop):
     called = []
     loop.call_later(0.01, lambda: called.append(1))
     loop.run(until=lambda: bool(called))
+
+
+@pytest.mark.parametrize("delay_s", [math.inf, 1e15])
+def test_a_timer_may_be_due_never(loop, delay_s):
+    called = []
+    loop.call_later(delay_s, lambda: called.append("never"))
+    readable, writable = os.pipe()
+    loop.add_reader(readable, lambda: called.append(os.read(readable, 10)))
+    os.write(writable, b"x")
+    loop.run(until=lambda: bool(called))
+    os.close(readable)
+    os.close(writable)
+    assert called == [b"x"]
 
 
 def test_run_waits_for_a_file(loop):

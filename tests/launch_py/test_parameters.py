@@ -157,6 +157,8 @@ def test_integers_among_floats_become_floats(context):
         (ParameterValue("x", value_type=int), "'x' is not an integer"),
         (ParameterValue("x", value_type=bool), "neither true nor false"),
         (ParameterValue("x", value_type=dict), "value_type"),
+        (ParameterValue("3", value_type=list[int]), "a list is needed, not 3"),
+        (ParameterValue({}, value_type=str), "a text is needed, not"),
     ],
 )
 def test_what_cannot_be_a_parameter_is_named(context, value, message):

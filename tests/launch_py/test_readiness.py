@@ -7,6 +7,7 @@ from launch_py import (
     ExecuteProcess,
     HttpOk,
     LogLine,
+    Notified,
     ServiceAvailable,
     TopicPublished,
 )
@@ -39,6 +40,17 @@ def test_what_no_name_of_the_graph_can_be_is_refused(expand, condition, name):
 def test_a_url_of_no_page_is_refused(expand, url):
     with pytest.raises(LaunchFileError, match="begins with http:// or https://"):
         expand([waiting_for(HttpOk(url))])
+
+
+@pytest.mark.parametrize("timeout_s", [-1, float("nan"), "5", None, True])
+@pytest.mark.parametrize(
+    "condition", [Notified, lambda timeout_s: LogLine("x", timeout_s=timeout_s)]
+)
+def test_a_time_out_that_is_no_time_is_refused(condition, timeout_s):
+    with pytest.raises(
+        LaunchFileError, match=r"timeout_s of a (Notified|LogLine) is .*not seconds"
+    ):
+        condition(timeout_s=timeout_s)
 
 
 def test_a_pattern_that_is_none_is_refused():

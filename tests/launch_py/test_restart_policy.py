@@ -21,6 +21,13 @@ def delays_of(history, clock, exit_codes, run_s=0.1):
     return delays
 
 
+@pytest.mark.parametrize("name", ["first_delay_s", "max_delay_s", "within_s"])
+@pytest.mark.parametrize("value", [-1.0, float("nan"), "1", None])
+def test_what_is_no_time_is_refused(name, value):
+    with pytest.raises(LaunchFileError, match=f"^{name} of a RestartPolicy is .*, not seconds"):
+        RestartPolicy("always", **{name: value})
+
+
 def test_never_is_the_default(clock):
     decision = RestartHistory(RestartPolicy(), clock).ended(1)
     assert (decision.delay_s, decision.gave_up) == (None, None)

@@ -73,6 +73,11 @@ def test_this_launch_file_dir(context):
     assert ThisLaunchFileDir().perform(context) == "/a/b"
 
 
+def test_no_launch_file_has_no_folder(context):
+    with pytest.raises(SubstitutionError, match="no launch file is being read"):
+        ThisLaunchFileDir().perform(context)
+
+
 def test_command_returns_the_output(context):
     command = [sys.executable, " -c 'print(1 + 1)'"]
     assert Command(command).perform(context) == "2"
@@ -82,6 +87,15 @@ def test_command_that_fails_says_what_it_said(context):
     command = Command([sys.executable, " -c 'import sys; sys.exit(\"no such file\")'"])
     with pytest.raises(SubstitutionError, match="exit code 1: no such file"):
         command.perform(context)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("echo 'a", "cannot be split: No closing quotation"), (" ", "Command has no text")],
+)
+def test_command_that_is_none_is_refused(context, text, message):
+    with pytest.raises(SubstitutionError, match=message):
+        Command(text).perform(context)
 
 
 def test_command_that_complains_fails_unless_told_otherwise(context):

@@ -24,6 +24,7 @@ from launch_py.plan import (
 from launch_py.programs import find_program
 from launch_py.readiness import Readiness
 from launch_py.restart_policy import RestartPolicy
+from launch_py.seconds import perform_seconds
 from launch_py.substitution import Text, perform_text
 from launch_py.truth import parse_truth
 
@@ -122,6 +123,8 @@ class ExecuteProcess(Action):
         for process in self.depends_on:
             if not isinstance(process, Action | str):
                 raise LaunchFileError(f"depends_on= takes actions and names, not {process!r}")
+        if not isinstance(restart, RestartPolicy | None):
+            raise LaunchFileError(f"restart= takes a RestartPolicy, not {restart!r}")
         self.restart = restart
         self.on_exit = on_exit
         self.shell = shell
@@ -162,8 +165,8 @@ class ExecuteProcess(Action):
                 ),
                 restart=self._restart_policy(context),
                 stop_delays=StopDelays(
-                    _seconds(context, self.sigterm_timeout, "sigterm_timeout"),
-                    _seconds(context, self.sigkill_timeout, "sigkill_timeout"),
+                    perform_seconds(context, self.sigterm_timeout, "sigterm_timeout"),
+                    perform_seconds(context, self.sigkill_timeout, "sigkill_timeout"),
                 ),
             )
         )
@@ -248,13 +251,3 @@ class ExecuteProcess(Action):
         # Whoever counts the retries wants them all.
         patience = max(policy.give_up_after, retries + 1)
         return replace(policy, max_restarts=retries, give_up_after=patience)
-
-
-def _seconds(context: LaunchContext, value: float | Text, name: str) -> float:
-    if isinstance(value, int | float):
-        return float(value)
-    text = perform_text(context, value)
-    try:
-        return float(text)
-    except ValueError:
-        raise LaunchFileError(f"{name} is {text!r}, not seconds") from None

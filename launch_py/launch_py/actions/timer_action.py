@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from launch_py.actions.action import Action, check_actions
-from launch_py.errors import LaunchFileError
-from launch_py.substitution import Text, perform_text
+from launch_py.seconds import perform_seconds
+from launch_py.substitution import Text
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
@@ -36,7 +36,8 @@ class TimerAction(Action):
     def expand(self, context: LaunchContext) -> None:
         """Expand the actions with the delay added."""
         inner = context.scoped()
-        inner.delay_s = context.delay_s + self._period_s(context)
+        period_s = perform_seconds(context, self.period, "TimerAction's period")
+        inner.delay_s = context.delay_s + period_s
         for action in self.actions:
             action.visit(inner)
 
@@ -45,12 +46,3 @@ class TimerAction(Action):
         super().survey(survey, context)
         for action in self.actions:
             action.survey(survey, context)
-
-    def _period_s(self, context: LaunchContext) -> float:
-        if isinstance(self.period, int | float):
-            return float(self.period)
-        text = perform_text(context, self.period)
-        try:
-            return float(text)
-        except ValueError:
-            raise LaunchFileError(f"TimerAction's period is {text!r}, not seconds") from None

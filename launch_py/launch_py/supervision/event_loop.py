@@ -14,6 +14,9 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
+LONGEST_WAIT_S = 3600.0
+"""A timer that is due later, or never, is looked at again: the kernel does not count that far."""
+
 Callback = Callable[[], object]
 """What it returns is ignored."""
 
@@ -80,7 +83,9 @@ class EventLoop:
     def _wait(self) -> None:
         while self._timers and self._timers[0][2].cancelled:
             heapq.heappop(self._timers)
-        timeout_s = max(0.0, self._timers[0][0] - self.clock()) if self._timers else None
+        timeout_s = None
+        if self._timers:
+            timeout_s = min(max(0.0, self._timers[0][0] - self.clock()), LONGEST_WAIT_S)
         for key, _ in self._selector.select(timeout_s):
             # An earlier callback of this round may have removed this one, and a file that it then
             # opened may have got the same number.
