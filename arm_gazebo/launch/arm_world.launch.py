@@ -36,7 +36,11 @@ DESCRIPTION_ARGUMENTS = {
     "velocity_limit": ("2.0", "of every joint, in rad/s; 0.1 gives the original arm's"),
     "effort_limit": ("5.0", "of every joint, in N m; 300 gives the original arm's"),
     "j1_limit": ("3.14", "of j1 to both sides, in rad"),
-    "prefix": ("", "put before the names of links and joints"),
+    "prefix": (
+        "",
+        "put before the names of links and joints; a file of `controllers` has to name them so, "
+        "as ${prefix}j0 for one",
+    ),
 }
 
 
