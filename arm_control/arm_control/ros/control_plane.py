@@ -2,9 +2,10 @@
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from contextlib import contextmanager
 from typing import TypeVar
 
 from rclpy.executors import Executor
@@ -13,7 +14,7 @@ from arm_control.control_loop import ControlLoop
 from arm_control.controller import ControllerContext
 from arm_control.controller_manager import ControllerManager
 from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
-from arm_control.errors import ArmControlError, ControllerManagerError
+from arm_control.errors import ArmControlError, ControllerManagerError, ParameterError
 from arm_control.guarded import failure_of
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.parameters import ParameterSpec
@@ -106,7 +107,8 @@ class ControlPlane:
         """Read the controller's parameters anew, configure it, and make its end points."""
         with self._lock:
             node = self._find(name, "configure")
-            parameters, rate_hz = node.read_controller_parameters()
+            with _parameters_of(name):
+                parameters, rate_hz = node.read_controller_parameters()
             if self._state_of(name) is LifecycleState.INACTIVE:
                 self.cleanup_controller(name)
             self.on_loop(lambda: self._manager.configure_controller(name, parameters, rate_hz))
@@ -239,9 +241,10 @@ class ControlPlane:
         context = ControllerContext(name, self._manager.update_rate_hz, self._robot_description)
         try:
             controller = controller_class(type_name)(context)
-            return ControllerNode(
-                controller, type_name, self._node.get_namespace(), arguments, self._loop
-            )
+            with _parameters_of(name):
+                return ControllerNode(
+                    controller, type_name, self._node.get_namespace(), arguments, self._loop
+                )
         except ArmControlError:
             raise
         except Exception as error:
@@ -277,6 +280,15 @@ class ControlPlane:
         node.on_cleanup()
         self._executor.remove_node(node)
         node.destroy_node()
+
+
+@contextmanager
+def _parameters_of(name: str) -> Iterator[None]:
+    """Say in errors about parameters whose they are."""
+    try:
+        yield
+    except ParameterError as error:
+        raise ParameterError(f"controller '{name}': {error}") from error
 
 
 def _controller_specs(name: str) -> tuple[ParameterSpec, ...]:

@@ -88,12 +88,29 @@ def test_a_missing_file_ends_with_a_sentence(control: Any, spawn: Any) -> None:
     assert "cannot read parameter file '/no/such/file.yaml'" in output
 
 
-def test_a_value_of_a_wrong_type_is_refused_by_the_manager(
-    control: Any, spawn: Any, file: Any, manager: Any
+@pytest.mark.parametrize(
+    ("values", "reason", "states"),
+    [
+        ({"joints": "j2"}, "parameter 'joints' must be a list, not 'j2'", {}),
+        (
+            {"joints": ["j2"], "update_rate": -1},
+            "parameter 'update_rate' must not be negative, but is -1",
+            {"fresh": "unconfigured"},
+        ),
+    ],
+)
+def test_a_value_that_does_not_fit_is_refused_by_the_manager(
+    control: Any,
+    spawn: Any,
+    file: Any,
+    manager: Any,
+    values: dict[str, Any],
+    reason: str,
+    states: dict[str, str],
 ) -> None:
-    spawn("fresh", "-p", file({"fresh": node(type=POSITION, joints="j2")})).fail()
-    manager.wait_for_line("parameter 'joints' must be a list, not 'j2'")
-    assert control.states() == {}
+    spawn("fresh", "-p", file({"fresh": node(type=POSITION, **values)})).fail()
+    manager.wait_for_line(f"controller 'fresh': {reason}")
+    assert control.states() == states
 
 
 def test_ros_arguments_reach_the_controllers_node(
