@@ -2,9 +2,8 @@
 
 The names are those of ROS 2's `launch` and `launch_ros` packages, so most launch files port by
 changing their imports: `launch` becomes `launch_py`, `launch_ros` becomes `launch_py.ros`. Not here
-are XML and YAML launch files, composable and lifecycle nodes, `ParameterFile` (a parameter file is
-given by its path), and the event handlers other than those of a process's start, lines and end, and
-of the shutdown.
+are XML and YAML launch files, composable and lifecycle nodes, and the event handlers other than
+those of a process's start, lines and end, and of the shutdown.
 """
 
 from launch_py.actions import (

@@ -31,7 +31,7 @@ ROS_NAMES = {
         "SetUseSimTime"
     ),
     "launch_py.ros.substitutions": "FindPackagePrefix FindPackageShare",
-    "launch_py.ros.parameter_descriptions": "ParameterValue",
+    "launch_py.ros.parameter_descriptions": "ParameterFile ParameterValue",
 }
 
 

@@ -9,13 +9,14 @@ from launch_py.ros.actions import (
     SetRemap,
     SetUseSimTime,
 )
-from launch_py.ros.parameter_descriptions import ParameterValue
+from launch_py.ros.parameter_descriptions import ParameterFile, ParameterValue
 from launch_py.ros.substitutions import FindPackagePrefix, FindPackageShare
 
 __all__ = [
     "FindPackagePrefix",
     "FindPackageShare",
     "Node",
+    "ParameterFile",
     "ParameterValue",
     "PushROSNamespace",
     "PushRosNamespace",

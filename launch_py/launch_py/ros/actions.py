@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -10,7 +9,6 @@ from launch_py.actions.action import Action
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
 from launch_py.errors import ParameterError
 from launch_py.names import join_names
-from launch_py.near_names import describe_known
 from launch_py.packages import Packages
 from launch_py.parameters import (
     ParameterValue,
@@ -19,6 +17,7 @@ from launch_py.parameters import (
     parameters_by_node,
 )
 from launch_py.plan import GeneratedFile
+from launch_py.ros.parameter_file import ParameterFile
 from launch_py.substitution import (
     Pairs,
     Text,
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from launch_py.conditions import Condition
     from launch_py.launch_context import LaunchContext
 
-Parameters = Mapping[Any, Any] | Text
+Parameters = Mapping[Any, Any] | ParameterFile | Text
 
 
 class Node(ExecuteProcess):
@@ -48,10 +47,11 @@ class Node(ExecuteProcess):
             process with several nodes; `exec_name` says what to call the process.
         namespace: the namespace, inside the one of `PushRosNamespace`.
         exec_name: what to call the process; default the node's name, else the executable's.
-        parameters: parameter files and dicts; later ones win. A dict holds parameters of `name`,
-            or of every node of the process without one; in a process with several nodes it may
-            have the form of a file, {node: {"ros__parameters": {...}}}, whose nodes are in the
-            namespace of this one unless they begin with a slash.
+        parameters: parameter files, each a path or a `ParameterFile`, and dicts; later ones win. A
+            dict holds parameters of `name`, or of every node of the process without one; in a
+            process with several nodes it may have the form of a file,
+            {node: {"ros__parameters": {...}}}, whose nodes are in the namespace of this one unless
+            they begin with a slash.
         remappings: pairs of a name and what it becomes, or a dict.
         arguments: words for the program itself.
         ros_arguments: words after --ros-args.
@@ -121,31 +121,30 @@ class Node(ExecuteProcess):
         self, context: LaunchContext, namespace: str, name: str
     ) -> Iterator[str | GeneratedFile]:
         for parameters in [*context.parameters, *self.parameters]:
-            if isinstance(parameters, Mapping):
-                by_node = parameters_by_node(parameters, name)
-                try:
-                    texts = [
-                        parameter_file_text(
-                            _whole_name(namespace, node) if node else "/**",
-                            evaluate_parameters(context, values),
-                        )
-                        for node, values in by_node.items()
-                        if values
-                    ]
-                except ParameterError as error:
-                    raise ParameterError(f"{self.process_name(context)}: {error}") from None
-                if texts:
-                    yield GeneratedFile(".yaml", "".join(texts))
-                continue
-            path = perform_text(context, parameters)
-            if not os.path.isfile(path):
-                folder, name = os.path.split(os.path.abspath(path))
-                known = os.listdir(folder) if os.path.isdir(folder) else []
-                raise ParameterError(
-                    f"{self.process_name(context)}: no parameter file {path}; "
-                    + describe_known(name, known, f"{folder} holds")
-                )
-            yield path
+            try:
+                if isinstance(parameters, Mapping):
+                    file = _generated_file(context, namespace, name, parameters)
+                elif isinstance(parameters, ParameterFile):
+                    file = parameters.evaluate(context)
+                else:
+                    file = ParameterFile(parameters).evaluate(context)
+            except ParameterError as error:
+                raise ParameterError(f"{self.process_name(context)}: {error}") from None
+            if file is not None:
+                yield file
+
+
+def _generated_file(
+    context: LaunchContext, namespace: str, name: str, parameters: Mapping[Any, Any]
+) -> GeneratedFile | None:
+    texts = [
+        parameter_file_text(
+            _whole_name(namespace, node) if node else "/**", evaluate_parameters(context, values)
+        )
+        for node, values in parameters_by_node(parameters, name).items()
+        if values
+    ]
+    return GeneratedFile(".yaml", "".join(texts)) if texts else None
 
 
 def _whole_name(namespace: str, node: str) -> str:
