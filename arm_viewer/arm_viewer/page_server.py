@@ -13,6 +13,7 @@ import rich
 import viser
 import websockets.asyncio.server
 from websockets.asyncio.server import ServerConnection, serve
+from websockets.exceptions import InvalidHandshake
 from websockets.http11 import Request, Response
 
 from arm_viewer.errors import PageError
@@ -123,6 +124,7 @@ def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
         # Every request is worth a line to websockets, but not to the user.
         logger = logging.getLogger(f"{__name__}.requests")
         logger.setLevel(logging.WARNING)
+        logger.addFilter(_as_sentence)
         return serve(handler, sock=listener, process_request=gate, logger=logger, **options)
 
     websockets.asyncio.server.serve = serve_guarded
@@ -130,6 +132,16 @@ def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
         yield guarded
     finally:
         websockets.asyncio.server.serve = serve
+
+
+def _as_sentence(record: logging.LogRecord) -> bool:
+    """Say what is wrong with a request, which is not ours to mend, without a traceback."""
+    error = record.exc_info[1] if record.exc_info else None
+    if isinstance(error, InvalidHandshake):
+        record.msg = f"{record.getMessage()}: {error.__cause__ or error}"
+        record.args = ()
+        record.exc_info = None
+    return True
 
 
 def _answer(inner: Answer, connection: ServerConnection, request: Request) -> Response | None:

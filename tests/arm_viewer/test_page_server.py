@@ -1,6 +1,8 @@
 """The page's server, met by bare sockets."""
 
 import http.client
+import logging
+import queue
 import socket
 from types import SimpleNamespace
 
@@ -80,6 +82,33 @@ def test_a_foreign_origin_is_refused_before_the_websocket_is_accepted(server):
     response = refused.value.response
     assert response.status_code == 403
     assert FOREIGN.encode() in response.body
+
+
+@pytest.fixture
+def said():
+    """Collect what the server says of requests."""
+    records: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
+    handler = logging.Handler()
+    handler.emit = records.put
+    logger = logging.getLogger("arm_viewer.page_server.requests")
+    logger.addHandler(handler)
+    yield records
+    logger.removeHandler(handler)
+
+
+@pytest.mark.parametrize(
+    ("request_line", "reason"),
+    [(b"HEAD / HTTP/1.1", "expected GET; got HEAD"), (b"hello", "invalid HTTP request line")],
+)
+def test_what_is_no_request_of_a_page_is_told_in_a_sentence(server, said, request_line, reason):
+    with socket.create_connection((HOST, server.get_port()), timeout=TIMEOUT_S) as connection:
+        connection.sendall(request_line + b"\r\n\r\n")
+        while connection.recv(4096):
+            pass
+    record = said.get(timeout=TIMEOUT_S)
+    assert reason in record.getMessage()
+    assert "\n" not in record.getMessage()
+    assert record.exc_info is None
 
 
 def test_a_name_that_another_site_points_here_is_refused(server, get):
