@@ -1,7 +1,7 @@
 """The page in the browser, beside whatever runs."""
 
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified, ReadyPanel
-from launch_py.ros import Node
+from launch_py.ros import Node, ParameterValue
 from launch_py.substitutions import LaunchConfiguration
 
 
@@ -24,7 +24,7 @@ def generate_launch_description() -> LaunchDescription:
                 executable="arm_viewer_node",
                 parameters=[
                     {
-                        "port": port,
+                        "port": ParameterValue(port, value_type=int),
                         "publish_joint_states": LaunchConfiguration("publish_joint_states"),
                     }
                 ],
