@@ -96,6 +96,10 @@ def test_an_equals_sign_without_colon(refused, demo):
     assert "launch arguments are written name:=value" in refused(str(demo), "world=objects")
 
 
+def test_a_value_without_a_name(refused, demo):
+    assert "':=objects' has no name before ':='" in refused(str(demo), ":=objects")
+
+
 def test_a_package_without_a_file_lists_its_files(refused, demo):
     assert "which launch file of package 'demo'? It has demo.launch.py" in refused("demo")
 
