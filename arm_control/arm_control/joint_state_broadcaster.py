@@ -38,10 +38,10 @@ class JointStateBroadcasterParameters:
         False, "Publish on ~/joint_states and ~/dynamic_joint_states", read_only=True
     )
     joints: tuple[str, ...] = parameter(
-        (), "Joints to publish, in this order; empty for all", read_only=True
+        (), "Joints to publish, in this order; only together with interfaces", read_only=True
     )
     interfaces: tuple[str, ...] = parameter(
-        (), "State interfaces of each joint; empty for all", read_only=True
+        (), "State interfaces of each joint; only together with joints", read_only=True
     )
     extra_joints: tuple[str, ...] = parameter(
         (), "Joints without hardware, published as zeros", read_only=True
@@ -89,7 +89,8 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
         self.sink: JointStateSink | None = None
-        self._parameters = JointStateBroadcasterParameters()
+        self._joints: tuple[str, ...] = ()
+        self._interfaces: tuple[str, ...] = ()
         self._quantity_of: dict[str, str] = {}
         self._plan: JointStatePlan | None = None
         self._movable_joints = self._read_movable_joints()
@@ -100,21 +101,26 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
 
     def state_interface_configuration(self) -> InterfaceConfiguration:
         """Read joints x interfaces of the parameters, or everything where one is empty."""
-        joints, interfaces = self.parameters.joints, self.parameters.interfaces
-        if not joints or not interfaces:
+        if not self._joints:
             return InterfaceConfiguration.all()
         return InterfaceConfiguration.individual(
-            f"{joint}/{interface}" for joint in joints for interface in interfaces
+            f"{joint}/{interface}" for joint in self._joints for interface in self._interfaces
         )
 
     def on_configure(self, parameters: JointStateBroadcasterParameters) -> None:
-        """Take the parameters."""
-        self._parameters = parameters
+        """Take the parameters; joints or interfaces without the other choose nothing."""
+        super().on_configure(parameters)
+        self._joints, self._interfaces = parameters.joints, parameters.interfaces
+        if bool(self._joints) != bool(self._interfaces):
+            self.logger.warning(
+                "'%s' parameter is empty. All available state interfaces will be published",
+                "interfaces" if self._joints else "joints",
+            )
+            self._joints = self._interfaces = ()
         self._quantity_of = {}
-        listed = parameters.interfaces if parameters.joints else ()
         for quantity in QUANTITIES:
             interface = getattr(parameters.map_interface_to_joint_state, quantity)
-            if quantity in listed:
+            if quantity in self._interfaces:
                 if interface != quantity:
                     self.logger.warning(
                         "interface '%s' is not shown as '%s', because '%s' is among the "
@@ -137,7 +143,7 @@ class JointStateBroadcaster(Controller[JointStateBroadcasterParameters]):
         self._plan = plan_joint_states(
             self.states.names,
             quantity_of=self._quantity_of,
-            ordered_joints=self.parameters.joints,
+            ordered_joints=self._joints,
             allowed_joints=self._allowed_joints(),
             extra_joints=self.parameters.extra_joints,
             left_out=self._find_what_is_no_quantity(),

@@ -133,9 +133,19 @@ def test_joints_and_interfaces_choose_and_order(start: Start) -> None:
     np.testing.assert_array_equal(sink.published[0][1], [0, 0, 0, 0, np.nan, np.nan])
 
 
-def test_joints_alone_choose_the_joints_of_joint_states(start: Start) -> None:
-    manager, sink = start(Parameters(joints=("j3", "j1")))
-    assert sink.layouts[0].joints == ("j3", "j1")
+@pytest.mark.parametrize(
+    ("parameters", "empty"),
+    [
+        (Parameters(joints=("j3", "j1")), "interfaces"),
+        (Parameters(interfaces=("position",)), "joints"),
+    ],
+)
+def test_joints_or_interfaces_alone_choose_nothing(
+    start: Start, caplog: pytest.LogCaptureFixture, parameters: Parameters, empty: str
+) -> None:
+    manager, sink = start(parameters)
+    assert f"'{empty}' parameter is empty" in caplog.text
+    assert sink.layouts[0].joints == ("j0", "j1", "j2", "j3")
     assert len(manager.list_controllers()[0].required_state_interfaces) == 12
 
 
