@@ -111,8 +111,8 @@ class Pacer:
         """Forget the deadlines, for example after a pause: the next tick is due now."""
         self._due_s = self._window_start_s = self._began_s = self._now_s()
         self._last_began_s = nan
-        self._window_ticks = self._window_overruns = 0
-        self._window_lost_s = self._window_max_lag_s = 0.0
+        self._window_ticks = 0
+        self._forget_unsaid(self._due_s)
         self.runs.clear()
 
     def remaining_s(self) -> float:
@@ -125,11 +125,11 @@ class Pacer:
         if not self.wall_period_s:
             return
         self._lag_s = lag_s = max(0.0, now_s - self._due_s)
-        if lag_s > self._window_max_lag_s:
-            self._window_max_lag_s = lag_s
+        if lag_s > self._unsaid_max_lag_s:
+            self._unsaid_max_lag_s = lag_s
             self._max_lag_s = max(self._max_lag_s, lag_s)
         if lag_s > self._catch_up_s:
-            self._window_lost_s += lag_s - self._catch_up_s
+            self._unsaid_lost_s += lag_s - self._catch_up_s
             self._lost_s += lag_s - self._catch_up_s
             self._due_s = now_s - self._catch_up_s
         self._due_s += self.wall_period_s
@@ -143,26 +143,36 @@ class Pacer:
         self._window_ticks += 1
         if self.wall_period_s and now_s > self._due_s:
             self._overruns += 1
-            self._window_overruns += 1
+            self._unsaid_overruns += 1
         if now_s - self._window_start_s >= WINDOW_S:
             self._close_window(now_s)
 
     def _close_window(self, now_s: float) -> None:
         elapsed_s = now_s - self._window_start_s
         self._achieved_factor = self._window_ticks * self.period_s / elapsed_s
-        warn_again = now_s - self._warned_s >= WARNING_INTERVAL_S
-        if self._window_lost_s and self.print_warnings and warn_again:
+        self._unsaid_ticks += self._window_ticks
+        self._window_start_s, self._window_ticks = now_s, 0
+        if self._unsaid_lost_s:
+            if now_s - self._warned_s < WARNING_INTERVAL_S:
+                return  # Said with what comes until then: nothing that is given up goes unsaid.
             self._warned_s = now_s
-            logging.getLogger(__name__).warning(
-                "the control loop cannot keep its pace: real-time factor %.2f instead of %g, "
-                "%d of %d ticks overran, latest start %.1f ms after its time, %.3f s given up",
-                self._achieved_factor,
-                self._real_time_factor,
-                self._window_overruns,
-                self._window_ticks,
-                1e3 * self._window_max_lag_s,
-                self._window_lost_s,
-            )
-        self._window_start_s = now_s
-        self._window_ticks = self._window_overruns = 0
-        self._window_lost_s = self._window_max_lag_s = 0.0
+            if self.print_warnings:
+                self._warn(now_s - self._unsaid_since_s)
+        self._forget_unsaid(now_s)
+
+    def _warn(self, elapsed_s: float) -> None:
+        logging.getLogger(__name__).warning(
+            "the control loop cannot keep its pace: real-time factor %.2f instead of %g, "
+            "%d of %d ticks overran, latest start %.1f ms after its time, %.3f s given up",
+            self._unsaid_ticks * self.period_s / elapsed_s,
+            self._real_time_factor,
+            self._unsaid_overruns,
+            self._unsaid_ticks,
+            1e3 * self._unsaid_max_lag_s,
+            self._unsaid_lost_s,
+        )
+
+    def _forget_unsaid(self, now_s: float) -> None:
+        self._unsaid_since_s = now_s
+        self._unsaid_ticks = self._unsaid_overruns = 0
+        self._unsaid_lost_s = self._unsaid_max_lag_s = 0.0

@@ -166,6 +166,22 @@ def test_falling_behind_is_said_once_in_a_while(caplog: pytest.LogCaptureFixture
     assert caplog.text.count("cannot keep its pace") == 3
 
 
+def test_a_stall_soon_after_a_warning_is_said_with_the_next(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    clock = ManualClock()
+    pacer = Pacer(0.01, clock=clock)
+    run_tick(pacer, clock, 0.1)
+    while clock.now_s() < 2.0:
+        run_tick(pacer, clock)
+    assert caplog.text.count("cannot keep its pace") == 1
+    run_tick(pacer, clock, 1.0 + CATCH_UP_S)
+    while clock.now_s() < 1.5 * WARNING_INTERVAL_S:
+        run_tick(pacer, clock)
+    assert caplog.text.count("cannot keep its pace") == 2
+    assert "0.990 s given up" in caplog.text
+
+
 def test_warnings_can_be_switched_off(caplog: pytest.LogCaptureFixture) -> None:
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock, print_warnings=False)
