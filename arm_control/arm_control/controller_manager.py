@@ -10,7 +10,7 @@ from arm_control.controller import Controller
 from arm_control.controller_chain import ControllerChain
 from arm_control.controller_lifecycle import ControllerLifecycle
 from arm_control.controller_switch import SwitchRequest, SwitchResult
-from arm_control.controller_switcher import ControllerSwitcher
+from arm_control.controller_switcher import DEFAULT_NAME, ControllerSwitcher
 from arm_control.errors import ControllerManagerError
 from arm_control.guarded import log_failure, raise_failure
 from arm_control.hardware import Hardware
@@ -68,6 +68,7 @@ class ControllerManager:
         update_rate_hz: int,
         policy: ManagerPolicy = DEFAULT_POLICY,
         limits: Mapping[str, JointLimits] = NO_LIMITS,
+        name: str = DEFAULT_NAME,
     ) -> None:
         """Take over the components, all still unconfigured; see `bring_up`.
 
@@ -76,6 +77,7 @@ class ControllerManager:
             update_rate_hz: ticks per second.
             policy: what to do where there is a choice.
             limits: by joint, for the commands of joints that are to be kept within them.
+            name: of its node, fully qualified, as users are to write it.
 
         Raises:
             ControllerManagerError: the rate is not positive, or names are used twice.
@@ -101,7 +103,7 @@ class ControllerManager:
         self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
         self._chain = ControllerChain(self._controllers, self.resources.exported)
         self._switcher = ControllerSwitcher(
-            self._controllers, self.resources, self._lifecycle, self._chain
+            self._controllers, self.resources, self._lifecycle, self._chain, name
         )
         self._keeper = HardwareKeeper(
             self._controllers, self.resources, self._chain, self._switcher, policy

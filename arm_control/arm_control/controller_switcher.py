@@ -12,6 +12,9 @@ from arm_control.switch_planner import SwitchPlan, SwitchPlanner, SwitchRefusedE
 
 logger = logging.getLogger(__name__)
 
+DEFAULT_NAME = "/controller_manager"
+"""The manager's node that command lines take for granted; another one has to be named."""
+
 NOTHING_TO_SWITCH = (
     "After checking the controllers, no controllers need to be activated or deactivated."
 )
@@ -33,6 +36,7 @@ class ControllerSwitcher:
         resources: ResourceManager,
         lifecycle: ControllerLifecycle,
         chain: ControllerChain,
+        manager_name: str,
     ) -> None:
         """Watch over the manager's controllers.
 
@@ -41,11 +45,13 @@ class ControllerSwitcher:
             resources: the hardware.
             lifecycle: takes a single controller from state to state.
             chain: tells who commands whom.
+            manager_name: of the manager's node, fully qualified.
         """
         self._controllers = controllers
         self._resources = resources
         self._lifecycle = lifecycle
         self._chain = chain
+        self._manager_option = "" if manager_name == DEFAULT_NAME else f" -c {manager_name}"
 
     def switch(self, request: SwitchRequest) -> SwitchResult:
         """Do what was asked, as far as its strictness and the state of things allow."""
@@ -89,10 +95,12 @@ class ControllerSwitcher:
         fallbacks = dict.fromkeys(name for c in failed for name in c.fallback_names)
         if not fallbacks:
             logger.error(
-                "Once the cause is gone, activate again with: spawner %s "
-                "(or: ros2 control switch_controllers --activate %s)",
+                "Once the cause is gone, activate again with: spawner %s%s "
+                "(or: ros2 control switch_controllers --activate %s%s)",
                 names,
+                self._manager_option,
                 names,
+                self._manager_option,
             )
             return
         logger.error("Activating fallback controllers : [ %s ]", " ".join(fallbacks))

@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
-from arm_control import SwitchRequest
+from arm_control import ControllerManager, SwitchRequest
 from arm_control.controller_switch import Strictness
+from arm_control.testing import fake_hardware
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 
@@ -27,6 +28,19 @@ def test_a_controller_whose_update_fails_is_deactivated(
     assert (len(probe.updates), len(good.updates)) == (1, 2)
     assert "Deactivating controllers : [ bad ] as their update resulted in an error!" in caplog.text
     assert "activate again with: spawner bad" in caplog.text
+
+
+def test_the_way_back_names_a_manager_that_is_not_called_as_usual(
+    bench: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    bench.manager = ControllerManager([fake_hardware()], 100, name="/left/controller_manager")
+    bench.configure("bad").fails_update = True
+    bench.manager.switch_controller(SwitchRequest(("bad",)))
+    bench.tick()
+    assert (
+        "activate again with: spawner bad -c /left/controller_manager (or: ros2 control "
+        "switch_controllers --activate bad -c /left/controller_manager)"
+    ) in caplog.text
 
 
 def test_a_failed_controller_gives_its_interfaces_back(bench: Any) -> None:

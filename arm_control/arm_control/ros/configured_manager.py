@@ -5,28 +5,31 @@ from collections.abc import Sequence
 from arm_control.controller_manager import NO_LIMITS, ControllerManager
 from arm_control.hardware import Hardware
 from arm_control.joint_limits import read_joint_limits
+from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_control.ros.manager_settings import ManagerSettings
 
 
 def configured_manager(
-    hardware: Sequence[Hardware], settings: ManagerSettings, robot_description: str
+    hardware: Sequence[Hardware], node: ControllerManagerNode, robot_description: str
 ) -> ControllerManager:
     """Return a manager whose components are still unconfigured; see `bring_up`.
 
     Args:
         hardware: the components' drivers.
-        settings: of its node.
+        node: has its settings and its name.
         robot_description: the URDF that the hardware was made from; has the limits of commands.
 
     Raises:
         ArmControlError: names are used twice, or limits that are asked for cannot be read.
     """
+    settings = node.settings
     limited = settings.enforce_command_limits
     return ControllerManager(
         hardware,
         settings.update_rate,
         settings.policy,
         read_joint_limits(robot_description) if limited else NO_LIMITS,
+        node.get_fully_qualified_name(),
     )
 
 

@@ -126,7 +126,7 @@ def _manager(description: str, node: ControllerManagerNode) -> ControllerManager
                 "it has no <ros2_control> block, so nothing says what hardware there is"
             )
         hardware = [create_hardware(info) for info in infos]
-        return configured_manager(hardware, node.settings, description)
+        return configured_manager(hardware, node, description)
     except (ArmControlError, DescriptionError) as error:
         logger.error(
             "The robot description cannot be used: %s. Correct it and publish it again.", error

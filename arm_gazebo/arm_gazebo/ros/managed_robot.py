@@ -91,7 +91,7 @@ class ManagedRobot:
             SimulatedHardware(simulation, info, self.instruments) for info in self._hardware_info
         ]
         description = self._settings.robot_description
-        self.manager = configured_manager(self.hardware, self.node.settings, description)
+        self.manager = configured_manager(self.hardware, self.node, description)
         bring_up(self.manager, self.node.settings)
 
     def serve(self, loop: ControlLoop, executor: Executor) -> None:

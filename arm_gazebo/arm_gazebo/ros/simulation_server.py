@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
-from arm_gazebo.model.world_file import find_world
+from arm_gazebo.model.world_path import find_world
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot.part import RobotInWorld

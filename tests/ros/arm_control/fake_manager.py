@@ -90,7 +90,7 @@ def application(
     hardware = fake_hardware(
         JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
     )
-    manager = configured_manager([hardware], node.settings, URDF)
+    manager = configured_manager([hardware], node, URDF)
     bring_up(manager, node.settings)
     period_s = 1.0 / node.settings.update_rate
     loop = ControlLoop(
