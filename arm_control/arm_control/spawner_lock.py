@@ -15,6 +15,8 @@ logger = logging.getLogger(__name__)
 ATTEMPTS = 5
 ATTEMPT_S = 20.0
 RETRY_DELAY_S = 3.0
+SILENT_S = 1.0
+"""Spawners started together wait for each other no longer than that, which needs no word."""
 _POLL_S = 0.05
 
 
@@ -58,11 +60,16 @@ def spawner_lock(
 
 
 def _lock(file: int, path: Path, wait: Callable[[float], bool], clock: Clock) -> None:
+    started_s = clock.now_s()
+    said = False
     for attempt in range(1, ATTEMPTS + 1):
         deadline_s = clock.now_s() + ATTEMPT_S
         while clock.now_s() < deadline_s:
             if _try_lock(file):
                 return
+            if not said and clock.now_s() - started_s >= SILENT_S:
+                logger.info("waiting for another spawner, which holds %s", path)
+                said = True
             _pause(wait, _POLL_S)
         logger.warning(
             "another spawner has held %s for %g s (attempt %d of %d)",

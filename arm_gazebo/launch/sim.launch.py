@@ -1,7 +1,8 @@
 """Any robot in any world: the simulation with its controllers, and the state publisher."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -94,22 +95,41 @@ def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
     ]
 
 
+@contextmanager
+def usage_errors() -> Iterator[None]:
+    """Say what an argument names wrongly as the packages say it, and no more."""
+    from arm_description.errors import DescriptionError
+    from arm_gazebo.errors import GazeboError
+
+    try:
+        yield
+    except (DescriptionError, GazeboError) as error:
+        raise UsageError(str(error)) from error
+
+
 def take_gz_args(context: LaunchContext) -> None:
     """Let Gazebo's words stand for the arguments of this file that nobody has given."""
     from arm_gazebo.launching.gz_arguments import launch_arguments
 
-    for name, value in launch_arguments(context.launch_configurations["gz_args"]).items():
+    with usage_errors():
+        given = launch_arguments(context.launch_configurations["gz_args"])
+    for name, value in given.items():
         context.launch_configurations.setdefault(name, value)
 
 
 def simulate(context: LaunchContext) -> list[Action]:
     """Return the nodes of a robot, or of several, and what was made up for them."""
+    with usage_errors():
+        return nodes(context.launch_configurations)
+
+
+def nodes(words: Mapping[str, str]) -> list[Action]:
+    """Return them after a look at what the arguments name, before anything starts."""
     # Here, so that --show-args needs nothing but this file.
     from arm_gazebo.launching.robot_setup import set_up_robot
     from arm_gazebo.model.world_path import find_world
     from arm_gazebo.window.display import check_display
 
-    words = context.launch_configurations
     if words["headless"] == "false":
         check_display()
     find_world(words["world"])  # The simulation would say so, too, but among what has started.

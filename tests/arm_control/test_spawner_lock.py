@@ -12,6 +12,7 @@ from arm_control.spawner_lock import (
     ATTEMPT_S,
     ATTEMPTS,
     RETRY_DELAY_S,
+    SILENT_S,
     spawner_lock,
     spawner_lock_path,
 )
@@ -73,16 +74,22 @@ def test_it_is_held_inside_and_free_after(path: Path) -> None:
         assert is_locked(path)
 
 
-def test_it_waits_for_another(path: Path, other: int) -> None:
+@pytest.mark.parametrize("released_s", [0.5, 2.0])
+def test_it_waits_for_another_and_says_so_when_that_takes_long(
+    path: Path, other: int, released_s: float, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
     waiting = Waiting()
 
     def wait(seconds: float) -> bool:
-        if waiting.clock.now_s() > 2.0:
+        if waiting.clock.now_s() > released_s:
             fcntl.flock(other, fcntl.LOCK_UN)
         return waiting(seconds)
 
     with spawner_lock(path, wait, waiting.clock):
-        assert 2.0 < waiting.clock.now_s() < 3.0
+        assert released_s < waiting.clock.now_s() < released_s + 0.5
+    said = [f"waiting for another spawner, which holds {path}"]
+    assert caplog.messages == (said if released_s > SILENT_S else [])
 
 
 def test_it_gives_up_after_its_attempts(

@@ -18,6 +18,8 @@ import pytest
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
+ANSWER_TIMEOUT_S = 0.5  # then the question is put again
+NO_TYPE_HASH = f"RIHS01_{0:064}"  # well-formed, so that nobody complains of it
 
 
 class Launched:
@@ -224,8 +226,7 @@ class Client:
             lambda: publisher.get_subscription_count() >= matches,
             f"{matches} subscriptions on {topic}",
         )
-        # A best-effort reader misses what is sent before it has matched in its turn.
-        self._stop.wait(1.0)
+        self.be_known_to_readers(publisher.topic_name)
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
@@ -233,13 +234,64 @@ class Client:
         client = self.node.create_client(service_type, name)
         if not client.wait_for_service(timeout_sec=timeout_s):
             pytest.fail(f"no service {name} within {timeout_s} s")
-        # It may not know of its client yet, and an answer would be lost.
-        self._stop.wait(0.2)
+        self.be_known_to_server(client.service_name)
         return self.result_of(client.call_async(request), name, timeout_s)
+
+    def be_known_to_readers(self, topic: str, plain: bool = False) -> None:
+        """Block until the processes that read a topic know of all that this node has.
+
+        What is sent before that may be lost, best-effort messages and answers alike. A process
+        hears of another's endpoints in their order: one who answers a client knows all that was
+        made before that client. Every node answers for its process, by `get_type_description`.
+        """
+        from type_description_interfaces.srv import GetTypeDescription
+
+        question = GetTypeDescription.Request(type_hash=NO_TYPE_HASH)
+        askers: dict[str, Any] = {}
+        known: set[bytes] = set()
+
+        def knows(reader: Any) -> bool:
+            if "UNKNOWN" in reader.node_name:
+                return False  # its name comes by a topic of its own, later
+            node = f"{reader.node_namespace.rstrip('/')}/{reader.node_name}"
+            if node not in askers:
+                service = f"{node}/get_type_description"
+                askers[node] = self.node.create_client(GetTypeDescription, service)
+            return self._answers(askers[node], question)
+
+        def known_to_all() -> bool:
+            readers = self.node.get_subscriptions_info_by_topic(topic, no_mangle=plain)
+            processes = {bytes(reader.endpoint_gid)[:12]: reader for reader in readers}
+            known.update(p for p, reader in processes.items() if p not in known and knows(reader))
+            return bool(processes) and processes.keys() <= known
+
+        self.wait_until(known_to_all, f"known to the readers of {topic}")
+        for asker in askers.values():
+            self.run(lambda asker=asker: self.node.destroy_client(asker), topic)
+
+    def be_known_to_server(self, service: str) -> None:
+        """Block until the process that serves a service knows of all that this node has."""
+        self.be_known_to_readers(f"rq{service}Request", plain=True)
+
+    @staticmethod
+    def _answers(client: Any, request: object) -> bool:
+        if not client.service_is_ready():
+            return False
+        answered = threading.Event()
+        future = client.call_async(request)
+        future.add_done_callback(lambda _: answered.set())
+        if not answered.wait(ANSWER_TIMEOUT_S):
+            client.remove_pending_request(future)
+        return answered.is_set()
 
     def run(self, function: Callable[[], object], what: str) -> Any:
         """Run a function on the executor's thread; return what it returns."""
         return self.result_of(self.executor.create_task(function), what)
+
+    @staticmethod
+    def collector() -> Collector:
+        """Return a callback that collects messages."""
+        return Collector()
 
     @staticmethod
     def result_of(future: Any, what: str, timeout_s: float = WAIT_TIMEOUT_S) -> Any:
@@ -257,119 +309,6 @@ class Client:
         self.executor.shutdown()
         self.node.destroy_node()
         self.context.try_shutdown()
-
-
-class SentGoal:
-    """A goal from the sight of its client.
-
-    Attributes:
-        accepted: whether the server took it.
-        feedback: what came of it so far.
-    """
-
-    def __init__(
-        self, caller: "ActionCaller", handle: Any, ended: Any, feedback: Collector
-    ) -> None:
-        self.accepted = handle.accepted
-        self.feedback = feedback
-        self._caller = caller
-        self._handle = handle
-        self._ended = ended
-
-    def wait(self) -> Any:
-        """Wait for the end; return the answer with its `status` and `result`."""
-        return Client.result_of(self._ended, "the goal")
-
-    def wait_until_running(self) -> None:
-        """Wait for the first feedback: the client hears of its acceptance before the controller."""
-        self.feedback.wait_for(1)
-
-    def ended(self) -> bool:
-        """Return whether there is a result."""
-        return self._ended.done()
-
-    def cancel(self) -> int:
-        """Ask for the end; return how many goals are being cancelled."""
-        return len(self._caller.await_on_executor(self._handle.cancel_goal_async).goals_canceling)
-
-
-class ActionCaller:
-    """Sends goals to one action.
-
-    rclpy's action client notes a request only after it has sent it: from another thread than the
-    executor's, an answer that is quick enough is thrown away. So all of it happens there.
-    """
-
-    def __init__(self, client: Client, action_type: type, name: str) -> None:
-        from rclpy.action.client import ActionClient
-
-        self._type = action_type
-        self._client = client
-        self._name = name
-        self._action = client.run(lambda: ActionClient(client.node, action_type, name), name)
-        self._servers: set[bytes] = set()
-
-    def wait_for_server(self) -> None:
-        """Wait until there is a server, another one than the last time."""
-        known = self._servers
-
-        def found() -> bool:
-            self._servers = self._find_servers()
-            ready = self._action.server_is_ready()
-            return ready and len(self._servers) == 1 and self._servers != known
-
-        self._client.wait_until(found, f"a new server of {self._name}")
-        # It may not know of its client yet, and an answer would be lost.
-        threading.Event().wait(0.2)
-
-    def send(self, **fields: object) -> SentGoal:
-        """Send a goal with these fields; return it once it is accepted or rejected."""
-        if not self._servers:
-            self.wait_for_server()
-        feedback = Collector()
-
-        async def carry_out() -> tuple[Any, Any]:
-            handle = await self._action.send_goal_async(
-                self._type.Goal(**fields), lambda message: feedback(message.feedback)
-            )
-            return handle, handle.get_result_async() if handle.accepted else None
-
-        return SentGoal(self, *self.await_on_executor(carry_out), feedback)
-
-    def send_and_forget(self, **fields: object) -> None:
-        """Send a goal and wait for nothing; to be called on the executor's thread."""
-        self._action.send_goal_async(self._type.Goal(**fields))
-
-    def await_on_executor(self, function: Callable[[], Any]) -> Any:
-        """Return what the awaitable results in that a function returns, on the executor."""
-
-        async def carry_out() -> Any:
-            return await function()
-
-        return self._client.run(carry_out, self._name)
-
-    def close(self) -> None:
-        """Destroy it, and wait for that."""
-        self._client.run(self._action.destroy, self._name)
-
-    def _find_servers(self) -> set[bytes]:
-        status = f"{self._name}/_action/status"
-        found = self._client.node.get_publishers_info_by_topic(status)
-        return {bytes(info.endpoint_gid) for info in found}
-
-
-@pytest.fixture
-def action_caller(client: Client) -> Iterator[Callable[[type, str], ActionCaller]]:
-    """Return a function that makes a client of an action, from its type and name."""
-    callers: list[ActionCaller] = []
-
-    def make(action_type: type, name: str) -> ActionCaller:
-        callers.append(ActionCaller(client, action_type, name))
-        return callers[-1]
-
-    yield make
-    for caller in callers:
-        caller.close()
 
 
 @pytest.fixture

@@ -81,11 +81,14 @@ def test_an_unknown_joint_in_the_controllers_file_is_named(launch, tmp_path):
     [
         (["world:=/no/such/world.xml"], ["/no/such/world.xml", "empty", "objects"]),
         (["physics_step:=0.003"], ["0.003", "0.01"]),
-        (["controllers:=/no/such.yaml"], ["/no/such.yaml"]),
+        (
+            ["controllers:=/no/such.yaml"],
+            ["launch: cannot read the controllers' file /no/such.yaml: No such file or directory"],
+        ),
         (["headless:=false"], ["DISPLAY is not set", "headless:=false"]),
         (["gz_args:=-r -v 1 kitchen.sdf"], ["'kitchen'", "empty", "objects"]),
         (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], ["/no/such/lab.xml"]),
-        (["gz_args:=objects.sdf"], ["lacks -r"]),
+        (["gz_args:=objects.sdf"], ["launch: gz_args", "lacks -r"]),
     ],
 )
 def test_nonsense_is_refused_with_a_sentence(launch, arguments, words):

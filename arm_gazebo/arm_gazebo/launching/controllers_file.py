@@ -12,9 +12,11 @@ from typing import Any
 
 from arm_description.names import listing
 from arm_gazebo.errors import SettingsError
+from arm_gazebo.launching.settings_file import parse_yaml, read_text
 
 MANAGER = "controller_manager"
 PARAMETERS = "ros__parameters"
+TITLE = "the controllers' file"
 Controllers = Path | Mapping[Any, Any]
 """A file of controllers, or the content of one."""
 
@@ -44,13 +46,13 @@ def fill_in(path: Path, arguments: Mapping[str, str]) -> Controllers:
     Raises:
         SettingsError: the file cannot be read, or has a place for an argument that is not there.
     """
-    text = _text(path)
+    text = read_text(path, TITLE)
     if not _ARGUMENT.search(text):
         return path
     unknown = [name for name in _ARGUMENT.findall(text) if name not in arguments]
     if unknown:
         raise SettingsError(
-            f"the controllers' file {path} has ${{{unknown[0]}}}, which is no argument of the "
+            f"{TITLE} {path} has ${{{unknown[0]}}}, which is no argument of the "
             f"robot; it has {listing(sorted(arguments))}"
         )
     return _content(_ARGUMENT.sub(lambda place: arguments[place[1]], text), path)
@@ -104,28 +106,15 @@ def controllers_below(namespace: str, controllers: Controllers) -> Mapping[str, 
 
 def _read(controllers: Controllers) -> Mapping[Any, Any]:
     if isinstance(controllers, Path):
-        return _content(_text(controllers), controllers)
+        return _content(read_text(controllers, TITLE), controllers)
     return controllers
 
 
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise SettingsError(f"cannot read the controllers' file {path}: {error}") from error
-
-
 def _content(text: str, path: Path) -> Mapping[Any, Any]:
-    import yaml  # Only here: most launches name their controllers.
-
-    try:
-        content = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        reason = " ".join(str(error).split())
-        raise SettingsError(f"the controllers' file {path} is not YAML: {reason}") from error
+    content = parse_yaml(text, path, TITLE)
     if not isinstance(content, Mapping) or not list(_controllers(content)):
         raise SettingsError(
-            f"the controllers' file {path} names no controllers; it needs "
+            f"{TITLE} {path} names no controllers; it needs "
             f"{MANAGER}: {PARAMETERS}: NAME: type: TYPE"
         )
     return content

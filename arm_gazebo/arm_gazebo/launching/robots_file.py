@@ -12,7 +12,9 @@ from typing import Any
 from arm_description.names import listing
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.robot_setup import SPAWN_AUTO
+from arm_gazebo.launching.settings_file import parse_yaml, read_text
 
+TITLE = "the robots' file"
 NAMESPACE = re.compile(r"[A-Za-z]\w*", re.ASCII)
 JOINED: Mapping[str, Callable[[list[str]], str]] = {
     "model_args": shlex.join,
@@ -51,23 +53,15 @@ def read_robots_file(path: Path | str) -> dict[str, RobotRequest]:
     Raises:
         SettingsError: the file cannot be read, or says something that makes no sense.
     """
-    import yaml  # Only here: a single robot needs no file.
-
     file = Path(path).expanduser().absolute()
-    try:
-        content = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SettingsError(f"cannot read the robots' file {file}: {error}") from error
-    except yaml.YAMLError as error:
-        reason = " ".join(str(error).split())
-        raise SettingsError(f"the robots' file {file} is not YAML: {reason}") from error
+    content = parse_yaml(read_text(file, TITLE), file, TITLE)
     if not isinstance(content, Mapping) or not content:
-        raise SettingsError(f"the robots' file {file} names no robots; it needs NAMESPACE: model:")
+        raise SettingsError(f"{TITLE} {file} names no robots; it needs NAMESPACE: model:")
     return {str(name): _request(file, str(name), entry) for name, entry in content.items()}
 
 
 def _request(file: Path, name: str, entry: object) -> RobotRequest:
-    where = f"the robots' file {file}, '{name}'"
+    where = f"{TITLE} {file}, '{name}'"
     if not NAMESPACE.fullmatch(name):
         raise SettingsError(f"{where}: no namespace; it takes letters, digits and underscores")
     if not isinstance(entry, Mapping) or not entry.get("model"):

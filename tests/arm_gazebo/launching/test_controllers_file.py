@@ -61,7 +61,8 @@ def test_a_file_without_controllers_is_refused(file, content, reason):
 
 
 def test_a_missing_file_is_named(file):
-    with pytest.raises(SettingsError, match=r"cannot read .*controllers\.yaml"):
+    sentence = f"cannot read the controllers' file {file}: No such file or directory$"
+    with pytest.raises(SettingsError, match=sentence):
         startable_controllers(file, TYPES)
 
 

@@ -70,7 +70,8 @@ def test_nonsense_is_a_sentence(file, content, sentence):
 
 
 def test_a_missing_file_is_named(file):
-    with pytest.raises(SettingsError, match=r"cannot read .*robots\.yaml"):
+    sentence = f"cannot read the robots' file {file}: No such file or directory$"
+    with pytest.raises(SettingsError, match=sentence):
         read_robots_file(file)
 
 

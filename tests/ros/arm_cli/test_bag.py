@@ -144,7 +144,7 @@ def test_a_topic_that_is_not_there_is_waited_for(start, client, tmp_path):
     command = start(f"arm bag record /joint_stats /late -o {folder}")
     command.wait_for("waiting for a publisher of /joint_stats on ROS_DOMAIN_ID=")
     command.wait_for("did you mean '/joint_states'")
-    publisher = client.publisher(TFMessage, "/late")
+    publisher = client.node.create_publisher(TFMessage, "/late", LATCHED)
     command.wait_for("Subscribed to topic '/late'")
     publisher.publish(TFMessage())
     command.wait_until(lambda: counts(folder)["/late"] == 1, "the message is in the bag")

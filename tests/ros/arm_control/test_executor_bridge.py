@@ -109,16 +109,26 @@ def test_a_function_runs_on_the_executors_thread(client: Any, bridge: Any) -> No
     assert threads == executors != [threading.get_ident()]
 
 
-def test_what_the_executor_has_yet_to_answer_is_answered_first(client: Any, bridge: Any) -> None:
+def test_what_the_executor_has_yet_to_answer_is_answered_first(
+    client: Any, bridge: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     order: list[str] = []
     asked = threading.Event()
+    followed = threading.Event()
+    create_task = client.executor.create_task
+
+    def create_following_task(function: Any) -> Any:
+        task = create_task(function)
+        followed.set()
+        return task
 
     def take_request() -> None:
-        client.executor.create_task(lambda: order.append("answer"))
+        create_task(lambda: order.append("answer"))
         asked.set()
-        threading.Event().wait(0.2)  # so that whatever is done meanwhile comes as the latest task
+        assert followed.wait(TIMEOUT_S)  # what is asked for meanwhile is the latest task
 
-    client.executor.create_task(take_request)
+    create_task(take_request)
+    monkeypatch.setattr(client.executor, "create_task", create_following_task)
     assert asked.wait(TIMEOUT_S)
     bridge.let_executor_answer(client.executor)
     bridge.run_on_executor(client.executor, lambda: order.append("end"))

@@ -204,7 +204,7 @@ def other_spawner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 def test_it_waits_for_another_spawner(control: Any, spawn: Any, other_spawner: Any) -> None:
     spawner = spawn("position_controller")
-    assert not threading.Event().wait(2.0)
+    spawner.wait_for_line("waiting for another spawner, which holds")
     assert control.states() == {}
     assert spawner.process.poll() is None
     other_spawner.close()

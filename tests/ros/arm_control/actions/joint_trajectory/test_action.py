@@ -1,6 +1,5 @@
 """The action ~/follow_joint_trajectory, from a client's goal to its result."""
 
-import signal
 import threading
 from collections.abc import Iterator
 from itertools import pairwise
@@ -221,39 +220,13 @@ def test_the_action_works_again_after_another_configure(active: Any, send: Any) 
     assert send((0.1, HERE)).result() == REACHED
 
 
-DYING_CLIENT = """
-import threading
-from arm_node.environment import prepare_environment
-prepare_environment()
-import rclpy
-from builtin_interfaces.msg import Duration
-from control_msgs.action import FollowJointTrajectory
-from rclpy.action import ActionClient
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-rclpy.init()
-node = rclpy.create_node("dying_client")
-action = ActionClient(node, FollowJointTrajectory,
-    "/joint_trajectory_controller/follow_joint_trajectory")
-action.wait_for_server()
-threading.Event().wait(0.3)  # until the server knows its client, too
-point = JointTrajectoryPoint(positions=[0.5] * 4, time_from_start=Duration(sec=1))
-goal = FollowJointTrajectory.Goal(
-    trajectory=JointTrajectory(joint_names=["j0", "j1", "j2", "j3"], points=[point]))
-sent = action.send_goal_async(goal)
-rclpy.spin_until_future_complete(node, sent)
-sent.result().get_result_async()
-rclpy.spin_once(node, timeout_sec=0.1)
-print("accepted", sent.result().accepted, flush=True)
-threading.Event().wait()
-"""
-
-
 def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
-    active: Any, send: Any, run: Any, states: Any, manager: Any
+    active: Any, send: Any, send_and_die: Any, trajectory: Any, states: Any, manager: Any
 ) -> None:
-    dying = run("-c", DYING_CLIENT)
-    dying.wait_for_line("accepted True")
-    dying.stop(signal.SIGKILL)
+    from control_msgs.action import FollowJointTrajectory
+
+    goal = FollowJointTrajectory.Goal(trajectory=trajectory((1.0, [0.5] * 4)))
+    send_and_die(FollowJointTrajectory, f"/{NAME}/follow_joint_trajectory", goal)
     states.wait_until(
         lambda messages: messages and list(messages[-1].feedback.positions) == [0.5] * 4,
         "the goal goes on",

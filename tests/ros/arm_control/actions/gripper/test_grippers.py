@@ -1,7 +1,6 @@
 """Gripper controllers on the simulated arm's last joint, from a client's goal to its result."""
 
 import math
-import signal
 from typing import Any
 
 import pytest
@@ -156,34 +155,13 @@ def test_parallel_takes_exactly_one_position(
         )
 
 
-DYING_CLIENT = """
-import threading
-from arm_node.environment import prepare_environment
-prepare_environment()
-import rclpy
-from control_msgs.action import GripperCommand
-from rclpy.action import ActionClient
-rclpy.init()
-node = rclpy.create_node("dying_client")
-action = ActionClient(node, GripperCommand, "/gripper_controller/gripper_cmd")
-action.wait_for_server()
-threading.Event().wait(0.3)  # until the server knows its client, too
-goal = GripperCommand.Goal()
-goal.command.position = -3.0
-sent = action.send_goal_async(goal)
-rclpy.spin_until_future_complete(node, sent)
-sent.result().get_result_async()
-rclpy.spin_once(node, timeout_sec=0.1)
-print("accepted", sent.result().accepted, flush=True)
-threading.Event().wait()
-"""
-
-
 def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
-    active: Any, grip: Any, run: Any, manager: Any
+    active: Any, grip: Any, send_and_die: Any, manager: Any
 ) -> None:
-    dying = run("-c", DYING_CLIENT)
-    dying.wait_for_line("accepted True")
-    dying.stop(signal.SIGKILL)
+    from control_msgs.action import GripperCommand
+
+    goal = GripperCommand.Goal()
+    goal.command.position = BEYOND_ITS_LIMIT
+    send_and_die(GripperCommand, f"/{GRIPPER}/gripper_cmd", goal)
     assert grip(-0.2).wait().status == SUCCEEDED
     assert "callback failed" not in manager.output
