@@ -24,6 +24,7 @@ from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.gazebo_tags import GazeboTags, parse_gazebo_tags
+from arm_gazebo.robot.mimic_joints import without_released
 from arm_gazebo.robot.part import DEFAULT_OPTIONS
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
@@ -144,7 +145,7 @@ def check_description(
             )
             report.add(*built.report.findings)
             _check_strength(built, report)
-            summary = _summary(robot, built, cameras, sensors)
+            summary = _summary(without_released(robot, hardware), built, cameras, sensors)
     return DescriptionCheck(summary, _without_repeats(report.findings))
 
 

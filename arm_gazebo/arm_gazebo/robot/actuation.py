@@ -72,7 +72,10 @@ def _problem(info: JointInfo, known: dict[str, Joint], followers: dict[str, str]
     if joint.type not in SCALAR_TYPES:
         return f"a {joint.type} joint cannot be commanded; it is left out"
     if info.name in followers and info.command_interfaces:
-        return f"it mimics '{followers[info.name]}' and cannot be commanded besides"
+        return (
+            f"it mimics '{followers[info.name]}' and cannot be commanded besides, "
+            'unless mimic="false" in its <joint> there makes it independent'
+        )
     return ""
 
 

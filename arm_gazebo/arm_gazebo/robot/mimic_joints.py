@@ -1,10 +1,12 @@
 """Joints that follow others, as stiff equalities between their positions."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import mujoco
 
+from arm_control.hardware_info import HardwareInfo
 from arm_description.robot import Joint, JointLimit, Robot
 from arm_gazebo.build_report import BuildReport
 
@@ -24,6 +26,13 @@ class Following:
     leader: str
     multiplier: float
     offset: float
+
+
+def without_released(robot: Robot, hardware: Iterable[HardwareInfo]) -> Robot:
+    """Return the robot whose joints follow no other where mimic="false" in the hardware says so."""
+    free = {info.name for component in hardware for info in component.joints if info.mimic is None}
+    joints = (replace(j, mimic=None) if j.name in free else j for j in robot.joints)
+    return replace(robot, joints=tuple(joints))
 
 
 def followings(robot: Robot, report: BuildReport) -> tuple[Following, ...]:

@@ -24,7 +24,7 @@ from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.initial_state import initial_positions
 from arm_gazebo.robot.joint import RobotJoint
 from arm_gazebo.robot.link_geometry import LinkGeometry
-from arm_gazebo.robot.mimic_joints import add_equalities, followings
+from arm_gazebo.robot.mimic_joints import add_equalities, followings, without_released
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
@@ -85,7 +85,7 @@ class RobotPart:
         self._spec = spec
         self._entry = entry
         self._report = report
-        robot, options = entry.robot, entry.options
+        robot, options = without_released(entry.robot, entry.hardware), entry.options
         self._free = options.base == "free" and robot.root != WORLD_LINK
         self._bodies = self._add_links(layer)
         self._follow = followings(robot, report)

@@ -88,6 +88,34 @@ def test_command_interface_on_a_follower_is_left_out(parts, chain):
     assert built.model.nu == 1
 
 
+def released(parts, urdf, *names):
+    """Return the URDF with a second component that commands these followers by themselves."""
+    block = parts.ros2_control(names).replace('"sim"', '"other"')
+    block = block.replace("<joint ", '<joint mimic="false" ')
+    return urdf.replace("</robot>", f"{block}</robot>")
+
+
+def test_mimic_false_in_the_hardware_makes_a_follower_independent(bench, parts, chain):
+    joints = parts.ros2_control(["a"])
+    own = parts.ros2_control(["a", "b"]).replace('name="b"', 'name="b" mimic="false"')
+    run = bench(chain().replace(joints, own))
+    assert position(run, "b") == 0.0
+    run.claim()
+    run.command(0.1, -0.3)
+    run.run(1.0)
+    assert position(run, "a") == pytest.approx(0.1, abs=1e-3)
+    assert position(run, "b") == pytest.approx(-0.3, abs=1e-3)
+    # What follows it follows it still, not what it followed.
+    assert position(run, "c") == pytest.approx(0.4, abs=1e-3)
+
+
+def test_a_released_joint_starts_at_its_own_initial_value_within_its_limits(parts, chain):
+    urdf = chain('lower="0.2" upper="1" effort="50" velocity="1"')
+    built = parts.build(released(parts, urdf, "b"))
+    assert built.joints["b"].initial == pytest.approx(0.2)
+    assert built.joints["c"].initial == pytest.approx(-0.1)
+
+
 def test_rigid_body_cannot_mimic(parts):
     urdf = parts.robot(
         parts.link("base"),
