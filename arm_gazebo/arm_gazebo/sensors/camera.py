@@ -18,7 +18,7 @@ class CameraSensor:
     """What one camera sees with, how often, and where its pictures go.
 
     Attributes:
-        name: name of the sensor, unique in the robot; the MuJoCo camera has the same.
+        name: unique in the robot, see `told_apart`; the MuJoCo camera has the same.
         link: link that carries the camera; it looks along the link's x axis, z up.
         optical_frame: frame of the messages' headers: z forward, x right, y down.
         width: picture's width in pixels.

@@ -2,8 +2,8 @@
 
 import logging
 import math
-from collections.abc import Container, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Container, Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 from arm_description.robot import Pose
@@ -17,7 +17,14 @@ from arm_gazebo.sensors.camera import (
     CameraSensor,
 )
 from arm_gazebo.sensors.camera_frames import CameraFrames
-from arm_gazebo.sensors.tags import COLOR_FORMATS, TYPES, SensorTags, sensor_elements, sensor_type
+from arm_gazebo.sensors.tags import (
+    COLOR_FORMATS,
+    TYPES,
+    SensorTags,
+    sensor_elements,
+    sensor_type,
+    told_apart,
+)
 
 logger = logging.getLogger(__name__)
 
@@ -46,15 +53,20 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
     root = parse_xml(urdf_xml, source)
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []
-    taken: dict[str, str] = {}
+    taken: dict[str, CameraSensor] = {}
     for tags in _camera_tags(root):
         tags.check_reference("link", links)
-        if any(camera.name == tags.name for camera in cameras):
-            raise tags.error("sensor", "a second camera of this name; each needs a name of its own")
+        if any((c.name, c.link) == (tags.name, tags.reference) for c in cameras):
+            raise tags.error(
+                "sensor",
+                f"a second camera of this name on link {tags.reference!r}; each needs a name of "
+                "its own",
+            )
         camera = _read_camera(tags, root, taken)
         _take_topics(camera, tags, taken)
         cameras.append(camera)
-    return tuple(cameras)
+    names = told_apart(cameras)
+    return tuple(replace(c, name=name) for c, name in zip(cameras, names, strict=True))
 
 
 def _camera_tags(root: Any) -> Iterator[SensorTags]:
@@ -104,7 +116,7 @@ def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
     return tuple(f"{topic}/{name}" for topic in topics)
 
 
-def _read_camera(tags: SensorTags, root: Any, taken: Mapping[str, str]) -> CameraSensor:
+def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSensor:
     near = tags.number("clip/near", DEFAULT_CLIP[0], lambda v: v > 0, "above 0")
     far_default = max(DEFAULT_CLIP[1], 2 * near)
     if tags.type == "camera":
@@ -165,11 +177,11 @@ def _default_info_topics(images: tuple[str, ...], taken: Container[str]) -> tupl
     return tuple(dict.fromkeys([*below, *(topic for topic in beside if topic not in taken)]))
 
 
-def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, str]) -> None:
+def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, CameraSensor]) -> None:
     for topic in camera.topics:
         if topic in taken:
-            raise tags.error("topic", f"{topic!r} is taken by camera {taken[topic]!r}")
-        taken[topic] = camera.name
+            raise tags.topic_error(topic, "camera", taken[topic])
+        taken[topic] = camera
 
 
 def _optics_in(frames: CameraFrames, frame: str, camera: Pose) -> tuple[float, ...]:

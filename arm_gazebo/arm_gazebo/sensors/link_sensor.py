@@ -41,7 +41,7 @@ class LinkSensor(ABC):
     """A sensor on a link, as the URDF describes it.
 
     Attributes:
-        name: unique in its robot.
+        name: unique in its robot; see `told_apart`.
         link: carries it.
         frame_id: of the messages' headers.
         topic: of the readings; relative ones are in the node's namespace.

@@ -1,12 +1,14 @@
 """The sensors of a URDF that MuJoCo reads: IMUs, force-torque and contact sensors."""
 
+from dataclasses import replace
+
 from arm_description.robot import Robot
 from arm_description.xml_document import parse_xml
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.force_torque import ForceTorqueSensor
 from arm_gazebo.sensors.imu import ImuSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
-from arm_gazebo.sensors.tags import SensorTags, sensor_elements, sensor_type
+from arm_gazebo.sensors.tags import SensorTags, sensor_elements, sensor_type, told_apart
 
 LINK_SENSOR_TYPES = ("imu", "force_torque", "contact")
 
@@ -33,12 +35,16 @@ def parse_link_sensors(
         tags = SensorTags(element, reference, kind)
         sensor = _read(tags, robot)
         for other in sensors:
-            if other.name == sensor.name:
-                raise tags.error("sensor", "a second sensor of this name; each needs its own")
+            if other.key == sensor.key:
+                raise tags.error(
+                    "sensor",
+                    f"a second sensor of this name on link {sensor.link!r}; each needs its own",
+                )
             if other.topic == sensor.topic:
-                raise tags.error("topic", f"{sensor.topic!r} is taken by sensor {other.name!r}")
+                raise tags.topic_error(sensor.topic, "sensor", other)
         sensors.append(sensor)
-    return tuple(sensors)
+    names = told_apart(sensors)
+    return tuple(replace(s, name=name) for s, name in zip(sensors, names, strict=True))
 
 
 def _read(tags: SensorTags, robot: Robot) -> LinkSensor:

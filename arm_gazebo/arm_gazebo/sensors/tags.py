@@ -2,8 +2,9 @@
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import Any, Protocol
 
 from arm_gazebo.errors import SensorError
 
@@ -44,6 +45,29 @@ def sensor_type(element: Any) -> str | None:
     return TYPES.get(str(element.get("type", "")).strip())
 
 
+class OnLink(Protocol):
+    """A sensor that is read: whose name it has, and where it sits."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def link(self) -> str:
+        """The link that carries it."""
+        ...
+
+
+def told_apart(sensors: Sequence[OnLink]) -> list[str]:
+    """Return names that are unique in the robot: LINK/NAME where several links have the same.
+
+    Gazebo's names are unique in their link only.
+    """
+    names = Counter(sensor.name for sensor in sensors)
+    return [s.name if names[s.name] == 1 else f"{s.link}/{s.name}" for s in sensors]
+
+
 class SensorTags:
     """One `<sensor>`.
 
@@ -74,6 +98,14 @@ class SensorTags:
         """Return an error about one tag, or attribute, of this sensor."""
         line = (self._element if element is None else element).sourceline
         return SensorError(f"{self.type} sensor {self.name!r}, <{tag}> (line {line}): {problem}")
+
+    def topic_error(self, topic: str, kind: str, owner: OnLink) -> SensorError:
+        """Return an error about a topic of this sensor that another one has."""
+        return self.error(
+            "topic",
+            f"{topic!r} is taken by {kind} {owner.name!r} of link {owner.link!r}; give one of them "
+            "another <topic>",
+        )
 
     def check_reference(self, kind: str, known: Collection[str]) -> None:
         """Check that the link or joint exists.

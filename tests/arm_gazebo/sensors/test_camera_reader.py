@@ -241,9 +241,33 @@ def test_a_camera_on_a_link_that_is_not_there_is_left_out():
     assert parse_cameras(robot(sensor(), link="head")) == ()
 
 
-def test_two_cameras_of_one_name_are_refused():
-    with pytest.raises(SensorError, match="second camera of this name"):
+def test_two_cameras_of_one_name_on_a_link_are_refused():
+    with pytest.raises(SensorError, match="second camera of this name on link 'camera_link'"):
         parse_cameras(robot(sensor("<topic>a</topic>"), sensor("<topic>b</topic>")))
+
+
+def on_two_links(left: str = "", right: str = "") -> str:
+    """Return a robot with a camera of the same name on each of two links, and one more."""
+    return robot(
+        sensor(name="other"),
+        extra=f'<gazebo reference="base_link">{sensor(left)}</gazebo>'
+        f'<gazebo reference="eye">{sensor(right)}</gazebo>',
+    )
+
+
+def test_cameras_of_one_name_on_several_links_are_told_apart_by_their_links():
+    cameras = parse_cameras(on_two_links("<topic>left/image</topic>", "<topic>right/image</topic>"))
+    assert [(c.name, c.link) for c in cameras] == [
+        ("base_link/camera", "base_link"),
+        ("eye/camera", "eye"),
+        ("other", "camera_link"),
+    ]
+    assert [c.image_topics for c in cameras[:2]] == [("left/image",), ("right/image",)]
+
+
+def test_cameras_of_one_name_on_several_links_need_topics_of_their_own():
+    with pytest.raises(SensorError, match="'camera' is taken by camera 'camera' of link 'base_l"):
+        parse_cameras(on_two_links())
 
 
 def test_two_cameras_on_one_topic_are_refused():

@@ -336,3 +336,23 @@ def test_sensors_of_the_hardware_are_state_interfaces(parts, caplog):
     hardware.read(lab.simulation.time_s, 0.01)
     angle, omega = lab.joint()
     assert states == pytest.approx([angle, omega, math.cos(angle / 2)])
+
+
+def test_imus_of_one_name_on_two_links_read_each_its_own(parts, still):
+    names = ("base/s", "load/s")
+    states = "".join(
+        f'<sensor name="{name}"><state_interface name="linear_acceleration.y"/></sensor>'
+        for name in names
+    )
+    lab = Lab(
+        still(
+            gazebo("base", "imu", "<topic>b</topic>"),
+            gazebo("load", "imu", "<topic>l</topic>"),
+            parts.ros2_control([]).replace("</ros2_control>", f"{states}</ros2_control>"),
+        )
+    )
+    lab.run(0.05)
+    up = [lab.read(name)["linear_acceleration"] for name in names]
+    assert up[0] == pytest.approx([0, 0, G], abs=1e-9)
+    assert up[1] == pytest.approx([0, G, 0], abs=1e-9)
+    assert lab.hardware[0].state_interfaces == tuple(f"{n}/linear_acceleration.y" for n in names)

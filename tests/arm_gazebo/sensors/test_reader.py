@@ -138,3 +138,25 @@ def test_two_sensors_on_one_topic_are_refused():
 
 def test_cameras_and_unknown_sensors_are_left_to_others():
     assert sensors(("hand", "camera", ""), ("hand", "sonar", "")) == ()
+
+
+def test_sensors_of_one_name_on_several_links_are_told_apart_by_their_links():
+    one, other, third = sensors(
+        ("base", "imu", "<topic>b</topic>"),
+        ("hand", "imu", "<topic>h</topic>"),
+        ("hand", "contact", ""),
+        names="aac",
+    )
+    assert (one.name, one.topic) == ("base/a", "b")
+    assert (other.name, other.topic) == ("hand/a", "h")
+    assert third.name == "c"
+
+
+def test_two_sensors_of_one_name_on_a_link_are_refused():
+    with pytest.raises(SensorError, match="a second sensor of this name on link 'hand'"):
+        sensors(("hand", "imu", ""), ("wrist", "force_torque", "<topic>t</topic>"), names="aa")
+
+
+def test_sensors_of_one_name_need_topics_of_their_own():
+    with pytest.raises(SensorError, match="'a' is taken by sensor 'a' of link 'base'; give one"):
+        sensors(("base", "imu", ""), ("hand", "imu", ""), names="aa")
