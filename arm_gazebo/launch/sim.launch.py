@@ -32,8 +32,8 @@ ROBOT_ARGUMENTS = {
     "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
     "controllers": (
         "",
-        "parameter file of the controller manager and its controllers, where ${name} is an "
-        "argument of the model; without one a position controller is made up",
+        "parameter file of the controller manager and its controllers, where ${name} or "
+        "$(var name) is an argument of the model; without one a position controller is made up",
     ),
     "spawn": (
         "auto",

@@ -45,12 +45,45 @@ def test_a_namespace_before_the_managers_name_is_passed_over(file, key):
     assert startable_controllers(file, TYPES).names == ("states",)
 
 
+NESTED = """
+%s:
+  controller_manager:
+    ros__parameters: {states: {type: a/Broadcaster}, arm: {type: a/Trajectory}}
+  arm: {ros__parameters: {joints: [j0]}}
+  hand: {ros__parameters: {joint: j0}}
+/left/controller_manager:
+  ros__parameters: {hand: {type: a/Position}}
+"""
+
+
+@pytest.mark.parametrize("namespace", ["left", "/left", "/**"])
+def test_namespaces_may_be_keys_above_the_nodes(file, namespace):
+    file.write_text(NESTED % namespace)
+    startable = startable_controllers(file, TYPES)
+    assert startable.names == ("states", "arm")
+    assert startable.remarks == ("hand does not start: arm holds 'j0'",)
+
+
+def test_a_controller_that_two_managers_have_starts_once(file):
+    file.write_text(f"left: {CONTENT}right: {CONTENT}".replace("\n", "\n  "))
+    assert startable_controllers(file, TYPES).names == ("states", "arm", "hand")
+
+
+def test_places_in_a_file_with_nested_namespaces_are_filled_node_by_node(file):
+    file.write_text(NESTED.replace("j0", "${prefix}j0") % "left")
+    content = fill_in(file, {"prefix": "p_"})
+    assert not isinstance(content, type(file))
+    assert content["/left/arm"] == {"ros__parameters": {"joints": ["p_j0"]}}
+    assert list(content["/left/controller_manager"]["ros__parameters"]) == ["states", "arm", "hand"]
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
         ("", "names no controllers"),
         ("- 1", "names no controllers"),
         ("controller_manager: {ros__parameters: {update_rate: 100}}", "names no controllers"),
+        ("left: {controller_manager: {arm: {type: a/Position}}}", "names no controllers"),
         ("a: [", "is not YAML"),
     ],
 )
@@ -82,6 +115,14 @@ def test_arguments_of_the_robot_take_their_places(file):
     assert startable_controllers(content, TYPES).names == ("states", "arm", "position", "hand")
 
 
+def test_var_stands_for_an_argument_of_the_robot_too(file):
+    """As in the files of real robots' drivers, which ROS 2's launch fills in."""
+    file.write_text(CONTENT.replace("[j0, j1]", "[$(var prefix)j0, '$( var prefix )${tool}']"))
+    content = fill_in(file, {"prefix": "left_", "tool": "gun"})
+    assert not isinstance(content, type(file))
+    assert content["arm"] == {"ros__parameters": {"joints": ["left_j0", "left_gun"]}}
+
+
 def test_a_file_without_places_stays_a_file(file):
     file.write_text(CONTENT)
     assert fill_in(file, {"prefix": "left_"}) == file
@@ -90,4 +131,7 @@ def test_a_file_without_places_stays_a_file(file):
 def test_a_place_for_no_argument_is_refused_with_those_that_are(file):
     file.write_text(CONTENT.replace("j0", "${side}j0"))
     with pytest.raises(SettingsError, match=r"\$\{side\}, which is no argument .*; it has base, p"):
+        fill_in(file, {"p": "", "base": "fixed"})
+    file.write_text(CONTENT.replace("j0", "$(var side)j0"))
+    with pytest.raises(SettingsError, match=r"has \$\(var side\), which is no argument .*; it has"):
         fill_in(file, {"p": "", "base": "fixed"})

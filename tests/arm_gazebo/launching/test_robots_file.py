@@ -80,5 +80,9 @@ def test_nodes_of_a_controllers_file_go_below_the_namespace(tmp_path):
     path.write_text(
         "controller_manager: {ros__parameters: {a: {type: x/Y}}}\n"
         "/elsewhere/a: {ros__parameters: {joints: [j]}}\n"
+        "there: {a: {ros__parameters: {joints: [j]}}}\n"
+        "/**: {a: {ros__parameters: {joints: [j]}}}\n"
     )
-    assert list(controllers_below("left", path)) == ["/left/controller_manager", "/elsewhere/a"]
+    assert list(controllers_below("left", path)) == [
+        *("/left/controller_manager", "/elsewhere/a", "/there/a", "/left/**/a"),
+    ]
