@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.robot import Inertial, Joint, Link, Pose, Robot
+from arm_description.transform_tree import STANDING
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.free_name import free_name
@@ -93,7 +94,7 @@ class BodyTree:
             )
             self._bodies[joint.child] = body
             self._add_joints(body, joint)
-            self._add_link(body, self._robot.link(joint.child), moves=joint.type != "fixed")
+            self._add_link(body, self._robot.link(joint.child), moves=joint.type not in STANDING)
         return self._bodies
 
     def _add_root(self) -> None:
@@ -176,11 +177,13 @@ class BodyTree:
                 name = self._joint_name(f"{joint.name}_rotation")
                 body.add_joint(self._default, name=name, type=BALL)
             case "planar":
-                for axis, direction in zip("xy", _plane(joint.axis), strict=True):
-                    name = self._joint_name(f"{joint.name}_{axis}")
-                    body.add_joint(self._default, name=name, type=SLIDE, axis=direction)
-                name = self._joint_name(f"{joint.name}_yaw")
-                body.add_joint(self._default, name=name, type=HINGE, axis=joint.axis)
+                # Nothing could stop it, and /tf has the link where the joint's origin is.
+                self._report.repair(
+                    f"joint '{joint.name}'",
+                    "a planar joint can be neither commanded nor observed; link "
+                    f"'{joint.child}' is fixed to '{joint.parent}'",
+                    joint.line,
+                )
             case "fixed":
                 pass
 
@@ -213,7 +216,7 @@ class BodyTree:
 
 def _check_size(robot: Robot) -> None:
     """Refuse a robot that would take minutes or all memory before anything is made of it."""
-    moving = sum(joint.type != "fixed" for joint in robot.joints)
+    moving = sum(joint.type not in STANDING for joint in robot.joints)
     if moving > MOST_MOVING:
         raise ModelError(
             f"robot '{robot.name}' has {moving} joints that move; at most {MOST_MOVING} are "
@@ -235,7 +238,7 @@ def _laden_links(robot: Robot) -> frozenset[str]:
     for joint in reversed(robot.joints_in_tree_order):
         inertial = robot.link(joint.child).inertial
         heavy = inertial is not None and inertial.mass > 0
-        if joint.type == "fixed" and (heavy or joint.child in laden):
+        if joint.type in STANDING and (heavy or joint.child in laden):
             laden.add(joint.parent)
     return frozenset(laden)
 
@@ -246,11 +249,3 @@ def _set_inertia(body: mujoco.MjsBody, inertia: PrincipalInertia) -> None:
     body.ipos = inertia.position
     body.iquat = inertia.quaternion
     body.inertia = inertia.moments
-
-
-def _plane(axis: tuple[float, float, float]) -> NDArray[np.float64]:
-    """Return two directions of the plane that a planar joint's axis stands on, shape (2, 3)."""
-    normal = np.asarray(axis)
-    first = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(normal, first)])

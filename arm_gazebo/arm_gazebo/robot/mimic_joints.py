@@ -50,7 +50,7 @@ def followings(robot: Robot, report: BuildReport) -> tuple[Following, ...]:
             report.warn(
                 f"joint '{joint.name}'",
                 f"it is {joint.type} and mimics '{leader.name}', which is {leader.type}; "
-                "only joints with one degree of freedom can; it moves freely",
+                "only joints with one degree of freedom can; it does not follow",
                 joint.line,
             )
             continue

@@ -122,7 +122,7 @@ def test_rigid_body_cannot_mimic(parts):
         parts.link("l", 1),
         parts.link("m", 1),
         parts.joint("a", "base", "l"),
-        parts.joint("b", "base", "m", "planar", more='<mimic joint="a"/>'),
+        parts.joint("b", "base", "m", "floating", more='<mimic joint="a"/>'),
     )
     built = parts.build(urdf)
     assert "only joints with one degree of freedom can" in str(built.report.warnings[0])
