@@ -136,6 +136,8 @@ def _in_packages(
     scheme: str, rest: str, search_path: Sequence[Path], environ: Mapping[str, str]
 ) -> Iterator[Path]:
     name, _, inside = rest.partition("/")
+    # Put together from parts, a URI often has "//": no path of the whole file system.
+    inside = inside.lstrip("/")
     if name in ("", ".", ".."):
         raise ResourceNotFoundError(f"'{scheme}{rest}' names no package")
     if os.path.normpath(inside or ".").split(os.sep)[0] == "..":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arm_description.errors import XacroError
+from arm_description.errors import DescriptionError, XacroError
 from arm_description.resources import find_package, folders_of
 
 MOST_PLACES = 5
@@ -86,8 +86,14 @@ def _process(file: Path, arguments: dict[str, str], package_path: Sequence[Path]
         # xacro runs the file's own expressions: whatever those raise comes out here.
         except Exception as error:
             place = _place(xacro.print_location)
-            raise XacroError(f"cannot expand {file}: {_first_line(error)}; {place}") from error
+            raise XacroError(f"cannot expand {file}: {_reason(error)}; {place}") from error
     return str(document.toprettyxml(indent="  "))
+
+
+def _reason(error: Exception) -> str:
+    # xacro wraps what it does not know, and says it twice.
+    wrapped = getattr(error, "exc", None)
+    return _first_line(wrapped if isinstance(wrapped, DescriptionError) else error)
 
 
 def _place(print_location: Callable[[], None]) -> str:

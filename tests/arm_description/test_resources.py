@@ -131,6 +131,16 @@ def test_a_uri_may_not_lead_out_of_its_package(tmp_path, uri):
         resolve_uri(uri, [tmp_path / "share"], ament(tmp_path))
 
 
+@pytest.mark.parametrize("scheme", ["package", "model"])
+def test_more_slashes_than_one_stay_within_the_package(tmp_path, scheme):
+    expected = make(tmp_path / "share/robot/meshes/a.stl")
+    outside = make(tmp_path / "a.stl")
+    environ = ament(tmp_path) | {"GZ_SIM_RESOURCE_PATH": str(tmp_path / "share")}
+    assert resolve_uri(f"{scheme}://robot//meshes//a.stl", environ=environ) == expected
+    with pytest.raises(ResourceNotFoundError, match="no file for"):
+        resolve_uri(f"{scheme}://robot/{outside}", environ=environ)
+
+
 @pytest.mark.parametrize("name", [".", ".."])
 def test_dots_are_no_package(tmp_path, name):
     with pytest.raises(ResourceNotFoundError, match="names no package"):

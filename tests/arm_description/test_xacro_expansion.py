@@ -189,3 +189,10 @@ def test_files_that_include_each_other_for_ever_are_a_short_sentence(tmp_path):
     assert "recursion" in message
     assert message.endswith("...")
     assert len(message) < 1500
+
+
+def test_a_missing_package_is_told_once_and_without_a_class(tmp_path):
+    path = write(tmp_path / "a.xacro", "<xacro:include filename='$(find no_such_package)/a'/>")
+    message = refusal(path)
+    assert message.startswith(f"cannot expand {path}: no package 'no_such_package'; tried ")
+    assert message.count("no package") == 1
