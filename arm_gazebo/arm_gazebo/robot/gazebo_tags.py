@@ -19,7 +19,6 @@ SELF_COLLIDE_TAGS = ("selfCollide", "self_collide")
 NEEDLESS_TAGS = frozenset(
     {
         "sensor",  # read by whoever simulates it
-        "plugin",  # the hardware of <ros2_control> needs none
         "preserveFixedJoint",  # every frame is kept
         "disableFixedJointLumping",
         "disableJointLumping",
@@ -29,6 +28,23 @@ NEEDLESS_TAGS = frozenset(
         "provide_feedback",
     }
 )
+NEEDLESS_PLUGINS = (
+    "ros2_control",  # the hardware of <ros2_control> needs none
+    "ros_control",
+    "mimic",  # joints follow by themselves
+    "sensors",  # as sensors do what they do
+    "-imu-",
+    "forcetorque",
+    "-contact-",
+    "joint-state-publisher",  # as joint_state_broadcaster
+    "joint_state_publisher",
+)
+"""Parts of the names of Gazebo's plugins whose work is done without them."""
+INSTEAD_OF_PLUGINS = {
+    "diff": "; diff_drive_controller drives wheels",
+    "joint-position": "; position_controllers/JointGroupPositionController moves joints",
+    "joint-trajectory": "; joint_trajectory_controller follows trajectories",
+}
 REASONS = {
     "kp": "contacts have MuJoCo's own stiffness",
     "kd": "contacts have MuJoCo's own damping",
@@ -132,9 +148,29 @@ class _Reader:
             return replace(tags, self_collide=wanted)
         if element.tag == "material" or (element.tag == "visual" and reference):
             return replace(tags, rgba=self._color(element) or tags.rgba)
-        if element.tag not in NEEDLESS_TAGS:
+        if element.tag == "plugin":
+            self._leave_out_plugin(element)
+        elif element.tag == "sensor" and not reference:
+            self._report.drop(
+                f"<gazebo> <sensor name='{element.get('name')}'>",
+                "no link carries it: its <gazebo> has no reference",
+                int(element.sourceline or 0),
+            )
+        elif element.tag not in NEEDLESS_TAGS:
             self._left_out.setdefault(str(element.tag), []).append(int(element.sourceline or 0))
         return tags
+
+    def _leave_out_plugin(self, element: Any) -> None:
+        file = str(element.get("filename", "")).strip()
+        name = f"{file} {element.get('name', '')}".lower()
+        if any(part in name for part in NEEDLESS_PLUGINS):
+            return
+        instead = next((text for part, text in INSTEAD_OF_PLUGINS.items() if part in name), "")
+        self._report.drop(
+            f"<gazebo> <plugin filename='{file}'>",
+            f"Gazebo's plugins are not loaded{instead}",
+            int(element.sourceline or 0),
+        )
 
     def _friction(self, element: Any) -> float | None:
         value = next(_numbers(_text(element)), math.nan)

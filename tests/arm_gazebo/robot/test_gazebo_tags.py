@@ -141,3 +141,39 @@ def test_links_touch_where_one_of_them_says_so(tags, touching):
     mujoco.mj_forward(built.model, data)
     pairs = {tuple(sorted(built.model.geom_bodyid[list(c.geom)])) for c in data.contact}
     assert (tuple(sorted((base, hand))) in pairs) is touching
+
+
+@pytest.mark.parametrize(
+    ("plugin", "said"),
+    [
+        ("gz-sim-odometry-publisher-system", "plugins are not loaded"),
+        ("libgazebo_ros_diff_drive.so", "diff_drive_controller drives wheels"),
+        ("gz-sim-joint-position-controller-system", "JointGroupPositionController moves joints"),
+    ],
+)
+def test_a_plugin_that_does_something_else_is_left_out_and_said(plugin, said):
+    tags = tags_of(f'<gazebo>\n<plugin filename="{plugin}" name="p"/></gazebo>')
+    (finding,) = tags.findings
+    assert f"<plugin filename='{plugin}'> (line 2)" in str(finding)
+    assert said in str(finding)
+
+
+@pytest.mark.parametrize(
+    "plugin",
+    [
+        "gz_ros2_control-system",
+        "libgz_ros2_control-system.so",
+        "libgazebo_ros_control.so",
+        "libgazebo_mimic_joint_plugin.so",
+        "gz-sim-sensors-system",
+        "gz-sim-imu-system",
+        "gz-sim-joint-state-publisher-system",
+    ],
+)
+def test_a_plugin_whose_work_is_done_anyway_is_not_missed(plugin):
+    assert tags_of(f'<gazebo><plugin filename="{plugin}" name="p"/></gazebo>').findings == ()
+
+
+def test_a_sensor_that_no_link_carries_is_said():
+    (finding,) = tags_of('<gazebo><sensor name="eye" type="camera"/></gazebo>').findings
+    assert "<sensor name='eye'> (line 1): no link carries it" in str(finding)
