@@ -86,6 +86,11 @@ class Visitor:
         """Return what a slider shows."""
         return float(self.slider(label).get_attribute("aria-valuenow"))
 
+    def step_back(self) -> None:
+        """See more of the 3D view's surroundings."""
+        self.page.mouse.move(VIEWPORT["width"] / 2, VIEWPORT["height"] / 2)
+        self.page.mouse.wheel(0, 200)
+
     def drawn(self) -> dict[str, int]:
         """Return how many things were drawn so far in the 3D view, by their kind."""
         return self.page.evaluate("window.drawn")
