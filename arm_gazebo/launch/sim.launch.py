@@ -38,7 +38,7 @@ ROBOT_ARGUMENTS = {
     "spawn": (
         "auto",
         "controllers to start with the simulation, with commas; auto starts those whose joints "
-        "are free, in the file's order",
+        "are free, in the file's order, and leaves out what cannot start",
     ),
     "package_path": (
         "",

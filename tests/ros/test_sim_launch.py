@@ -65,6 +65,49 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
     )
 
 
+FOREIGN = """
+controller_manager:
+  ros__parameters:
+    states: {type: joint_state_broadcaster/JointStateBroadcaster}
+    force: {type: force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster}
+    gripper: {type: position_controllers/JointGroupPositionController}
+    arm: {type: position_controllers/JointGroupPositionController}
+force: {ros__parameters: {sensor_name: only_real, frame_id: lower}}
+gripper: {ros__parameters: {joints: [finger]}}
+arm: {ros__parameters: {joints: [shoulder, elbow]}}
+"""
+
+
+@pytest.fixture
+def foreign(tmp_path):
+    """A file of controllers, two of them for what the robot does not have."""
+    file = tmp_path / "foreign.yaml"
+    file.write_text(FOREIGN)
+    return file
+
+
+def test_what_cannot_start_on_this_robot_is_left_out(launch, client, bare, foreign):
+    from controller_manager_msgs.srv import ListControllers
+
+    launched = launch("arm_gazebo", "sim.launch.py", f"model:={bare}", f"controllers:={foreign}")
+    launched.wait_until_ready()
+    launched.wait_for_line("force does not start: Unable to activate controller 'force' since the")
+    launched.wait_for_line("gripper does not start: Unable to activate controller 'gripper' since")
+    service = "/controller_manager/list_controllers"
+    listed = client.call(ListControllers, service, ListControllers.Request()).controller
+    assert {c.name for c in listed if c.state == "active"} == {"states", "arm"}
+
+
+def test_what_is_named_has_to_start(launch, bare, foreign):
+    launched = launch(
+        *("arm_gazebo", "sim.launch.py", f"model:={bare}"),
+        *(f"controllers:={foreign}", "spawn:=states,force"),
+    )
+    assert launched.wait() != 0
+    assert "[FATAL]" in launched.output
+    assert "'only_real/force.x' is not available" in launched.output
+
+
 def test_two_robots_in_one_world_do_not_hear_each_other(launch, client, tmp_path):
     from controller_manager_msgs.srv import ListControllers
     from sensor_msgs.msg import JointState

@@ -2,7 +2,7 @@
 
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,6 +33,7 @@ class RobotSetup:
         description: URDF text with a <ros2_control> block.
         controllers: a parameter file, or the content of one.
         spawn: controllers to start with the simulation.
+        spawn_required: whether the user named them, so that one that cannot start is an error.
         package_path: folders searched for the description's files.
         remarks: what was made up, one sentence each.
     """
@@ -40,14 +41,16 @@ class RobotSetup:
     description: str
     controllers: Controllers
     spawn: tuple[str, ...]
+    spawn_required: bool
     package_path: tuple[Path, ...]
     remarks: tuple[str, ...]
 
-    def parameters(self) -> dict[str, str]:
+    def parameters(self) -> dict[str, str | bool]:
         """Return the parameters of the simulation's node that are about the robot."""
         return {
             "robot_description": self.description,
             "spawn": ",".join(self.spawn),
+            "spawn_required": self.spawn_required,
             "package_path": os.pathsep.join(map(str, self.package_path)),
         }
 
@@ -66,15 +69,16 @@ def set_up_robot(
         model_args: xacro arguments, "a:=1 b:=2".
         controllers: parameter file, also as a package:// URI, in which ${name} stands for an
             argument of the model; "" makes one up.
-        spawn: names with commas; "auto" for every controller whose joints are free.
+        spawn: names with commas; "auto" for every controller whose joints are free and that can
+            start on this robot.
         package_path: folders with colons.
 
     Raises:
         SettingsError: arguments that make no sense; DescriptionError: no such model, or it is no
             robot.
     """
-    file = path_of(model)
     given = folders(package_path)
+    file = path_of(model, given)
     expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
     description = expansion.text
     remarks: list[str] = []
@@ -83,7 +87,7 @@ def set_up_robot(
         # Only here: a robot that comes with everything starts without being parsed twice.
         description, commanded = _completed(description, file, remarks)
     if controllers:
-        content = fill_in(path_of(controllers), expansion.arguments)
+        content = fill_in(path_of(controllers, (*given, *folders_of(file))), expansion.arguments)
     else:
         content = default_parameters(commanded or ())
         remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
@@ -95,18 +99,23 @@ def set_up_robot(
         description,
         content,
         _spawned(spawn, content if controllers else None, commanded or (), remarks),
+        spawn.strip() != SPAWN_AUTO,
         (*given, *folders_of(file)),
         tuple(remarks),
     )
 
 
-def path_of(file: str) -> Path:
+def path_of(file: str, package_path: Sequence[Path] = ()) -> Path:
     """Return the path of a file that is named by a path or a URI.
+
+    Args:
+        file: what the user gave.
+        package_path: folders in which packages are looked for, too.
 
     Raises:
         ResourceNotFoundError: there is nothing under the URI.
     """
-    return resolve_uri(file) if "://" in file else Path(file).expanduser()
+    return resolve_uri(file, package_path) if "://" in file else Path(file).expanduser()
 
 
 def model_arguments(words: Iterable[str]) -> dict[str, str]:

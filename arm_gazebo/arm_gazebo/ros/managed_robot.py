@@ -1,5 +1,6 @@
 """One robot of the simulation: its hardware, and the controller manager that drives it."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -7,6 +8,7 @@ from rclpy.executors import Executor
 
 from arm_control.clock import Clock
 from arm_control.control_loop import ControlLoop
+from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.hardware_info import parse_hardware_info
 from arm_control.ros.configured_manager import bring_up, configured_manager
 from arm_control.ros.controller_manager_node import ControllerManagerNode
@@ -23,6 +25,8 @@ from arm_gazebo.ros.robot_settings import RobotSettings
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors
+
+logger = logging.getLogger(__name__)
 
 
 class ManagedRobot:
@@ -95,7 +99,11 @@ class ManagedRobot:
         bring_up(self.manager, self.node.settings)
 
     def serve(self, loop: ControlLoop, executor: Executor) -> None:
-        """Offer the manager's services, and start the controllers that are asked for."""
+        """Offer the manager's services, and start the controllers that are asked for.
+
+        Raises:
+            ArmControlError: one that is required cannot be started.
+        """
         self._server = ControllerManagerServer(
             self.node,
             self.manager,
@@ -103,7 +111,16 @@ class ManagedRobot:
             executor,
             robot_description=self._settings.robot_description,
         )
-        self._server.start_controllers(self._settings.spawn)
+        for name in self._settings.spawn:
+            try:
+                self._server.start_controllers((name,))
+            except LoopStoppedError:
+                raise
+            except ArmControlError as error:
+                if self._settings.spawn_required:
+                    raise
+                # Nobody named it: a file is often of the real robot, which has more.
+                logger.warning("%s does not start: %s", name, error)
 
     def shutdown(self) -> None:
         """Serve no more; the loop still runs."""

@@ -17,6 +17,7 @@ class RobotSettings:
         namespace: of its controller manager, "" for the process's own.
         robot_description: the URDF.
         spawn: controllers to start with the simulation, in this order.
+        spawn_required: whether one of them that cannot start is an error, or left out.
         base: what becomes of a root link that hangs on no world link.
         pose: of the robot's root in the world; None for where it stands by itself.
         package_path: folders searched for package:// and model:// besides the installed ones.
@@ -25,6 +26,7 @@ class RobotSettings:
     namespace: str
     robot_description: str
     spawn: tuple[str, ...]
+    spawn_required: bool
     base: str
     pose: Pose | None
     package_path: tuple[Path, ...]
@@ -52,6 +54,9 @@ def _read_robot(values: ParameterValues, namespace: str) -> RobotSettings:
         namespace=namespace,
         robot_description=_description(values),
         spawn=tuple(values.texts("spawn", "controllers to start with the simulation")),
+        spawn_required=values.flag(
+            "spawn_required", True, "a controller that cannot start ends the simulation"
+        ),
         base=values.choice("base", "fixed", BASES, "what a root without world link does"),
         pose=_pose(values),
         package_path=values.folders("package_path", "for package:// and model://, with colons"),

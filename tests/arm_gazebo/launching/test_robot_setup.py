@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from arm_description.errors import XacroError
+from arm_description.errors import ResourceNotFoundError, XacroError
 from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.default_control import has_hardware
 from arm_gazebo.launching.robot_setup import folders, model_arguments, set_up_robot
@@ -136,6 +136,11 @@ def test_spawn_names_controllers(bare):
     assert set_up_robot(str(bare), spawn="").spawn == ()
 
 
+def test_only_controllers_that_are_named_have_to_start(bare):
+    assert set_up_robot(str(bare), spawn="a").parameters()["spawn_required"] is True
+    assert set_up_robot(str(bare)).parameters()["spawn_required"] is False
+
+
 def test_a_statue_needs_no_position_controller(tmp_path, parts):
     file = tmp_path / "statue.urdf"
     file.write_text(parts.robot(parts.link("base", 1.0)))
@@ -148,6 +153,21 @@ def test_files_beside_the_model_and_in_its_package_are_found(bare, tmp_path):
     setup = set_up_robot(str(bare), package_path=f"{tmp_path / 'x'}:{tmp_path / 'y'}")
     assert setup.package_path[:2] == (tmp_path / "x", tmp_path / "y")
     assert setup.package_path[2:] == (tmp_path, tmp_path.parent, tmp_path.parent.parent)
+
+
+def test_the_robot_and_its_controllers_may_lie_in_a_package_of_the_folders_given(bare, tmp_path):
+    package = tmp_path / "source" / "my_arm"
+    package.mkdir(parents=True)
+    bare.rename(package / "a.urdf")
+    (package / "c.yaml").write_text(
+        "controller_manager:\n  ros__parameters:\n    states: {type: x/JointStateBroadcaster}\n"
+    )
+    setup = set_up_robot(
+        "package://my_arm/a.urdf", "", "package://my_arm/c.yaml", "", str(tmp_path / "source")
+    )
+    assert setup.controllers == package / "c.yaml"
+    with pytest.raises(ResourceNotFoundError, match=r"no file for 'package://my_arm/a\.urdf'"):
+        set_up_robot("package://my_arm/a.urdf")
 
 
 def test_xacro_arguments_are_passed_on(tmp_path):
