@@ -13,6 +13,8 @@ CATCH_UP_S = 0.05
 WINDOW_S = 1.0
 STATISTICS_S = 5.0
 WARNING_INTERVAL_S = 10.0
+KEPT = 0.99
+"""Share of the pace from which on a stall is told as one, not as a pace that is not kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,14 +163,25 @@ class Pacer:
         self._forget_unsaid(now_s)
 
     def _warn(self, elapsed_s: float) -> None:
-        logging.getLogger(__name__).warning(
+        logger = logging.getLogger(__name__)
+        achieved = self._unsaid_ticks * self.period_s / elapsed_s
+        latest_ms = 1e3 * self._unsaid_max_lag_s
+        if achieved >= KEPT * self._real_time_factor:
+            logger.warning(
+                "the control loop was held up: a tick started %.1f ms after its time, "
+                "%.3f s given up",
+                latest_ms,
+                self._unsaid_lost_s,
+            )
+            return
+        logger.warning(
             "the control loop cannot keep its pace: real-time factor %.2f instead of %g, "
             "%d of %d ticks overran, latest start %.1f ms after its time, %.3f s given up",
-            self._unsaid_ticks * self.period_s / elapsed_s,
+            achieved,
             self._real_time_factor,
             self._unsaid_overruns,
             self._unsaid_ticks,
-            1e3 * self._unsaid_max_lag_s,
+            latest_ms,
             self._unsaid_lost_s,
         )
 

@@ -182,6 +182,20 @@ def test_a_stall_soon_after_a_warning_is_said_with_the_next(
     assert "0.990 s given up" in caplog.text
 
 
+def test_a_stall_that_changes_nothing_of_the_pace_is_told_as_one(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    clock = ManualClock()
+    pacer = Pacer(0.01, clock=clock)
+    clock.advance(CATCH_UP_S + 0.004)
+    while clock.now_s() < 2.0:
+        run_tick(pacer, clock)
+    (said,) = caplog.messages
+    assert said == (
+        "the control loop was held up: a tick started 54.0 ms after its time, 0.004 s given up"
+    )
+
+
 def test_warnings_can_be_switched_off(caplog: pytest.LogCaptureFixture) -> None:
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock, print_warnings=False)
