@@ -57,6 +57,11 @@ class ControlLoop:
         return self._paused
 
     @property
+    def stepping(self) -> bool:
+        """Whether steps are to be done; time stands still otherwise."""
+        return bool(self._step_requests)
+
+    @property
     def running(self) -> bool:
         """Whether the thread is alive: started, and neither stopped nor failed."""
         return self._thread.is_alive() and not self._closed
@@ -91,7 +96,7 @@ class ControlLoop:
         return call.future
 
     def pause(self) -> "Future[None]":
-        """Let time stand still after the present tick."""
+        """Let time stand still after the present tick; steps not yet done are dropped."""
         return self.call(self._pause)
 
     def resume(self) -> "Future[None]":
@@ -102,7 +107,7 @@ class ControlLoop:
         """Run this many ticks while paused, without pacing.
 
         Returns:
-            The number of ticks done: less than `count` where `resume` came between.
+            The number of ticks done: less than `count` where `pause` or `resume` came between.
         """
         request = _StepRequest(count)
 
@@ -175,6 +180,7 @@ class ControlLoop:
             self._calls.get_nowait().run()
 
     def _pause(self) -> None:
+        self._finish_steps()
         self._paused = True
         self._priority.lower()
 

@@ -194,6 +194,17 @@ def test_calls_are_served_between_steps(start: Any, ticks: Ticks) -> None:
     assert 0 <= steps.result(TIMEOUT_S) < 10_000_000
 
 
+def test_a_pause_ends_steps(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    steps = loop.step(10_000_000)
+    ticks.wait_for(1)
+    assert loop.stepping
+    loop.pause().result(TIMEOUT_S)
+    assert 0 <= steps.result(TIMEOUT_S) < 10_000_000
+    assert loop.paused
+    assert not loop.stepping
+
+
 def test_step_requests_follow_one_another(start: Any, ticks: Ticks) -> None:
     loop = start(ticks, paused=True)
     first, second = loop.step(3), loop.step(4)

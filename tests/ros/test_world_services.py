@@ -56,6 +56,13 @@ class Simulator:
             self._clients[service] = self._matched(service, type_)
         return self._answer(service, type_.Request(**fields), 30.0)
 
+    def ask(self, service: str, **fields) -> Any:
+        """Return the future of an answer that is long in coming."""
+        type_ = getattr(self._types, service)
+        if service not in self._clients:
+            self._clients[service] = self._matched(service, type_)
+        return self._clients[service].call_async(type_.Request(**fields))
+
     def _matched(self, service, type_):
         name = "".join(f"_{c.lower()}" if c.isupper() else c for c in service)[1:]
         made = self._client.node.create_client(type_, f"/{name}")
@@ -228,6 +235,20 @@ def test_time_stands_still_and_goes_on_by_steps(simulator, client):
     simulator.go_to(SimulationState.STATE_PLAYING)
     client.wait_until(lambda: simulator.where("crate")[0] > after_s, "time going on")
     simulator.delete("crate")
+
+
+def test_a_long_run_of_steps_hears_whoever_ends_it(simulator, client):
+    from simulation_interfaces.msg import SimulationState
+
+    simulator.go_to(SimulationState.STATE_PAUSED)
+    before_s, _ = simulator.where("arm")
+    steps = simulator.ask("StepSimulation", steps=2**40)
+    client.wait_until(lambda: simulator.where("arm")[0] > before_s + 1.0, "a second of steps")
+    simulator.go_to(SimulationState.STATE_PAUSED)
+    result = client.result_of(steps, "step_simulation").result
+    assert result.result == result.RESULT_OPERATION_FAILED
+    assert f" of {2**40} steps: the state was changed" in result.error_message
+    simulator.go_to(SimulationState.STATE_PLAYING)
 
 
 def test_the_arm_goes_on_in_another_world(simulator, client):

@@ -123,7 +123,9 @@ class RunServices:
         response.result.result = Result.RESULT_OK
         if done < request.steps:
             response.result.result = Result.RESULT_OPERATION_FAILED
-            response.result.error_message = f"{done} of {request.steps} steps, then time went on"
+            response.result.error_message = (
+                f"{done} of {request.steps} steps: the state was changed"
+            )
         return response
 
     def _reset(self, request: ResetSimulation.Request, response: Any) -> Any:

@@ -49,7 +49,8 @@ class RunControl:
         Raises:
             RefusedError: it is in that state, or cannot come to it from here.
         """
-        if target is self.state:
+        ends_steps = target is RunState.PAUSED and self._loop.stepping
+        if target is self.state and not ends_steps:
             raise RefusedError(Refusal.ALREADY_THERE, f"the simulation is {target.name} already")
         if target is RunState.QUITTING:
             self._quit()

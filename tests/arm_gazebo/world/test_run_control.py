@@ -90,6 +90,15 @@ def test_steps_of_a_paused_simulation(run):
     assert run.control.state is RunState.PAUSED
 
 
+@pytest.mark.parametrize("state", [RunState.PAUSED, RunState.STOPPED, RunState.PLAYING])
+def test_a_state_asked_for_ends_steps(run, state):
+    steps = run.control.step(10_000_000)
+    run.loop.call(lambda: None).result(30.0)  # the loop knows of them
+    run.control.go_to(state)
+    assert steps.result(30.0) < 10_000_000
+    assert run.control.state is state
+
+
 def test_no_steps_while_time_runs(run):
     run.control.go_to(RunState.PLAYING)
     assert run.refusal(lambda: run.control.step(1)) is Refusal.INCORRECT_STATE
