@@ -205,7 +205,7 @@ def _check_interfaces(
 def _check_strength(built: BuiltModel, report: BuildReport) -> None:
     driven = [joint for joint in built.joints.values() if joint.actuator is not None]
     tuning = tune(built.model, driven, built.qpos, PERIOD_S)
-    for name, problem in too_weak(driven, tuning):
+    for name, problem in too_weak(built.model, driven, tuning):
         report.warn(f"joint '{name}'", problem)
 
 

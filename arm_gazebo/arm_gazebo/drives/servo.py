@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.drives.driven_joint import DrivenJoint
 from arm_gazebo.drives.mode import SERVOED, DriveMode
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, ServoTuning
+from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, ServoTuning, resistance
 from arm_gazebo.index_slice import as_slice
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot.joint import RobotJoint
@@ -107,8 +107,7 @@ class Servo:
         self._model, self._data, self._tuning = model, data, tuning
         self._spread = tuning.coupling / self._period_s
         self._coupling = np.ascontiguousarray(tuning.coupling.T)
-        self._friction = _felt(model.dof_frictionloss, tuning.coupling)
-        self._drag = _felt(model.dof_damping, tuning.coupling)
+        self._friction, self._drag = resistance(model, tuning.coupling)
         self._motion = np.zeros(model.nv)
         self._load = np.zeros(model.nv)
         count = len(joints)
@@ -272,8 +271,3 @@ class Servo:
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
         model.dof_armature[self._joints[index].joint.dof_address] = rotor
-
-
-def _felt(resistance: Array, coupling: Array) -> list[float]:
-    """Return what each driven joint feels of the resistance of all that moves with it."""
-    return (coupling**2).T.dot(resistance).tolist()

@@ -45,6 +45,8 @@ POSE_SEED = 20240
 EFFORT_SHARE = 0.5
 LEAST_EFFORT_SHARE = 0.1
 """Of the effort limit, for a joint that can hardly hold the arm: it shall move all the same."""
+SLOW_SHARE = 0.25
+"""Of its velocity limit: a joint that damping keeps below it is worth a word."""
 PERIODS_TO_FULL_SPEED = 2
 """Bound on acceleration where effort is plenty: what changes within a period is not planned."""
 ENDLESS_RANGE = (-math.pi, math.pi)
@@ -176,15 +178,38 @@ def tuned_again(
     return replace(tuning, coupling=coupling)
 
 
-def too_weak(joints: Sequence[RobotJoint], tuning: ServoTuning) -> Iterator[tuple[str, str]]:
-    """Yield the driven joints that cannot carry the robot, and what is wrong with each."""
-    for joint, gravity in zip(joints, tuning.gravity.tolist(), strict=True):
+def too_weak(
+    model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
+) -> Iterator[tuple[str, str]]:
+    """Yield the driven joints whose effort limit is too small, and what is wrong with each."""
+    friction, damping = resistance(model, tuning.coupling)
+    loads = zip(joints, tuning.gravity.tolist(), friction, damping, strict=True)
+    for joint, gravity, rubs, damps in loads:
+        limit = f"its effort limit of {joint.effort:.4g}"
+        fastest = (joint.effort - rubs) / damps if damps > 0 else math.inf
         if gravity > joint.effort:
             yield (
                 joint.name,
-                f"its effort limit of {joint.effort:.4g} is below the {gravity:.4g} that gravity "
-                "asks for in some poses; there it will sink",
+                f"{limit} is below the {gravity:.4g} that gravity asks for in some poses; there "
+                "it will sink",
             )
+        elif rubs >= joint.effort:
+            yield (
+                joint.name,
+                f"{limit} is not above its friction of {rubs:.4g}; it will hardly move",
+            )
+        elif fastest < SLOW_SHARE * joint.velocity:
+            yield (
+                joint.name,
+                f"{limit} moves it against its damping of {damps:.4g} at {fastest:.3g} at most, "
+                f"far below its velocity limit of {joint.velocity:.4g}",
+            )
+
+
+def resistance(model: mujoco.MjModel, coupling: Array) -> tuple[list[float], list[float]]:
+    """Return friction and damping that driven joints feel, with those of all that moves along."""
+    friction = np.abs(coupling).T.dot(model.dof_frictionloss)
+    return friction.tolist(), (coupling**2).T.dot(model.dof_damping).tolist()
 
 
 def _rotor(efforts: Array, step_s: float) -> Array:

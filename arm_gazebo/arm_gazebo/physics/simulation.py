@@ -57,7 +57,7 @@ class Simulation:
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
         tuning = tune(self.model, driven, built.qpos, timing.period_s)
-        for name, problem in too_weak(driven, tuning):
+        for name, problem in too_weak(self.model, driven, tuning):
             logger.warning("joint '%s': %s", name, problem)
         self._tuning = tuning
         self.servo = Servo(self.model, self.data, driven, tuning, timing)

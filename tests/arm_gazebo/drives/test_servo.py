@@ -331,3 +331,40 @@ def test_limp_arm_falls_as_its_links_do_however_strong_its_drives(bench, parts):
         falls.append(arm.run(0.4)[-1])
     assert falls[0] == pytest.approx(falls[1], abs=1e-9)
     assert falls[0][1] > 1.0
+
+
+def rubbing(parts, friction):
+    """Return the URDF of a light link, 0.2 kg at 0.1 m, on a strong joint with friction."""
+    return parts.robot(
+        parts.link("base"),
+        parts.link("bob", 0.2, 0.05, "0.1 0 0"),
+        parts.joint(
+            "j",
+            "base",
+            "bob",
+            xyz="0 0 2",
+            limit='lower="-3" upper="3" effort="50" velocity="3"',
+            more=f'<dynamics friction="{friction}"/>',
+        ),
+        parts.ros2_control(["j"]),
+    )
+
+
+def test_a_drive_hardly_moves_a_joint_whose_friction_is_above_its_effort(bench, parts, caplog):
+    run = bench(rubbing(parts, 60))
+    assert "its effort limit of 50 is not above its friction of 60" in caplog.text
+    run.claim()
+    run.command(-1.0)
+    assert abs(run.run(1.0)[-1, 0]) < 0.1
+
+
+def test_friction_holds_a_limp_joint(bench, parts):
+    run = bench(rubbing(parts, 0.25), hold_joints=False)
+    assert abs(run.run(2.0)[-1, 0]) < 0.02
+
+
+def test_friction_that_takes_most_of_the_effort_costs_no_accuracy(bench, parts):
+    run = bench(parts.pendulum('<dynamics friction="12"/>'))
+    run.claim()
+    run.command(-1.0)
+    assert run.run(2.0)[-1, 0] == pytest.approx(-1.0, abs=3e-3)

@@ -2,7 +2,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.drives.servo_tuning import FULL_EFFORT_ERROR, GEAR_SHARE, TIME_CONSTANT_S, tune
+from arm_gazebo.drives.servo_tuning import (
+    FULL_EFFORT_ERROR,
+    GEAR_SHARE,
+    TIME_CONSTANT_S,
+    resistance,
+    too_weak,
+    tune,
+)
 
 PERIOD_S = 0.01
 ARMS = [(4, 1.3, 0.4), (6, 0.3, 0.28), (6, 18.0, 0.9), (7, 30.0, 1.2)]
@@ -85,6 +92,47 @@ def test_leader_feels_its_followers(parts):
     assert model.dof_armature[model.joint("b").dofadr] == pytest.approx(gear_kg / 3**2)
     assert tuning.followers == pytest.approx([9.0 + gear_kg])
     assert tuning.limp_armature == pytest.approx([0.1 * (10.0 + gear_kg)])
+
+
+@pytest.mark.parametrize(
+    ("dynamics", "said"),
+    [
+        ('friction="15"', []),
+        ('friction="20"', ["its effort limit of 20 is not above its friction of 20; it will"]),
+        ('damping="20"', []),
+        (
+            'damping="50" friction="5"',
+            ["its effort limit of 20 moves it against its damping of 50 at 0.3 at most, far below"],
+        ),
+    ],
+)
+def test_joints_that_friction_or_damping_hold_back_are_named(parts, dynamics, said):
+    found = [*too_weak(*tuned(parts, parts.pendulum(f"<dynamics {dynamics}/>")))]
+    assert len(found) == len(said)
+    for (joint, problem), beginning in zip(found, said, strict=True):
+        assert joint == "j"
+        assert problem.startswith(beginning)
+
+
+@pytest.fixture
+def geared(parts):
+    """Two sliders of 1 kg, of which 'b' moves 3 times as far as 'a' and has friction."""
+    limit = 'lower="-1" upper="1" effort="5" velocity="1"'
+    follows = '<mimic joint="a" multiplier="-3"/><dynamics damping="0.1" friction="0.2"/>'
+    return parts.robot(
+        parts.link("base"),
+        *(parts.link(name, 1.0) for name in ("left", "right")),
+        parts.joint("a", "base", "left", "prismatic", "0 0 1", limit=limit),
+        parts.joint("b", "base", "right", "prismatic", "0 0 1", limit=limit, more=follows),
+        parts.ros2_control(["a"]),
+    )
+
+
+def test_leader_feels_friction_by_the_gearing_and_damping_by_its_square(parts, geared):
+    model, _, tuning = tuned(parts, geared)
+    friction, damping = resistance(model, tuning.coupling)
+    assert friction == pytest.approx([0.6])
+    assert damping == pytest.approx([0.9])
 
 
 def test_robot_without_drives_needs_no_tuning(parts):
