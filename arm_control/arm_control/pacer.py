@@ -160,6 +160,8 @@ class Pacer:
             self._warned_s = now_s
             if self.print_warnings:
                 self._warn(now_s - self._unsaid_since_s)
+        elif self.wall_period_s and now_s - self._due_s > self._catch_up_s:
+            return  # What the next tick gives up has been lost in this window.
         self._forget_unsaid(now_s)
 
     def _warn(self, elapsed_s: float) -> None:
