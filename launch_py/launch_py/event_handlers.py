@@ -70,7 +70,12 @@ class OnProcessStart(ProcessEventHandler):
 
 
 class OnProcessExit(ProcessEventHandler):
-    """What follows when a process has ended and will not be restarted."""
+    """What follows when a process has ended and will not be restarted.
+
+    Also while everything stops: then messages are said and functions called, each for at most 5 s
+    and one after the other, while processes are not started and timers not waited for. An end by
+    a second Ctrl-C or SIGQUIT, or without the launcher, leaves them out.
+    """
 
     kind = TriggerKind.EXITED
 

@@ -165,6 +165,10 @@ class Trial:
     def asked_to_stop(self) -> set[str]:
         return {n for n, child in self.runner.children.items() if child.stop_delays is not None}
 
+    def settle(self) -> None:
+        """Wait for the functions that are called beside the loop while everything stops."""
+        self.loop.run(until=lambda: self.supervisor.done)
+
     def finish(self) -> int:
         assert self.supervisor.done
         return self.supervisor.finish()

@@ -24,6 +24,7 @@ from launch_py.plan import (
 from launch_py.readiness import ProcessExited as ProcessHasExited
 from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.event_loop import EventLoop
+from launch_py.supervision.late_calls import LIMIT_S, LateCalls, Outcome
 from launch_py.supervision.member import Member, MemberState, ProcessRunner
 from launch_py.supervision.reporter import Reporter
 
@@ -85,6 +86,7 @@ class Supervisor:
         self._listening: list[ListeningStep] = []
         self._farewells: list[FarewellStep] = []
         self._delayed = 0
+        self._late_calls = LateCalls(loop, self._too_late)
         self._add(plan.steps)
 
     @property
@@ -92,7 +94,9 @@ class Supervisor:
         """Whether nothing runs and nothing more can happen."""
         if any(member.active for member in self.members.values()):
             return False
-        return self.stopping or not (self._delayed or any(map(self._is_due, self._pending)))
+        if self.stopping:
+            return not self._late_calls.busy
+        return not (self._delayed or any(map(self._is_due, self._pending)))
 
     def begin(self) -> None:
         """Take the first steps."""
@@ -105,7 +109,7 @@ class Supervisor:
         """End everything, whatever depends on another process before that process."""
         if not self.stopping:
             self.stopping = True
-            self._pending.clear()
+            self._pending = [step for step in self._pending if _follows_an_end(step)]
             self._reporter.note(f"stopping: {reason}")
             self._bid_farewell(reason)
             self._stop_next()
@@ -116,6 +120,7 @@ class Supervisor:
             self.stopping = True
             self._pending.clear()
             self._reporter.note(f"stopping: {reason}")
+        self._late_calls.give_up()
         for member in self._active():
             member.stop(HASTY_DELAYS)
 
@@ -123,6 +128,7 @@ class Supervisor:
         """End everything now, by SIGKILL."""
         self.stopping = True
         self._pending.clear()
+        self._late_calls.give_up()
         self._fail(Failure(reason, EXIT_FORCED))
         for member in self._active():
             member.kill()
@@ -193,8 +199,7 @@ class Supervisor:
             self._check_ended(member, text)
         if self.stopping:
             self._stop_next()
-        else:
-            self._advance()
+        self._advance()
 
     def finish(self) -> int:
         """Return the exit code, after everything has ended; the last line names what failed."""
@@ -227,12 +232,11 @@ class Supervisor:
 
         Taking one may call back into this method, so the list is looked at anew each time.
         """
-        while not self.stopping:
-            step = next((step for step in self._pending if self._is_due(step)), None)
-            if step is None:
-                return
+        while (step := next(filter(self._is_due, self._pending), None)) is not None:
             self._pending.remove(step)
-            if step.delay_s > 0.0:
+            if self.stopping:
+                self._take_late(step)
+            elif step.delay_s > 0.0:
                 self._delayed += 1
                 self._loop.call_later(step.delay_s, lambda s=step: self._take_delayed(s))
             else:
@@ -270,6 +274,32 @@ class Supervisor:
                 self._listening.append(step)
             case FarewellStep():
                 self._farewells.append(step)
+
+    def _take_late(self, step: Step) -> None:
+        """Take a step while everything stops: nothing is started, and nothing waited for."""
+        match step:
+            case ProcessStep():
+                self._reporter.problem(f"{step.name} is not started: everything stops")
+            case MessageStep() if not step.delay_s:
+                self._reporter.note(step.text)
+            case DeferredStep() if not step.delay_s:
+                event = self._event(step)
+                self._late_calls.call(lambda: step.expand(event), self._take_outcome)
+            case _:
+                pass
+
+    def _take_outcome(self, outcome: Outcome) -> None:
+        if isinstance(outcome, LaunchError):
+            self._reporter.problem(str(outcome))
+            return
+        self._add(outcome)
+        self._advance()
+
+    def _too_late(self) -> None:
+        self._reporter.problem(
+            f"an event handler has not returned after {LIMIT_S:g} s: it is not waited for, and no "
+            "other is called"
+        )
 
     def _shut_down(self, step: ShutdownStep) -> None:
         ended = [self.members[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
@@ -340,6 +370,11 @@ class Supervisor:
         for member in active:
             if member.name not in needed and not member.stopping:
                 member.stop()
+
+
+def _follows_an_end(step: Step) -> bool:
+    """Return whether the step may still be taken while everything stops."""
+    return any(trigger.kind is TriggerKind.EXITED for trigger in step.after)
 
 
 def _identity(member: Member) -> tuple[str, tuple[str, ...], int]:

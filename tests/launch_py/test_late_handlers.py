@@ -1,0 +1,164 @@
+"""What follows the end of a process while everything stops."""
+
+import signal
+import threading
+
+import pytest
+
+from launch_py import (
+    ExecuteProcess,
+    LogInfo,
+    OpaqueFunction,
+    RegisterEventHandler,
+    Shutdown,
+    TimerAction,
+)
+from launch_py.event_handlers import OnProcessExit
+from launch_py.supervision.late_calls import LIMIT_S
+
+
+def process(name, **options):
+    return ExecuteProcess(cmd=["true"], name=name, **options)
+
+
+def on_exit(target, reaction):
+    return RegisterEventHandler(OnProcessExit(target_action=target, on_exit=reaction))
+
+
+def test_ends_are_followed_also_while_everything_stops(trial):
+    events = []
+    t = trial(
+        process("a", on_exit=Shutdown()),
+        process("b", on_exit=[LogInfo(msg="b is over")]),
+        on_exit("b", lambda event, _context: events.append((event.process_name, event.returncode))),
+    )
+    t["a"].end(0)
+    t["b"].end(130)
+    t.settle()
+    assert "b is over" in t.screen.lines
+    assert events == [("b", 130)]
+    assert t.finish() == 0
+
+
+def test_the_end_that_stops_everything_has_its_other_handlers(trial):
+    a = process("a", on_exit=Shutdown())
+    t = trial(a, on_exit(a, lambda event, _context: LogInfo(msg=f"verdict {event.returncode}")))
+    t["a"].end(3)
+    t.settle()
+    assert "verdict 3" in t.screen.lines
+    assert t.finish() == 3
+
+
+def test_nothing_is_started_by_them_and_no_timer_waited_for(trial):
+    t = trial(
+        process("a", on_exit=[process("b"), TimerAction(period=1.0, actions=[LogInfo(msg="no")])]),
+        on_exit("a", lambda *_: [process("c"), LogInfo(msg="said"), Shutdown()]),
+        on_exit("b", LogInfo(msg="b has no end")),
+        on_exit("a", OpaqueFunction(function=lambda _context: LogInfo(msg="asked"))),
+    )
+    t.supervisor.stop("test")
+    t["a"].end(0)
+    t.settle()
+    assert t.started == ["a"]
+    assert t.screen.problems == [f"{name} is not started: everything stops" for name in "bc"]
+    assert [line for line in t.screen.lines if line in ("said", "asked", "no")] == ["said", "asked"]
+    assert "b has no end" not in t.screen.lines
+    assert t.finish() == 0
+
+
+def test_what_has_not_happened_before_the_stop_is_left_out(trial):
+    t = trial(process("a"), LogInfo(msg="later"), cannot_start=["a"])
+    assert t.finish() == 127
+    assert "later" not in t.screen.lines
+
+
+@pytest.mark.parametrize("mistake", [lambda: {}["missing"], lambda: exit(7)])
+def test_a_mistake_is_said_and_changes_nothing_else(trial, mistake):
+    t = trial(
+        process("a"),
+        process("b"),
+        on_exit("a", lambda *_: mistake()),
+        on_exit("b", lambda *_: LogInfo(msg="b is over")),
+    )
+    t.supervisor.stop("test")
+    t["a"].end(0)
+    t["b"].end(0)
+    t.settle()
+    assert ["an event handler: " in line for line in t.screen.problems] == [True]
+    assert "b is over" in t.screen.lines
+    assert t.finish() == 0
+
+
+def test_a_function_that_does_not_return_holds_up_no_stop_and_is_left_in_the_end(trial):
+    never = threading.Event()
+    t = trial(
+        process("a"),
+        process("b", depends_on="a"),
+        on_exit("b", lambda *_: never.wait()),
+        on_exit("a", lambda *_: LogInfo(msg="never asked")),
+    )
+    t.supervisor.stop("test")
+    t["b"].end(0)
+    assert t.asked_to_stop() == {"a", "b"}
+    t["a"].end(0)
+    assert not t.supervisor.done
+    t.advance(LIMIT_S)
+    assert "an event handler has not returned after 5 s" in t.screen.problems[-1]
+    assert t.finish() == 0
+    never.set()
+
+
+def test_a_forced_stop_waits_for_no_function(trial):
+    never = threading.Event()
+    t = trial(process("a"), process("b"), on_exit("a", lambda *_: never.wait()))
+    t.supervisor.stop("first")
+    t["a"].end(0)
+    t.supervisor.kill("second")
+    assert t.finish() == 130
+    never.set()
+
+
+# Real processes
+
+
+def test_real_ends_in_a_shutdown(launch):
+    launched = launch(
+        """
+        a = python("a", "print('done')", depends_on="b", on_exit=Shutdown())
+        b = forever("b", on_exit=[LogInfo(msg="B EXIT LOGGED")])
+        actions = [
+            a,
+            b,
+            *(
+                RegisterEventHandler(
+                    OnProcessExit(target_action=p, on_exit=lambda e, _: print(e.process_name, "FN"))
+                )
+                for p in (a, b)
+            ),
+        ]
+        """
+    )
+    assert launched.wait() == 0, launched.output
+    assert "[launch] B EXIT LOGGED" in launched.lines
+    assert "a FN" in launched.lines
+    assert "b FN" in launched.lines
+
+
+def test_a_second_ctrl_c_stops_now_also_where_a_function_hangs(launch):
+    launched = launch(
+        """
+        import time
+
+        def hang(event, context):
+            print("HANGING", flush=True)
+            time.sleep(1000)
+
+        actions = [forever("a", on_exit=hang)]
+        """
+    )
+    launched.wait_for("^ready ")
+    launched.signal(signal.SIGINT)
+    launched.wait_for("HANGING")
+    while launched.process.poll() is None:  # One that comes at once counts as the first.
+        launched.signal(signal.SIGINT)
+    assert launched.wait() == 130
