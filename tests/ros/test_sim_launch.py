@@ -65,6 +65,24 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
     )
 
 
+def test_a_mast_shows_what_its_camera_sees(launch, client, tmp_path):
+    """Nothing on it moves, so no controller is needed."""
+    from sensor_msgs.msg import Image
+
+    mast = tmp_path / "mast.urdf"
+    mast.write_text(
+        '<robot name="mast"><link name="foot"/><link name="top"/>'
+        '<joint name="pole" type="fixed"><parent link="foot"/><child link="top"/>'
+        '<origin xyz="0 0 1"/></joint><gazebo reference="top"><sensor name="eye" type="camera">'
+        "<update_rate>10</update_rate><camera><image><width>64</width>"
+        "<height>48</height></image></camera></sensor></gazebo></robot>"
+    )
+    launched = launch("arm_gazebo", "sim.launch.py", f"model:={mast}")
+    launched.wait_until_ready()
+    assert client.subscribe(Image, "/eye").wait_for(1)[-1].width == 64
+    assert "does not start" not in launched.output
+
+
 FOREIGN = """
 controller_manager:
   ros__parameters:

@@ -5,11 +5,15 @@ content of a parameter file.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arm_description.robot import Robot
+
+if TYPE_CHECKING:
+    from arm_control.hardware_info import HardwareInfo
 
 BROADCASTER = "joint_state_broadcaster"
 COMMANDER = "position_controller"
@@ -26,6 +30,21 @@ _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _END = re.compile(r"</robot\s*>(?!.*</robot\s*>)", re.DOTALL)
 
 
+@dataclass(frozen=True, slots=True)
+class HardwareJoints:
+    """What the hardware of a robot does with its joints that move.
+
+    Attributes:
+        shown: those that it tells a state of.
+        positioned: those that it commands by position, each by itself.
+        driven_otherwise: those that it commands, but not by position.
+    """
+
+    shown: tuple[str, ...] = ()
+    positioned: tuple[str, ...] = ()
+    driven_otherwise: tuple[str, ...] = ()
+
+
 def has_hardware(urdf: str) -> bool:
     """Return whether a description has a <ros2_control> block."""
     return "<ros2_control" in _COMMENT.sub("", urdf)
@@ -34,6 +53,30 @@ def has_hardware(urdf: str) -> bool:
 def commandable_joints(robot: Robot) -> tuple[str, ...]:
     """Return the joints that can be commanded each by itself, in the document's order."""
     return tuple(j.name for j in robot.joints if j.type in COMMANDABLE and j.mimic is None)
+
+
+def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> HardwareJoints:
+    """Return the joints of a robot by what its hardware does with them.
+
+    Many a block gives interfaces to joints that mimic others, or that are fixed, too.
+    """
+    moving = {joint.name for joint in robot.joints if joint.type in COMMANDABLE}
+    by_itself = set(commandable_joints(robot))
+    parts = [part for component in hardware for part in component.joints]
+    commands = [
+        (part.name, command.name)
+        for part in parts
+        for command in part.command_interfaces
+        if part.name in by_itself
+    ]
+    # Of dicts, because a joint has several interfaces, and may be in several blocks.
+    commanded = dict.fromkeys(name for name, _ in commands)
+    positioned = dict.fromkeys(name for name, by in commands if by == "position")
+    return HardwareJoints(
+        tuple(part.name for part in parts if part.name in moving and part.state_interfaces),
+        tuple(positioned),
+        tuple(name for name in commanded if name not in positioned),
+    )
 
 
 def with_hardware(urdf: str, robot: Robot) -> str:
@@ -57,14 +100,17 @@ def with_hardware(urdf: str, robot: Robot) -> str:
     return _END.sub(lambda end: block + end.group(), urdf, count=1)
 
 
-def default_parameters(joints: Sequence[str]) -> Mapping[str, Any]:
-    """Return the content of a parameter file: a broadcaster, a position controller for joints.
+def default_controllers(joints: HardwareJoints) -> tuple[str, ...]:
+    """Return which controllers to make up: none that has nothing to show, or to drive."""
+    needed = {BROADCASTER: joints.shown, COMMANDER: joints.positioned}
+    return tuple(name for name in DEFAULT_CONTROLLERS if needed[name])
 
-    Without joints there is no such controller: there is nothing to control.
-    """
-    own = {COMMANDER: {"ros__parameters": {"joints": list(joints)}}} if joints else {}
-    types = {name: {"type": DEFAULT_CONTROLLERS[name]} for name in (BROADCASTER, *own)}
-    return {
-        "controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}},
-        **own,
-    }
+
+def default_parameters(joints: HardwareJoints) -> Mapping[str, Any]:
+    """Return the content of a parameter file with the `default_controllers`."""
+    names = default_controllers(joints)
+    types = {name: {"type": DEFAULT_CONTROLLERS[name]} for name in names}
+    content = {"controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}}}
+    if COMMANDER in names:
+        content[COMMANDER] = {"ros__parameters": {"joints": list(joints.positioned)}}
+    return content

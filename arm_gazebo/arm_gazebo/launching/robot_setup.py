@@ -13,9 +13,11 @@ from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.controllers_file import Controllers, fill_in, startable_controllers
 from arm_gazebo.launching.default_control import (
     COMMANDER,
-    DEFAULT_CONTROLLERS,
+    HardwareJoints,
     commandable_joints,
+    default_controllers,
     default_parameters,
+    hardware_joints,
     has_hardware,
     with_hardware,
 )
@@ -82,15 +84,15 @@ def set_up_robot(
     expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
     description = expansion.text
     remarks: list[str] = []
-    commanded: tuple[str, ...] | None = None
+    joints = HardwareJoints()
     if not has_hardware(description) or not controllers:
         # Only here: a robot that comes with everything starts without being parsed twice.
-        description, commanded = _completed(description, file, remarks)
+        description, joints = _completed(description, file, remarks)
     if controllers:
         content = fill_in(path_of(controllers, (*given, *folders_of(file))), expansion.arguments)
     else:
-        content = default_parameters(commanded or ())
-        remarks.append(f"no controllers are given: {_made_up(commanded or ())}")
+        content = default_parameters(joints)
+        remarks.append(f"no controllers are given: {_made_up(joints)}")
         remarks += (
             f"the description names some for Gazebo's plugin; to have them: controllers:={file}"
             for file in _files_for_gazebo(description)
@@ -98,7 +100,7 @@ def set_up_robot(
     return RobotSetup(
         description,
         content,
-        _spawned(spawn, content if controllers else None, commanded or (), remarks),
+        _spawned(spawn, content if controllers else None, joints, remarks),
         spawn.strip() != SPAWN_AUTO,
         (*given, *folders_of(file)),
         tuple(remarks),
@@ -145,34 +147,34 @@ def folders(path: str) -> tuple[Path, ...]:
     return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
 
 
-def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, tuple[str, ...]]:
-    """Return the description with hardware, and the joints that it commands by position."""
+def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, HardwareJoints]:
+    """Return the description with hardware, and what that does with the joints."""
     from arm_control.hardware_info import parse_hardware_info
     from arm_description.urdf import parse_urdf
 
     robot = parse_urdf(description, str(file))
-    joints = commandable_joints(robot)
     if not has_hardware(description):
+        joints = commandable_joints(robot)
         remarks.append(
             f"robot '{robot.name}' has no <ros2_control> block: one is made up that commands "
             f"{', '.join(joints) or 'nothing, for no joint can be commanded'}"
         )
-        return with_hardware(description, robot), joints
-    # Many a block gives interfaces to joints that mimic others, or that are fixed, too.
-    commanded = tuple(
-        joint.name
-        for component in parse_hardware_info(description)
-        for joint in component.joints
-        if joint.name in joints
-        and any(interface.name == "position" for interface in joint.command_interfaces)
-    )
-    return description, commanded
+        description = with_hardware(description, robot)
+    return description, hardware_joints(robot, parse_hardware_info(description))
 
 
-def _made_up(joints: tuple[str, ...]) -> str:
-    names = [*DEFAULT_CONTROLLERS] if joints else [*DEFAULT_CONTROLLERS][:1]
-    driven = f"; {COMMANDER} drives {', '.join(joints)}" if joints else ""
-    return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} made up{driven}"
+def _made_up(joints: HardwareJoints) -> str:
+    names = default_controllers(joints)
+    clauses = [f"{' and '.join(names) or 'none'} {'are' if len(names) > 1 else 'is'} made up"]
+    if joints.positioned:
+        clauses.append(f"{COMMANDER} drives {', '.join(joints.positioned)}")
+    if joints.driven_otherwise:
+        clauses.append(
+            f"nothing drives {', '.join(joints.driven_otherwise)}, which the hardware does not "
+            "command by position; to move them, give a file with a controller for them: "
+            "controllers:=FILE"
+        )
+    return "; ".join(clauses)
 
 
 def _files_for_gazebo(description: str) -> list[str]:
@@ -185,13 +187,13 @@ def _files_for_gazebo(description: str) -> list[str]:
 def _spawned(
     spawn: str,
     controllers: Controllers | None,
-    commanded: tuple[str, ...],
+    joints: HardwareJoints,
     remarks: list[str],
 ) -> tuple[str, ...]:
     if spawn.strip() != SPAWN_AUTO:
         return tuple(name for name in spawn.replace(",", " ").split())
     if controllers is None:
-        return tuple(name for name in DEFAULT_CONTROLLERS if commanded or name != COMMANDER)
+        return default_controllers(joints)
     from arm_control.registry import controller_types
 
     startable = startable_controllers(controllers, frozenset(controller_types()))

@@ -120,7 +120,8 @@ class ManagedRobot:
                 if self._settings.spawn_required:
                     raise
                 # Nobody named it: a file is often of the real robot, which has more.
-                logger.warning("%s does not start: %s", name, error)
+                reason = " ".join(str(error).split())
+                logger.warning("%s does not start: %s", name, reason)
 
     def shutdown(self) -> None:
         """Serve no more; the loop still runs."""

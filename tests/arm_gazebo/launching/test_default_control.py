@@ -5,8 +5,10 @@ import pytest
 from arm_control.hardware_info import parse_hardware_info
 from arm_description.urdf import parse_urdf
 from arm_gazebo.launching.default_control import (
+    HardwareJoints,
     commandable_joints,
     default_parameters,
+    hardware_joints,
     has_hardware,
     with_hardware,
 )
@@ -68,7 +70,7 @@ def test_a_comment_is_no_hardware(text, has):
 
 
 def test_parameters_have_the_form_of_a_file():
-    content = default_parameters(("turn", "spin"))
+    content = default_parameters(HardwareJoints(("turn", "spin"), ("turn", "spin")))
     assert content["position_controller"] == {"ros__parameters": {"joints": ["turn", "spin"]}}
     manager = content["controller_manager"]["ros__parameters"]
     assert manager["position_controller"] == {
@@ -76,7 +78,31 @@ def test_parameters_have_the_form_of_a_file():
     }
 
 
-def test_a_robot_without_joints_gets_no_controller_for_them():
-    content = default_parameters(())
-    assert list(content) == ["controller_manager"]
-    assert "position_controller" not in content["controller_manager"]["ros__parameters"]
+@pytest.mark.parametrize(
+    ("joints", "names"),
+    [
+        (HardwareJoints(), []),
+        (HardwareJoints(shown=("turn",)), ["joint_state_broadcaster"]),
+        (HardwareJoints(positioned=("turn",)), ["position_controller"]),
+    ],
+)
+def test_a_controller_without_joints_is_not_made_up(joints, names):
+    content = default_parameters(joints)
+    assert list(content["controller_manager"]["ros__parameters"]) == ["update_rate", *names]
+    assert ("position_controller" in content) is ("position_controller" in names)
+
+
+def test_joints_are_parted_by_what_the_hardware_does_with_them():
+    block = (
+        '<ros2_control name="own" type="system"><hardware><plugin>a/B</plugin></hardware>'
+        '<joint name="turn"><command_interface name="position"/></joint>'
+        '<joint name="spin"><command_interface name="velocity"/>'
+        '<state_interface name="velocity"/></joint>'
+        '<joint name="finger"><command_interface name="position"/>'
+        '<state_interface name="position"/></joint>'
+        '<joint name="glue"><state_interface name="position"/></joint></ros2_control>'
+    )
+    hardware = parse_hardware_info(URDF.replace("</robot>", f"{block}</robot>"))
+    assert hardware_joints(parse_urdf(URDF), hardware) == HardwareJoints(
+        shown=("spin", "finger"), positioned=("turn",), driven_otherwise=("spin",)
+    )

@@ -87,6 +87,7 @@ def test_made_up_controllers_take_the_joints_that_the_hardware_commands_by_posit
     assert not isinstance(setup.controllers, Path)
     assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["j0"]
     assert len(setup.remarks) == 1
+    assert "position_controller drives j0; nothing drives j1, which the" in setup.remarks[0]
 
 
 def test_given_controllers_stand(bare, tmp_path):
@@ -141,12 +142,29 @@ def test_only_controllers_that_are_named_have_to_start(bare):
     assert set_up_robot(str(bare)).parameters()["spawn_required"] is False
 
 
-def test_a_statue_needs_no_position_controller(tmp_path, parts):
+def test_who_can_move_joints_without_positions_is_said(tmp_path, parts):
+    file = tmp_path / "wheel.urdf"
+    file.write_text(
+        parts.robot(
+            parts.link("base"),
+            parts.link("a", 1.0),
+            parts.joint("j0", "base", "a"),
+            parts.ros2_control(["j0"], commands=["velocity"]),
+        )
+    )
+    setup = set_up_robot(str(file))
+    assert setup.spawn == ("joint_state_broadcaster",)
+    assert "nothing drives j0, which the hardware does not command by pos" in setup.remarks[0]
+    assert setup.remarks[0].endswith("controllers:=FILE")
+
+
+def test_a_statue_needs_no_controllers(tmp_path, parts):
     file = tmp_path / "statue.urdf"
     file.write_text(parts.robot(parts.link("base", 1.0)))
     setup = set_up_robot(str(file))
-    assert setup.spawn == ("joint_state_broadcaster",)
+    assert setup.spawn == ()
     assert "no joint can be commanded" in setup.remarks[0]
+    assert setup.remarks[1] == "no controllers are given: none is made up"
 
 
 def test_files_beside_the_model_and_in_its_package_are_found(bare, tmp_path):
