@@ -288,6 +288,63 @@ def test_unknown_output_is_refused(expand):
         expand([sh(output="scren")])
 
 
+@pytest.mark.parametrize(
+    ("output", "shown"),
+    [
+        ({"both": "log"}, ""),
+        ({"both": "screen"}, "stderr stdout"),
+        ({"stdout": "log", "stderr": "screen"}, "stderr"),
+        ({"stdout": {"screen", "own_log"}, "stderr": ["log"]}, "stdout"),
+        ({"stdout": "screen"}, "stdout"),
+        ({"both": "log", "stdout": LaunchConfiguration("where", default="full")}, "stdout"),
+        ({}, ""),
+        ("log", "stderr"),
+        (["scr", "een"], "stderr stdout"),
+    ],
+)
+def test_output_may_be_given_for_each_stream(expand, output, shown):
+    (step,) = expand([sh(output=output)]).processes
+    assert " ".join(sorted(step.shown)) == shown
+
+
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ({"sdtout": "log"}, "the key 'sdtout' in output= of sh; did you mean 'stdout'"),
+        ({"both": "nowhere"}, "both: 'nowhere' in output= of sh; the choices are both, full, log"),
+        ({"stderr": ["log", "scren"]}, "stderr: 'scren' in output= of sh; did you mean 'screen'"),
+        ({"both": {"stdout": "log"}}, "both: {.*} in output= of sh: a word is needed, not a dict"),
+        ({"both": 3}, "needed, not 3 of type int"),
+        ({1: "log"}, "needed, not 1 of type int"),
+    ],
+)
+def test_output_that_is_nonsense_is_a_sentence(expand, output, message):
+    with pytest.raises(LaunchFileError, match=message):
+        expand([sh(output=output)])
+
+
+@pytest.mark.parametrize(
+    ("action", "message"),
+    [
+        (sh(respawn="maybe"), "respawn of sh is 'maybe', neither true nor false"),
+        (sh(emulate_tty="maybe"), "emulate_tty of sh is 'maybe', neither true nor false"),
+        (
+            AppendEnvironmentVariable("LIST", "a", prepend="maybe"),
+            "AppendEnvironmentVariable's prepend is 'maybe', neither true nor false",
+        ),
+    ],
+)
+def test_what_is_neither_true_nor_false_is_a_sentence(expand, action, message):
+    with pytest.raises(LaunchFileError, match=message):
+        expand([action])
+
+
+def test_truths_may_be_substitutions(expand):
+    (step,) = expand([sh(respawn=["fal", "se"], emulate_tty="True")]).processes
+    assert step.restart.when == "never"
+    assert step.emulate_tty
+
+
 def test_an_error_in_an_opaque_function_is_a_sentence(expand):
     def decide(_context):
         return {}["missing"]

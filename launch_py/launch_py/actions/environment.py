@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from launch_py.actions.action import Action
 from launch_py.substitution import Text, perform_text
-from launch_py.truth import parse_truth
+from launch_py.truth import perform_truth
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
@@ -62,10 +62,7 @@ class AppendEnvironmentVariable(Action):
         """Extend it in the context."""
         name = perform_text(context, self.name)
         parts = [context.environment_variable(name), perform_text(context, self.value)]
-        prepend = self.prepend
-        if not isinstance(prepend, bool):
-            prepend = parse_truth(perform_text(context, prepend)) is True
-        if prepend:
+        if perform_truth(context, self.prepend, "AppendEnvironmentVariable's prepend"):
             parts.reverse()
         joined = perform_text(context, self.separator).join(part for part in parts if part)
         context.set_environment_variable(name, joined)

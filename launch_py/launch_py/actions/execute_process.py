@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypedDict
 from launch_py.actions.action import Action, check_actions
 from launch_py.errors import LaunchError, LaunchFileError
 from launch_py.event_handlers import OnProcessExit, Reaction
-from launch_py.near_names import describe_known
 from launch_py.plan import (
     SIGKILL_TIMEOUT_S,
     SIGTERM_TIMEOUT_S,
@@ -25,22 +24,14 @@ from launch_py.programs import find_program
 from launch_py.readiness import Readiness
 from launch_py.restart_policy import RestartPolicy
 from launch_py.seconds import perform_seconds
+from launch_py.shown_streams import Output, perform_shown_streams
 from launch_py.substitution import Text, perform_text
-from launch_py.truth import parse_truth
+from launch_py.truth import perform_truth
 
 if TYPE_CHECKING:
     from launch_py.conditions import Condition
     from launch_py.launch_context import LaunchContext
     from launch_py.survey import Survey
-
-SHOWN_STREAMS = {
-    "screen": frozenset({"stdout", "stderr"}),
-    "both": frozenset({"stdout", "stderr"}),
-    "full": frozenset({"stdout", "stderr"}),
-    "log": frozenset({"stderr"}),
-    "own_log": frozenset({"stderr"}),
-}
-"""Which streams ROS's words for `output` put on the screen; the log file always gets both."""
 
 Variables = Mapping[Text, Text]
 
@@ -53,8 +44,8 @@ class ProcessOptions(TypedDict, total=False):
     restart: RestartPolicy | None
     on_exit: Reaction | None
     prefix: Text | None
-    output: Text
-    emulate_tty: bool
+    output: Output
+    emulate_tty: bool | Text
     cwd: Text | None
     env: Variables | None
     additional_env: Variables | None
@@ -80,7 +71,8 @@ class ExecuteProcess(Action):
             `on_exit=Shutdown()` makes it a required process.
         shell: run the words, joined by spaces, as one line of /bin/sh.
         prefix: words put before the command, as in "gdb -ex run --args".
-        output: "screen" (default), or "log" for the log file only, where stderr still shows.
+        output: "screen" (default), or "log" for the log file only, where stderr still shows; or a
+            dict as {"stdout": "log", "stderr": "screen"}, of which only "screen" is shown.
         emulate_tty: give it a terminal to write to, for programs that colour or buffer otherwise.
         cwd: the folder to run it in.
         env: the whole environment, instead of the inherited one.
@@ -101,8 +93,8 @@ class ExecuteProcess(Action):
         on_exit: Reaction | None = None,
         shell: bool = False,
         prefix: Text | None = None,
-        output: Text = "screen",
-        emulate_tty: bool = False,
+        output: Output = "screen",
+        emulate_tty: bool | Text = False,
         cwd: Text | None = None,
         env: Variables | None = None,
         additional_env: Variables | None = None,
@@ -148,17 +140,18 @@ class ExecuteProcess(Action):
         """
         namespace = self.resolve_namespace(context)
         command = self._with_prefix(context, self.command_words(context))
+        name = self.process_name(context)
         context.plan.add(
             ProcessStep(
                 after=(*context.after, *(Trigger(TriggerKind.READY, t) for t in self.depends_on)),
                 delay_s=context.delay_s,
-                name=self.process_name(context),
+                name=name,
                 command=command,
                 cwd=None if self.cwd is None else perform_text(context, self.cwd),
                 environment=self._environment(context),
                 replace_environment=self.env is not None,
-                shown=self._shown_streams(context),
-                emulate_tty=self.emulate_tty,
+                shown=perform_shown_streams(context, self.output, name),
+                emulate_tty=perform_truth(context, self.emulate_tty, f"emulate_tty of {name}"),
                 ready=tuple(
                     condition.resolve(context.perform_substitution, namespace)
                     for condition in self.ready
@@ -229,20 +222,10 @@ class ExecuteProcess(Action):
             variables[perform_text(context, name)] = perform_text(context, value)
         return variables
 
-    def _shown_streams(self, context: LaunchContext) -> frozenset[str]:
-        word = perform_text(context, self.output)
-        if word not in SHOWN_STREAMS:
-            known = describe_known(word, SHOWN_STREAMS, "the choices are")
-            raise LaunchFileError(f"output={word!r} of {self.process_name(context)}; {known}")
-        return SHOWN_STREAMS[word]
-
     def _restart_policy(self, context: LaunchContext) -> RestartPolicy:
         if self.restart is not None:
             return self.restart
-        respawn = self.respawn
-        if not isinstance(respawn, bool):
-            respawn = parse_truth(perform_text(context, respawn)) is True
-        if not respawn:
+        if not perform_truth(context, self.respawn, f"respawn of {self.process_name(context)}"):
             return RestartPolicy()
         policy = RestartPolicy("always", first_delay_s=self.respawn_delay, factor=1.0)
         retries = self.respawn_max_retries
