@@ -110,7 +110,9 @@ def default_parameters(joints: HardwareJoints) -> Mapping[str, Any]:
     """Return the content of a parameter file with the `default_controllers`."""
     names = default_controllers(joints)
     types = {name: {"type": DEFAULT_CONTROLLERS[name]} for name in names}
-    content = {"controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}}}
+    content: dict[str, Any] = {
+        "controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}}
+    }
     if COMMANDER in names:
         content[COMMANDER] = {"ros__parameters": {"joints": list(joints.positioned)}}
     return content
