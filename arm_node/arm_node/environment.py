@@ -7,6 +7,8 @@ import tempfile
 from collections.abc import MutableMapping
 from pathlib import Path
 
+from arm_node.torn_ports import remove_torn_ports
+
 INTERFACE_PACKAGES = (
     "tf2_msgs",
     "control_msgs",
@@ -37,7 +39,8 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
 
     Must run before rclpy is imported. Adds this Python's prefix to AMENT_PREFIX_PATH (the wheels
     do not set it and ament_index then refuses every look-up), and gives ROS_LOG_DIR a value where
-    the process has no HOME (rclpy would refuse to start).
+    the process has no HOME (rclpy would refuse to start). Removes what would keep it from starting;
+    see `torn_ports`.
 
     Raises:
         MissingInterfacesError: an interface package of arm-interfaces is not installed.
@@ -57,6 +60,7 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
             "run 'pip install ./arm_interfaces' from the arm suite's folder, "
             "or source a ROS 2 Jazzy that has them"
         )
+    remove_torn_ports()
 
 
 def _check_domain(text: str) -> None:
