@@ -80,6 +80,9 @@ def _process(file: Path, arguments: dict[str, str], package_path: Sequence[Path]
 
     import xacro
 
+    # xacro would import it in the midst of an expansion, and make an interrupt there an error.
+    import xacro.substitution_args
+
     with _findable(package_path):
         try:
             document: Any = xacro.process_file(str(file), mappings=arguments)
