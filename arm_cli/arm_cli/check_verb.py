@@ -55,8 +55,8 @@ def run(options: argparse.Namespace) -> int:
     from arm_gazebo.robot.build_options import BuildOptions
 
     try:
-        file = path_of(options.file)
         given = folders(options.package_path)
+        file = path_of(options.file, given)
         urdf = expand_xacro_file(file, model_arguments(options.arguments), given).text
     except (DescriptionError, SettingsError) as error:
         raise ArmCliError(str(error)) from error

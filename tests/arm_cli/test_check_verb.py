@@ -73,6 +73,12 @@ def test_the_package_path_is_searched(arm, capsys, tmp_path):
     assert main([*words, "--package-path", f"/no/such:{tmp_path / 'elsewhere'}"]) == 0
 
 
+def test_the_robot_itself_may_lie_in_the_package_path(arm, capsys):
+    folders = ["--package-path", str(arm.parents[2])]
+    inside = arm.relative_to(arm.parents[2])
+    assert main(["check", f"package://{inside}", *folders]) == 0
+
+
 def test_json(arm, capsys):
     assert main(["check", str(arm), "mesh:=gone.stl", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
