@@ -78,6 +78,7 @@ def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
         name = f"<safety_controller> of joint '{element.getparent().get('name')}'"
         reason = "the joint stops at its <limit>; soft limits count under enforce_command_limits"
         yield "safety_controller", _dropped(element, name, reason)
+    yield from _mimics_of_hardware(root)
     for element in root.iterfind(".//material/texture"):
         yield "texture", _dropped(element, "<texture>", "surfaces have a colour, no picture")
     for element in root.iterfind("gazebo/sensor"):
@@ -93,6 +94,19 @@ def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
                 if word and word not in COLOR_FORMATS:
                     name = f"<format> of camera '{element.get('name')}'"
                     yield "format", _dropped(wanted, name, f"pictures are rgb8, not {word}")
+
+
+def _mimics_of_hardware(root: Any) -> Iterator[tuple[str, Finding]]:
+    followers = {mimic.getparent().get("name") for mimic in root.iterfind("joint/mimic")}
+    for joint in root.iterfind("ros2_control/joint"):
+        said = [f'<param name="{p.get("name")}">' for p in joint.iterfind("param[@name='mimic']")]
+        if joint.get("mimic", "").strip().lower() == "true":
+            said.append('mimic="true"')
+        if said and joint.get("name") not in followers:
+            name = f"{said[0]} of <ros2_control> joint '{joint.get('name')}'"
+            reason = "it follows nobody: since ROS 2 Jazzy only <mimic> in the URDF's joint says so"
+            line = int(joint.sourceline or 0)
+            yield said[0], Finding(Outcome.DOUBTFUL, name, reason, line)
 
 
 def _dropped(element: Any, name: str, reason: str) -> Finding:

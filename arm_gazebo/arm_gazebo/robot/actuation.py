@@ -1,12 +1,13 @@
 """Which joints are driven, and the actuators that drive them."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
 
 import mujoco
 
 from arm_control.hardware_info import HardwareInfo, JointInfo
+from arm_description.names import listing
 from arm_description.robot import Joint, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
@@ -61,7 +62,24 @@ def drives(
                     )
                 owners[info.name] = component.name
                 found.append(_drive(known[info.name], report))
+    if hardware:
+        _name_missing(known, {i.name for c in hardware for i in c.joints} | {*followers}, report)
     return tuple(found)
+
+
+def _name_missing(known: dict[str, Joint], named: Container[str], report: BuildReport) -> None:
+    """Say which joints nobody moves or sees; a follower is seen where its leader is."""
+    missing = [j for j in known.values() if j.type in SCALAR_TYPES and j.name not in named]
+    if missing:
+        many = len(missing) > 1
+        report.warn(
+            f"joints {listing([j.name for j in missing])}"
+            if many
+            else f"joint '{missing[0].name}'",
+            f"no <ros2_control> block names {'them' if many else 'it'}: no drive, no joint state, "
+            "no frame in /tf",
+            missing[0].line,
+        )
 
 
 def _problem(info: JointInfo, known: dict[str, Joint], followers: dict[str, str]) -> str:

@@ -193,7 +193,7 @@ class BodyTree:
         added.solref_limit = [max(0.004, 2 * self._step_s), 1.0]
         added.damping = np.array([joint.dynamics.damping, 0.0, 0.0])
         added.frictionloss = joint.dynamics.friction
-        # MuJoCo's own friction is so soft that strong drives move light links as if there were none.
+        # MuJoCo's own friction is so soft that strong drives pass through it as if there were none.
         added.solref_friction = [max(0.004, 2 * self._step_s), 1.0]
         added.solimp_friction = [0.999, 0.9999, 0.001, 0.5, 2.0]
         bounds = self._bounds(joint)
