@@ -30,6 +30,7 @@ ROS_NAMES = {
         "Node PushROSNamespace PushRosNamespace SetParameter SetParametersFromFile SetRemap "
         "SetUseSimTime"
     ),
+    "launch_py.ros.descriptions": "ParameterFile ParameterValue",
     "launch_py.ros.substitutions": "FindPackagePrefix FindPackageShare",
     "launch_py.ros.parameter_descriptions": "ParameterFile ParameterValue",
 }
