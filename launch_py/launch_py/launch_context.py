@@ -66,7 +66,7 @@ class LaunchContext:
             inner.included_files = (*self.included_files, path)
         return inner
 
-    def deferred(self, function: DeferredFunction[ProcessEvent]) -> DeferredStep:
+    def deferred(self, function: DeferredFunction[ProcessEvent | None]) -> DeferredStep:
         """Return the step that asks `function(event, context)` for actions when its time comes."""
         return DeferredStep(after=self.after, delay_s=self.delay_s, expand=self.at_event(function))
 

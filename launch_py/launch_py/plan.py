@@ -74,7 +74,8 @@ class ProcessStep(Step):
 
     `environment` holds only what the launch file sets, None for variables that it unsets; with
     `replace_environment` it is everything that the process gets. `shown` names the streams that
-    go to the screen; all go to the log file. An empty `ready` means ready once started.
+    go to the screen; all go to the log file. An empty `ready` means ready once started. `action`
+    is what describes it in the launch file.
     """
 
     name: str
@@ -87,6 +88,7 @@ class ProcessStep(Step):
     ready: tuple[Readiness, ...] = ()
     restart: RestartPolicy = field(default_factory=RestartPolicy)
     stop_delays: StopDelays = field(default_factory=StopDelays)
+    action: Action | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,7 +109,7 @@ class ShutdownStep(Step):
 class DeferredStep(Step):
     """Asks a function of the launch file, at its time, for the steps that follow."""
 
-    expand: Callable[[ProcessEvent], Sequence[Step]]
+    expand: Callable[[ProcessEvent | None], Sequence[Step]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

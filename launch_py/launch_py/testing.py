@@ -8,6 +8,7 @@ from launch_py.errors import StartError
 from launch_py.plan import ProcessStep, StopDelays
 from launch_py.readiness import Probe
 from launch_py.screen.screen import ReadySummary
+from launch_py.supervision.child_process import ChildSpec
 
 
 class ManualClock:
@@ -31,10 +32,12 @@ class FakeChild:
     def __init__(
         self,
         pid: int,
+        spec: ChildSpec,
         on_line: Callable[[str, str], None],
         on_end: Callable[[int], None],
     ) -> None:
         self.pid = pid
+        self.spec = spec
         self.killed = False
         self.stop_delays: StopDelays | None = None
         """What it was asked to stop with, None while it was not."""
@@ -84,7 +87,10 @@ class FakeRunner:
         if step.name in self._cannot_start:
             raise StartError(f"no such program {step.command[0]}")
         self.started.append(step.name)
-        child = self.children[step.name] = FakeChild(1000 + len(self.started), on_line, on_end)
+        command = [str(word) for word in step.command]
+        spec = ChildSpec(command, {"FAKE": "1"}, step.cwd, step.emulate_tty)
+        child = FakeChild(1000 + len(self.started), spec, on_line, on_end)
+        self.children[step.name] = child
         return child
 
     def watch(

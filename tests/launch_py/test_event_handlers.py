@@ -15,7 +15,7 @@ from launch_py import (
 )
 from launch_py.conditions import IfCondition
 from launch_py.errors import LaunchFileError
-from launch_py.event_handlers import OnProcessIO, OnShutdown
+from launch_py.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
 from launch_py.plan_listing import list_plan
 from launch_py.substitutions import LaunchConfiguration
 
@@ -130,6 +130,43 @@ def test_a_process_that_is_not_there_is_refused(expand):
         OnProcessIO(on_stdout=echo)
 
 
+# What events tell
+
+
+def test_events_tell_of_their_process(trial):
+    events = []
+    a = ExecuteProcess(cmd=["true", "x"], name="a", cwd="/tmp")
+    t = trial(
+        a,
+        process("b"),
+        RegisterEventHandler(
+            OnProcessStart(target_action=a, on_start=lambda event, _: events.append(event))
+        ),
+        on_io(target_action=a, on_stdout=events.append),
+        RegisterEventHandler(
+            OnProcessExit(target_action=a, on_exit=lambda event, _: events.append(event))
+        ),
+    )
+    t["a"].write("one")
+    t["a"].end(3)
+    assert [type(event).__name__ for event in events] == [
+        *("ProcessStarted", "ProcessIO", "ProcessExited")
+    ]
+    assert all(event.action == a and event.process_name == "a" for event in events)
+    assert {(event.cmd[1:], event.cwd, event.pid) for event in events} == {(("x",), "/tmp", 1001)}
+    assert all(event.env == {"FAKE": "1"} for event in events)
+    assert events[-1].returncode == 3
+
+
+def test_what_could_not_be_started_has_no_process(trial):
+    events = []
+    a = process("a", on_exit=lambda event, _: events.append(event))
+    t = trial(a, cannot_start=["a"])
+    t.settle()
+    (event,) = events
+    assert (event.action, event.pid, event.env, event.returncode) == (a, 0, {}, 127)
+
+
 # Shutdown
 
 
@@ -222,6 +259,21 @@ def test_handlers_are_listed(expand):
 
 
 # Real processes
+
+
+def test_events_tell_of_real_processes(launch):
+    launched = launch(
+        """
+        def tell(event, context):
+            print("TOLD", event.action is a, event.cmd[3:], event.env["OWN"], "PATH" in event.env)
+
+        a = python("a", "print('hello')", additional_env={"OWN": "x"}, on_exit=tell)
+        a.cmd.append("last")
+        actions = [a]
+        """
+    )
+    assert launched.wait() == 0, launched.output
+    assert "TOLD True ('last',) x True" in launched.lines
 
 
 def test_real_lines_and_a_real_shutdown(launch):

@@ -145,6 +145,7 @@ class ExecuteProcess(Action):
             ProcessStep(
                 after=(*context.after, *(Trigger(TriggerKind.READY, t) for t in self.depends_on)),
                 delay_s=context.delay_s,
+                action=self,
                 name=name,
                 command=command,
                 cwd=None if self.cwd is None else perform_text(context, self.cwd),

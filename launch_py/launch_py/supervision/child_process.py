@@ -56,6 +56,7 @@ class ChildProcess:
         on_end: Callable[[int], None],
         before_kill: Callable[[], None],
     ) -> None:
+        self.spec = spec
         self._killed = False
         self.ended = False
         self._loop = loop

@@ -11,6 +11,7 @@ from launch_py.errors import StartError
 from launch_py.plan import ProcessStep, StopDelays
 from launch_py.readiness import LogLine, Notified, Probe, ProcessExited, Readiness
 from launch_py.restart_policy import RestartHistory
+from launch_py.supervision.child_process import ChildSpec
 from launch_py.supervision.event_loop import EventLoop, Timer
 from launch_py.supervision.reporter import Reporter
 
@@ -62,6 +63,11 @@ class Child(Protocol):
     @property
     def killed(self) -> bool:
         """Whether it had to be ended by SIGKILL."""
+        ...
+
+    @property
+    def spec(self) -> ChildSpec:
+        """What was started."""
         ...
 
     def stop(self, delays: StopDelays) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from launch_py.errors import LaunchError
-from launch_py.events import ProcessEvent, ProcessExited, ProcessIO, ProcessStarted, Shutdown
+from launch_py.events import ProcessEvent, Shutdown
 from launch_py.plan import (
     DeferredStep,
     FarewellStep,
@@ -21,11 +21,12 @@ from launch_py.plan import (
     Trigger,
     TriggerKind,
 )
-from launch_py.readiness import ProcessExited as ProcessHasExited
+from launch_py.readiness import ProcessExited
 from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.late_calls import LIMIT_S, LateCalls, Outcome
 from launch_py.supervision.member import Member, MemberState, ProcessRunner
+from launch_py.supervision.process_events import exited_event, line_event, started_event
 from launch_py.supervision.reporter import Reporter
 
 EventT = TypeVar("EventT")
@@ -161,7 +162,7 @@ class Supervisor:
         """Take the steps that wait for the readiness; say so when it was the last one."""
         if self.stopping:
             return
-        if any(not isinstance(condition, ProcessHasExited) for condition in member.step.ready):
+        if any(not isinstance(condition, ProcessExited) for condition in member.step.ready):
             elapsed_s = self._loop.clock() - self._started_s
             self._reporter.note(f"{member.name} is ready after {elapsed_s:.2f} s")
         self._advance()
@@ -182,9 +183,7 @@ class Supervisor:
         """Ask those who listen what follows."""
         for step in self._listening:
             if not self.stopping and member.name in step.processes:
-                fd = 2 if stream == "stderr" else 1
-                event = ProcessIO(*_identity(member), f"{text}\n".encode(), fd)
-                self._expand(step.expand, event)
+                self._expand(step.expand, line_event(member, stream, text))
 
     def member_ended(self, member: Member) -> None:
         """Take the steps that wait for the end, or go on stopping."""
@@ -331,15 +330,14 @@ class Supervisor:
             elif isinstance(step, ProcessStep):
                 self._reporter.problem(f"{step.name} is not started: everything stops")
 
-    def _event(self, step: DeferredStep) -> ProcessEvent:
+    def _event(self, step: DeferredStep) -> ProcessEvent | None:
         """Return the event that the step's function is told of: the last one it waited for."""
         if not step.after:
-            return ProcessEvent("", (), 0)
+            return None
         trigger = step.after[-1]
         member = self.members[str(trigger.process)]
-        if trigger.kind is TriggerKind.EXITED:
-            return ProcessExited(*_identity(member), member.exit_code)
-        return ProcessStarted(*_identity(member))
+        exited = trigger.kind is TriggerKind.EXITED
+        return exited_event(member) if exited else started_event(member)
 
     def _check_ended(self, member: Member, text: str) -> None:
         """Fail where something can never happen because this process has ended."""
@@ -375,9 +373,3 @@ class Supervisor:
 def _follows_an_end(step: Step) -> bool:
     """Return whether the step may still be taken while everything stops."""
     return any(trigger.kind is TriggerKind.EXITED for trigger in step.after)
-
-
-def _identity(member: Member) -> tuple[str, tuple[str, ...], int]:
-    """Return what every event tells of its process: name, command and process id."""
-    pid = member.child.pid if member.child is not None else 0
-    return member.name, tuple(str(word) for word in member.step.command), pid
