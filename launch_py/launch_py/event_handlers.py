@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from launch_py.actions.action import Action, check_actions
 from launch_py.errors import LaunchFileError
-from launch_py.events import ProcessIO
-from launch_py.plan import FarewellStep, ListeningStep, Trigger, TriggerKind
+from launch_py.events import ProcessEvent, ProcessIO
+from launch_py.plan import FarewellStep, ListeningStep, Step, Trigger, TriggerKind
 
 if TYPE_CHECKING:
     from launch_py.launch_context import LaunchContext
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 HandlerFunction = Callable[[Any, "LaunchContext"], Iterable[Action] | Action | None]
 Reaction = Iterable[Action] | Action | HandlerFunction
 LineFunction = Callable[[ProcessIO], Iterable[Action] | Action | None]
+Target = Action | str | Callable[[Action], bool] | None
 
 
 class EventHandler(ABC):
@@ -36,14 +37,17 @@ class EventHandler(ABC):
 class ProcessEventHandler(EventHandler):
     """Actions that follow something that a process does.
 
-    Given as a list they are expanded with the launch file, so mistakes in them show before
-    anything starts. Given as a function `function(event, context)` they are asked for when the
-    event happens.
+    The process is that of `target_action`, or of this name; without it, or with a function
+    `function(action)` that decides, it is any process, each once.
+
+    Given as a list, for one process, the actions are expanded with the launch file, so mistakes in
+    them show before anything starts. Given as a function `function(event, context)`, or for any
+    process, they are asked for when the event happens.
     """
 
     kind: TriggerKind
 
-    def __init__(self, target_action: Action | str | None, reaction: Reaction) -> None:
+    def __init__(self, target_action: Target, reaction: Reaction) -> None:
         name = type(self).__name__
         self.target_action = _check_target(target_action, name)
         self.function = reaction if callable(reaction) else None
@@ -51,13 +55,29 @@ class ProcessEventHandler(EventHandler):
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the actions; they wait for the event."""
+        target = self.target_action
+        if not isinstance(target, Action | str):
+            scope = context.scoped()
+            context.plan.add_for_each(lambda name: self._step(scope.scoped(), name))
+            return
         inner = context.scoped()
-        inner.after = (*context.after, Trigger(self.kind, self.target_action))
+        inner.after = (*context.after, Trigger(self.kind, target))
         if self.function is not None:
             inner.plan.add(inner.deferred(self.function))
         with inner.plan.detached():
             for action in self.actions:
                 action.visit(inner)
+
+    def _step(self, scope: LaunchContext, name: str) -> Step:
+        """Return what asks for the actions at the event of one of any processes."""
+
+        def react(event: Any, context: LaunchContext) -> Iterable[Action] | Action | None:
+            if not _concerns(self.target_action, event):
+                return None
+            return self.actions if self.function is None else self.function(event, context)
+
+        scope.after = (*scope.after, Trigger(self.kind, name))
+        return scope.deferred(react)
 
 
 class OnProcessStart(ProcessEventHandler):
@@ -65,7 +85,7 @@ class OnProcessStart(ProcessEventHandler):
 
     kind = TriggerKind.STARTED
 
-    def __init__(self, *, target_action: Action | str | None = None, on_start: Reaction) -> None:
+    def __init__(self, *, target_action: Target = None, on_start: Reaction) -> None:
         super().__init__(target_action, on_start)
 
 
@@ -79,7 +99,7 @@ class OnProcessExit(ProcessEventHandler):
 
     kind = TriggerKind.EXITED
 
-    def __init__(self, *, target_action: Action | str | None = None, on_exit: Reaction) -> None:
+    def __init__(self, *, target_action: Target = None, on_exit: Reaction) -> None:
         super().__init__(target_action, on_exit)
 
 
@@ -87,13 +107,13 @@ class OnProcessIO(EventHandler):
     """What follows each line that a process writes, until everything is to stop.
 
     The functions are called as `function(event)` and return actions, or None. The event's text is
-    one line, as bytes and with its newline.
+    one line, as bytes and with its newline. `target_action` is as in `ProcessEventHandler`.
     """
 
     def __init__(
         self,
         *,
-        target_action: Action | str | None = None,
+        target_action: Target = None,
         on_stdout: LineFunction | None = None,
         on_stderr: LineFunction | None = None,
     ) -> None:
@@ -104,16 +124,19 @@ class OnProcessIO(EventHandler):
 
     def expand(self, context: LaunchContext) -> None:
         """Listen to the process."""
+        target = self.target_action
         context.plan.add(
             ListeningStep(
                 after=context.after,
                 delay_s=context.delay_s,
-                processes=(self.target_action,),
+                processes=(target,) if isinstance(target, Action | str) else None,
                 expand=context.at_event(self._react),
             )
         )
 
     def _react(self, event: ProcessIO, _context: LaunchContext) -> Iterable[Action] | Action | None:
+        if not _concerns(self.target_action, event):
+            return None
         function = self.on_stdout if event.from_stdout else self.on_stderr
         return function(event) if function is not None else None
 
@@ -142,7 +165,17 @@ class OnShutdown(EventHandler):
         )
 
 
-def _check_target(target_action: Action | str | None, handler: str) -> Action | str:
-    if isinstance(target_action, Action | str):
-        return target_action
-    raise LaunchFileError(f"{handler} needs target_action=, the action or the name of one process")
+def _check_target(target: Target, handler: str) -> Target:
+    if target is None or isinstance(target, Action | str) or callable(target):
+        return target
+    raise LaunchFileError(
+        f"target_action= of {handler} takes an action, the name of a process or a function of an "
+        f"action, not {target!r}"
+    )
+
+
+def _concerns(target: Target, event: ProcessEvent) -> bool:
+    """Return whether an event of any process is one of the target's, where a function decides."""
+    if target is None or isinstance(target, Action | str):
+        return True
+    return event.action is not None and target(event.action)

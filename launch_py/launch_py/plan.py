@@ -116,10 +116,10 @@ class DeferredStep(Step):
 class ListeningStep(Step):
     """From its time on, asks a function of the launch file at every line of some processes.
 
-    Before `finish`, a process may be an action.
+    Before `finish`, a process may be an action; None are all processes.
     """
 
-    processes: tuple[str | Action, ...]
+    processes: tuple[str | Action, ...] | None
     expand: Callable[[ProcessIO], Sequence[Step]]
 
 
@@ -183,7 +183,8 @@ class PlanBuilder:
         self._steps: list[Step] = []
         self._panels: list[PanelEntry] = []
         self._warnings: list[str] = []
-        self._names: set[str] = set()
+        self._names: dict[str, None] = {}
+        self._for_each: list[tuple[Callable[[str], Step], set[str]]] = []
         self._processes_of: dict[Action, list[str]] = {}
         self._expanding: list[Action] = []
         self._finished = 0
@@ -219,6 +220,10 @@ class PlanBuilder:
                 self._processes_of[action].append(step.name)
         self._steps.append(step)
 
+    def add_for_each(self, make: Callable[[str], Step]) -> None:
+        """Add the step that `make` returns for the name of each process, also of later ones."""
+        self._for_each.append((make, set()))
+
     def add_panel(self, entry: PanelEntry) -> None:
         """Add a part of the ready panel."""
         self._panels.append(entry)
@@ -237,6 +242,10 @@ class PlanBuilder:
 
     def finish_steps(self) -> tuple[Step, ...]:
         """Return the steps added since the last call, resolved; see `finish`."""
+        for make, names in self._for_each:
+            missing = [name for name in self._names if name not in names]
+            self._steps += map(make, missing)
+            names.update(missing)
         new = self._steps[self._finished :]
         resolved = [step for step in map(self._resolve, new) if step is not None]
         self._steps[self._finished :] = resolved
@@ -253,7 +262,7 @@ class PlanBuilder:
         while unique in self._names:
             number += 1
             unique = f"{name}-{number}"
-        self._names.add(unique)
+        self._names[unique] = None
         return unique
 
     def _resolve(self, step: Step) -> Step | None:
@@ -263,7 +272,7 @@ class PlanBuilder:
             if not names and trigger.kind is TriggerKind.EXITED:
                 return None  # It waits for the end of something that is switched off.
             triggers.extend(Trigger(trigger.kind, name) for name in names)
-        if isinstance(step, ListeningStep):
+        if isinstance(step, ListeningStep) and step.processes is not None:
             names = [name for target in step.processes for name in self._names_of(target, step)]
             step = replace(step, processes=tuple(names))
         return replace(step, after=tuple(dict.fromkeys(triggers)))

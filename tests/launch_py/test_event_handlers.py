@@ -126,8 +126,87 @@ def test_lines_of_a_process_that_is_switched_off_are_nobodys(trial):
 def test_a_process_that_is_not_there_is_refused(expand):
     with pytest.raises(LaunchFileError, match="waits for unknown process 'b'; the processes are a"):
         expand([process("a"), on_io(target_action="b", on_stdout=echo)])
-    with pytest.raises(LaunchFileError, match="OnProcessIO needs target_action="):
-        OnProcessIO(on_stdout=echo)
+    with pytest.raises(LaunchFileError, match=r"target_action= of OnProcessIO takes .*, not 3"):
+        OnProcessIO(target_action=3, on_stdout=echo)  # pyright: ignore[reportArgumentType]
+
+
+# Any process
+
+
+def test_without_a_target_any_process_is_meant_also_a_later_one(trial):
+    heard = []
+    t = trial(
+        RegisterEventHandler(
+            OnProcessStart(on_start=lambda event, _: heard.append(f"{event.process_name} up"))
+        ),
+        RegisterEventHandler(
+            OnProcessExit(on_exit=lambda event, _: heard.append(f"{event.process_name} over"))
+        ),
+        on_io(on_stdout=lambda event: heard.append(f"{event.process_name} wrote")),
+        process("a", restart=RestartPolicy("on-failure", max_restarts=1)),
+        process("b", on_exit=lambda *_: process("c")),
+        process("off", condition=IfCondition("false")),
+    )
+    assert heard == ["a up", "b up"]
+    t["a"].end(1)
+    t.advance(0.5)
+    t["b"].end(0)
+    assert heard[2:] == ["b over", "c up"]
+    t["c"].write("x")
+    t["c"].end(0)
+    t["a"].end(0)
+    assert heard[4:] == ["c wrote", "c over", "a over"]
+    assert t.finish() == 0
+
+
+def test_a_function_may_choose_the_processes(trial):
+    heard = []
+    a, b = process("a"), process("b")
+    t = trial(
+        a,
+        b,
+        on_io(
+            target_action=lambda action: action == b,
+            on_stdout=lambda event: heard.append(event.text),
+        ),
+        RegisterEventHandler(
+            OnProcessExit(
+                target_action=lambda action: action == b, on_exit=[LogInfo(msg="b"), process("c")]
+            )
+        ),
+    )
+    t["a"].write("a")
+    t["b"].write("b")
+    t["a"].end(0)
+    assert "b" not in t.screen.lines
+    t["b"].end(0)
+    assert "b" in t.screen.lines
+    assert heard == [b"b\n"]
+    assert t.started == ["a", "b", "c"]
+
+
+def test_any_end_is_followed_also_while_everything_stops(trial):
+    heard = []
+    t = trial(
+        process("a", on_exit=Shutdown()),
+        process("b"),
+        RegisterEventHandler(OnProcessExit(on_exit=lambda event, _: heard.append(event.pid))),
+    )
+    t["a"].end(0)
+    t["b"].end(0)
+    t.settle()
+    assert heard == [1001, 1002]
+
+
+def test_actions_for_any_process_are_taken_for_each(trial):
+    t = trial(
+        process("a"),
+        process("b"),
+        RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg="one over")])),
+    )
+    t["a"].end(0)
+    t["b"].end(0)
+    assert t.screen.lines.count("one over") == 2
 
 
 # What events tell

@@ -123,14 +123,14 @@ def test_a_function_as_handler_is_called_later(expand):
     handler = OnProcessExit(target_action=a, on_exit=lambda _event, _context: [LogInfo(msg="x")])
     deferred = expand([a, RegisterEventHandler(handler)]).steps[1]
     assert isinstance(deferred, DeferredStep)
-    (message,) = deferred.expand(None)  # pyright: ignore[reportArgumentType]
+    (message,) = deferred.expand(None)
     assert isinstance(message, MessageStep)
     assert message.after == ()
 
 
-def test_a_handler_needs_its_target():
-    with pytest.raises(LaunchFileError, match="OnProcessExit needs target_action="):
-        OnProcessExit(on_exit=[])
+def test_a_handler_s_target_is_no_number():
+    with pytest.raises(LaunchFileError, match=r"target_action= of OnProcessExit takes .*, not 3"):
+        OnProcessExit(target_action=3, on_exit=[])  # pyright: ignore[reportArgumentType]
 
 
 def test_start_up_leaves_out_reactions_and_keeps_what_follows_a_one_shot(expand):

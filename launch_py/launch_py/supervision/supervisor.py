@@ -182,7 +182,8 @@ class Supervisor:
     def member_wrote(self, member: Member, stream: str, text: str) -> None:
         """Ask those who listen what follows."""
         for step in self._listening:
-            if not self.stopping and member.name in step.processes:
+            heard = step.processes is None or member.name in step.processes
+            if heard and not self.stopping:
                 self._expand(step.expand, line_event(member, stream, text))
 
     def member_ended(self, member: Member) -> None:
