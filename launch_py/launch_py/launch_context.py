@@ -56,6 +56,17 @@ class LaunchContext:
             remappings=list(self.remappings),
         )
 
+    def bare(self) -> LaunchContext:
+        """Return a copy without what was set so far."""
+        return replace(
+            self,
+            launch_configurations={},
+            environment={},
+            namespace="",
+            parameters=[],
+            remappings=[],
+        )
+
     def included(self, path: Path | None, arguments: Mapping[str, str]) -> LaunchContext:
         """Return the scope of a file that is included here with these arguments."""
         inner = self.scoped()

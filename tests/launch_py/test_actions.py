@@ -104,6 +104,38 @@ def test_a_group_without_scope_does_not(expand):
     assert texts(expand(actions)) == ["inside"]
 
 
+def test_a_group_may_see_nothing_of_what_is_around_it(expand):
+    actions = [
+        SetLaunchConfiguration("a", "outside"),
+        SetEnvironmentVariable("NEW", "1"),
+        GroupAction(
+            [
+                SetLaunchConfiguration("c", "inside"),
+                LogInfo(msg=[LaunchConfiguration(n, default="none") for n in "abc"]),
+                sh("in"),
+            ],
+            forwarding=False,
+            launch_configurations={"b": LaunchConfiguration("a")},
+        ),
+        LogInfo(msg=LaunchConfiguration("a")),
+        GroupAction([LogInfo(msg=LaunchConfiguration("a"))], scoped=False, forwarding=False),
+    ]
+    plan = expand(actions)
+    assert texts(plan) == ["noneoutsideinside", "outside", "outside"]
+    assert plan.processes[0].environment == {}
+
+
+def test_a_timer_that_outlives_the_shutdown_is_refused(expand):
+    assert texts(expand([TimerAction(period=0.0, actions=[], cancel_on_shutdown="true")])) == []
+    with pytest.raises(LaunchFileError, match="TimerAction's cancel_on_shutdown cannot be false"):
+        expand([TimerAction(period=0.0, actions=[], cancel_on_shutdown=False)])
+
+
+def test_arguments_of_ros_that_mean_nothing_here_are_taken(expand):
+    (step,) = expand([sh(log_cmd=True, cached_output=True)]).processes
+    assert step == expand([sh()]).processes[0]
+
+
 def test_the_environment_is_that_of_the_scope(expand):
     environ = {**os.environ, "LIST": "b", "GONE": "1"}
     plan = expand(

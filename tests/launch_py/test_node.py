@@ -1,5 +1,7 @@
 """The command line of a Node: program, names, namespaces, remappings, parameters."""
 
+import os
+
 import pytest
 import yaml
 
@@ -42,6 +44,26 @@ def test_a_bare_node_is_its_program(expand, demo_package):
     plan = expand([node()])
     assert words(plan) == (str(demo_package.parents[1] / "lib" / "demo" / "talker"),)
     assert plan.processes[0].name == "talker"
+
+
+def test_a_program_without_package_is_a_path_or_on_the_path(expand):
+    plan = expand(
+        [
+            Node(executable="/bin/true", arguments=["x"], ros_arguments=["-y"]),
+            Node(executable="true", namespace="left"),
+        ]
+    )
+    assert words(plan) == ("/bin/true", "x", "--ros-args", "-y")
+    assert os.path.basename(str(words(plan, 1)[0])) == "true"
+    assert [step.name for step in plan.processes] == ["true", "true-2"]
+    with pytest.raises(NotFoundError, match="program /no/such does not exist"):
+        expand([Node(executable="/no/such")])
+
+
+def test_a_group_without_forwarding_has_no_namespace_around_it(expand):
+    around = [PushRosNamespace("left"), SetRemap("a", "b"), SetParameter("c", 1)]
+    plan = expand([*around, GroupAction([node()], forwarding=False)])
+    assert len(words(plan)) == 1
 
 
 def test_arguments_come_before_the_ros_arguments(expand):

@@ -52,6 +52,8 @@ class ProcessOptions(TypedDict, total=False):
     respawn: bool | Text
     respawn_delay: float | None
     respawn_max_retries: int
+    log_cmd: bool
+    cached_output: bool
     sigterm_timeout: float | Text
     sigkill_timeout: float | Text
     condition: Condition | None
@@ -79,6 +81,8 @@ class ExecuteProcess(Action):
         additional_env: variables added to the inherited environment.
         sigterm_timeout: seconds from SIGINT to SIGTERM when it is stopped.
         sigkill_timeout: seconds from SIGTERM to SIGKILL.
+        log_cmd: taken as in ROS, and does nothing: `--print` shows all commands.
+        cached_output: taken as in ROS, and does nothing: the output is in the log folder.
         condition: whether it is started.
     """
 
@@ -101,6 +105,8 @@ class ExecuteProcess(Action):
         respawn: bool | Text = False,
         respawn_delay: float | None = None,
         respawn_max_retries: int = -1,
+        log_cmd: bool = False,
+        cached_output: bool = False,
         sigterm_timeout: float | Text = SIGTERM_TIMEOUT_S,
         sigkill_timeout: float | Text = SIGKILL_TIMEOUT_S,
         condition: Condition | None = None,
@@ -194,7 +200,7 @@ class ExecuteProcess(Action):
             raise LaunchFileError("ExecuteProcess needs cmd=[program, argument, ...]")
         if self.shell:
             return ("/bin/sh", "-c", " ".join(words))
-        return (self._find(context, words[0]), *words[1:])
+        return (self.find(context, words[0]), *words[1:])
 
     def describe(self) -> str:
         """Return what to call it in a message."""
@@ -209,9 +215,10 @@ class ExecuteProcess(Action):
         import shlex
 
         words = shlex.split(text)
-        return (self._find(context, words[0]), *words[1:], *command)
+        return (self.find(context, words[0]), *words[1:], *command)
 
-    def _find(self, context: LaunchContext, program: str) -> str:
+    def find(self, context: LaunchContext, program: str) -> str:
+        """Return the path of a program; see `find_program`."""
         path = context.environment_variable("PATH") or ""
         if os.sep in program and self.cwd is not None:
             program = os.path.join(perform_text(context, self.cwd), program)

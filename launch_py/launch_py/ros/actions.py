@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -42,7 +43,8 @@ class Node(ExecuteProcess):
     Args:
         package: the package; a Python distribution's script whose module lies in it is taken
             first, else a program in <prefix>/lib/<package>.
-        executable: the name of the script or program.
+        executable: the name of the script or program; without a package its path, or its name on
+            PATH.
         name: the node's name. It renames *every* node of the process, so leave it out for a
             process with several nodes; `exec_name` says what to call the process.
         namespace: the namespace, inside the one of `PushRosNamespace`.
@@ -60,8 +62,8 @@ class Node(ExecuteProcess):
     def __init__(
         self,
         *,
-        package: Text,
         executable: Text,
+        package: Text | None = None,
         name: Text | None = None,
         namespace: Text | None = None,
         exec_name: Text | None = None,
@@ -90,9 +92,12 @@ class Node(ExecuteProcess):
             NotFoundError: there is no such package or executable.
             ParameterError: a parameter cannot be passed on.
         """
-        program = Packages(context.base_environment).executable(
-            perform_text(context, self.package), perform_text(context, self.executable)
-        )
+        executable = perform_text(context, self.executable)
+        if self.package is None:
+            program = (self.find(context, executable),)
+        else:
+            package = perform_text(context, self.package)
+            program = Packages(context.base_environment).executable(package, executable)
         ros: list[str | GeneratedFile] = []
         name = "" if self.node_name is None else perform_text(context, self.node_name)
         namespace = self.resolve_namespace(context)
@@ -107,6 +112,11 @@ class Node(ExecuteProcess):
         ros += [perform_text(context, word) for word in self.ros_arguments]
         words = [perform_text(context, word) for word in self.arguments]
         return (*program, *words, *(["--ros-args", *ros] if ros else []))
+
+    def process_name(self, context: LaunchContext) -> str:
+        """Return what to call the process."""
+        name = super().process_name(context)
+        return os.path.basename(name) if self.name is self.executable else name
 
     def resolve_namespace(self, context: LaunchContext) -> str:
         """Return the node's namespace with a leading slash, "" for the root."""
