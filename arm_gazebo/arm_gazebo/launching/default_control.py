@@ -61,13 +61,12 @@ def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> Hardw
     Many a block gives interfaces to joints that mimic others, or that are fixed, too.
     """
     moving = {joint.name for joint in robot.joints if joint.type in COMMANDABLE}
-    by_itself = set(commandable_joints(robot))
     parts = [part for component in hardware for part in component.joints]
     commands = [
         (part.name, command.name)
         for part in parts
         for command in part.command_interfaces
-        if part.name in by_itself
+        if part.name in moving and part.mimic is None
     ]
     # Of dicts, because a joint has several interfaces, and may be in several blocks.
     commanded = dict.fromkeys(name for name, _ in commands)

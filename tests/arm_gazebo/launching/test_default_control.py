@@ -106,3 +106,18 @@ def test_joints_are_parted_by_what_the_hardware_does_with_them():
     assert hardware_joints(parse_urdf(URDF), hardware) == HardwareJoints(
         shown=("spin", "finger"), positioned=("turn",), driven_otherwise=("spin",)
     )
+
+
+def test_a_joint_with_mimic_false_is_driven_by_itself():
+    robot = parse_urdf(URDF)
+    block = (
+        '<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>'
+        '<joint name="finger"{}><command_interface name="position"/></joint></ros2_control></robot>'
+    )
+
+    def positioned(attribute):
+        text = URDF.replace("</robot>", block.format(attribute))
+        return hardware_joints(robot, parse_hardware_info(text)).positioned
+
+    assert positioned("") == ()
+    assert positioned(' mimic="false"') == ("finger",)
