@@ -84,7 +84,9 @@ def open_renderer(
         except CameraError as error:
             reasons.append(str(error))
             continue
-        renderer = GlRenderer(context, max_width, max_height)
+        # The test picture may be the largest of all.
+        width, height = max(max_width, TEST_SENSOR.width), max(max_height, TEST_SENSOR.height)
+        renderer = GlRenderer(context, width, height)
         _test(renderer)
         return renderer
     raise CameraError("no render backend to try")

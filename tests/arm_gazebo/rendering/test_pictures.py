@@ -122,6 +122,14 @@ def test_the_intrinsics_project_a_point_to_the_pixel_that_shows_it(
 
 
 @all_backends
+def test_a_picture_may_be_smaller_than_that_of_the_self_test(draw, backend):
+    ball = '<geom type="sphere" size="0.3" pos="2 0 1" rgba="1 0 0 1"/>'
+    rows, columns = np.nonzero(reddish(draw(backend, world(ball), sensor(32, 24))))
+    assert rows.size > 20
+    assert (np.mean(columns), np.mean(rows)) == pytest.approx((15.5, 11.5), abs=1.0)
+
+
+@all_backends
 def test_the_horizon_is_where_it_belongs(draw, backend):
     picture = draw(backend, world(FLOOR), sensor())
     grey = np.ptp(picture.astype(int), axis=2) < 8
