@@ -358,13 +358,8 @@ def test_a_drive_hardly_moves_a_joint_whose_friction_is_above_its_effort(bench, 
     assert abs(run.run(1.0)[-1, 0]) < 0.1
 
 
-def test_friction_holds_a_limp_joint(bench, parts):
-    run = bench(rubbing(parts, 0.25), hold_joints=False)
-    assert abs(run.run(2.0)[-1, 0]) < 0.02
-
-
 def test_friction_that_takes_most_of_the_effort_costs_no_accuracy(bench, parts):
     run = bench(parts.pendulum('<dynamics friction="12"/>'))
     run.claim()
     run.command(-1.0)
-    assert run.run(2.0)[-1, 0] == pytest.approx(-1.0, abs=3e-3)
+    assert run.run(2.0)[-1, 0] == pytest.approx(-1.0, abs=3e-4)
