@@ -81,7 +81,7 @@ def _process(file: Path, arguments: dict[str, str], package_path: Sequence[Path]
     import xacro
 
     # xacro would import it in the midst of an expansion, and make an interrupt there an error.
-    import xacro.substitution_args
+    import xacro.substitution_args  # pyright: ignore[reportUnusedImport]
 
     with _findable(package_path):
         try:
