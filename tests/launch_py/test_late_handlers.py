@@ -124,18 +124,13 @@ def test_a_forced_stop_waits_for_no_function(trial):
 def test_real_ends_in_a_shutdown(launch):
     launched = launch(
         """
+        def tell(event, context):
+            sys.stdout.write(f"{event.process_name} FN\\n")
+
         a = python("a", "print('done')", depends_on="b", on_exit=Shutdown())
         b = forever("b", on_exit=[LogInfo(msg="B EXIT LOGGED")])
-        actions = [
-            a,
-            b,
-            *(
-                RegisterEventHandler(
-                    OnProcessExit(target_action=p, on_exit=lambda e, _: print(e.process_name, "FN"))
-                )
-                for p in (a, b)
-            ),
-        ]
+        handlers = [OnProcessExit(target_action=p, on_exit=tell) for p in (a, b)]
+        actions = [a, b, *map(RegisterEventHandler, handlers)]
         """
     )
     assert launched.wait() == 0, launched.output
@@ -161,4 +156,4 @@ def test_a_second_ctrl_c_stops_now_also_where_a_function_hangs(launch):
     launched.wait_for("HANGING")
     while launched.process.poll() is None:  # One that comes at once counts as the first.
         launched.signal(signal.SIGINT)
-    assert launched.wait() == 130
+    assert launched.wait() == 130, launched.output

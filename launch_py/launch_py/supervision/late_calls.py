@@ -14,6 +14,10 @@ from launch_py.supervision.event_loop import EventLoop, Timer
 LIMIT_S = 5.0
 """How long one function may take; then it is left alone, and so are those that follow it."""
 
+PATIENCE_S = 0.1
+"""How long the loop itself waits for a function: what most of them print is then not mixed with
+what the loop prints."""
+
 Expand = Callable[[], Sequence[Step]]
 Outcome = Sequence[Step] | LaunchError
 
@@ -66,7 +70,11 @@ class LateCalls:
             self._loop.add_reader(self._pipe[0], self._deliver)
         self._limit = self._loop.call_later(LIMIT_S, self._too_late)
         # A daemon: the supervisor ends without it.
-        threading.Thread(target=self._run, args=(self._waiting[0][0],), daemon=True).start()
+        thread = threading.Thread(target=self._run, args=(self._waiting[0][0],), daemon=True)
+        thread.start()
+        thread.join(PATIENCE_S)
+        if not thread.is_alive():
+            self._deliver()
 
     def _run(self, expand: Expand) -> None:
         try:

@@ -106,6 +106,10 @@ class Session:
         inotify = watch_folder()
         if inotify is not None:
             self._loop.add_reader(inotify, lambda: self._segments_appeared(inotify))
+        # Afterwards they are blocked here, but not in the thread of a function that is not waited
+        # for: there one would raise KeyboardInterrupt in the last lines.
+        for number in stop_signals():
+            signal.signal(number, lambda *_: None)
         with self._loop.signals(self._signal_callbacks()):
             self._supervisor.begin()
             if self._live:
