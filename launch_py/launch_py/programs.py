@@ -6,6 +6,9 @@ import sys
 from launch_py.errors import NotFoundError
 from launch_py.near_names import describe_known
 
+INSTEAD = {"ros2": "arm has the same verbs, as in: arm control list_controllers"}
+"""What there is instead of programs that launch files of ROS run."""
+
 
 def scripts_folder() -> str:
     """Return the folder of this Python's scripts.
@@ -36,10 +39,17 @@ def find_program(name: str, path: str) -> str:
         candidate = os.path.join(folder, name)
         if os.path.isfile(candidate) and os.access(candidate, os.X_OK):
             return candidate
+    hint = INSTEAD.get(name) or _near_program(name, folders)
+    raise NotFoundError(
+        f"no program {name!r} on PATH or in {scripts_folder()}{hint and '; ' + hint}"
+    )
+
+
+def _near_program(name: str, folders: list[str]) -> str:
+    """Return what to say of programs with a near name, "" where there is none."""
     names: set[str] = set()
     for folder in folders:
         if os.path.isdir(folder):
             names.update(os.listdir(folder))
     hint = describe_known(name, names)
-    near = f"; {hint}" if hint.startswith("did you mean") else ""
-    raise NotFoundError(f"no program {name!r} on PATH or in {scripts_folder()}{near}")
+    return hint if hint.startswith("did you mean") else ""

@@ -12,6 +12,9 @@ MANY = [f"/topic_{n}" for n in range(MAX_LISTED + 1)]
     [
         ("ech", ["echo", "hz"], "did you mean 'echo'?"),
         ("states", ["/left/joint_states", "/tf"], "did you mean '/left/joint_states'?"),
+        ("ros2", ["grops", "rosidl", "groups"], "it has grops, groups, rosidl"),
+        ("lsit", ["list"], "did you mean 'list'?"),
+        ("whatever", ["at", "w"], "it has at, w"),
         ("zzz", ["b", "a", "b"], "it has a, b"),
         ("zzz", [], "it has none"),
         ("zzz", MANY, f"none of the {len(MANY)} is named like it"),
