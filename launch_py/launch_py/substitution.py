@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, cast
 
@@ -87,9 +87,21 @@ def keep_pairs(pairs: Pairs | None) -> tuple[tuple[Text, Text], ...]:
     return tuple(cast("Iterable[tuple[Text, Text]]", items))
 
 
-def perform_pairs(context: LaunchContext, pairs: Pairs) -> tuple[tuple[str, str], ...]:
-    """Return the pairs with both sides performed; see `perform_text`."""
-    return tuple(
-        (perform_text(context, left), perform_text(context, right))
-        for left, right in keep_pairs(pairs)
-    )
+def perform_pairs(context: LaunchContext, pairs: Pairs, of: str) -> tuple[tuple[str, str], ...]:
+    """Return the pairs with both sides performed; see `perform_text`.
+
+    Args:
+        context: the scope.
+        pairs: the pairs.
+        of: what they are given for, for the error.
+
+    Raises:
+        LaunchFileError: what is given is no pair, or a side of it is no text.
+        SubstitutionError: a substitution has no value.
+    """
+    performed: list[tuple[str, str]] = []
+    for pair in keep_pairs(pairs):
+        if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
+            raise LaunchFileError(f"{of} takes pairs of two texts, not {pair!r}")
+        performed.append((perform_text(context, pair[0]), perform_text(context, pair[1])))
+    return tuple(performed)

@@ -235,7 +235,7 @@ def test_an_empty_prefix_is_none(expand, prefix):
         (sh(output=3), "needed, not 3 of type int"),
         (
             IncludeLaunchDescription(LaunchDescription(), launch_arguments=["abc"]),  # pyright: ignore[reportArgumentType]
-            "^the launch description: ValueError: too many values",
+            "^launch_arguments= takes pairs of two texts, not 'abc'$",
         ),
     ],
 )

@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from launch_py import GroupAction, SetLaunchConfiguration, TopicPublished
-from launch_py.errors import NotFoundError, ParameterError
+from launch_py.errors import LaunchFileError, NotFoundError, ParameterError
 from launch_py.plan import GeneratedFile
 from launch_py.ros import (
     FindPackagePrefix,
@@ -94,6 +94,12 @@ def test_remappings_may_be_a_dict(expand):
         "--ros-args",
         *("-r", "chat:=talk"),
     )
+
+
+@pytest.mark.parametrize("pair", [("a", "b", "c"), ("a",), "ab", 3, {"a": "b"}])
+def test_a_remapping_that_is_no_pair_is_a_sentence(expand, pair):
+    with pytest.raises(LaunchFileError, match=r"remappings= takes pairs of two texts, not .*a|3"):
+        expand([node(remappings=[pair])])
 
 
 def test_what_is_not_given_may_be_none(expand):

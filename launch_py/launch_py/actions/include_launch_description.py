@@ -56,7 +56,7 @@ class IncludeLaunchDescription(Action):
         Raises:
             UsageError: it passes an argument that the file does not declare.
         """
-        arguments = dict(perform_pairs(context, self.launch_arguments))
+        arguments = dict(perform_pairs(context, self.launch_arguments, "launch_arguments="))
         path, description = self._load(context)
         inner = context.included(path, arguments)
         if len(inner.included_files) > MAX_DEPTH:
@@ -70,7 +70,7 @@ class IncludeLaunchDescription(Action):
         super().survey(survey, context)
         try:
             path, description = self._load(context)
-            arguments = dict(perform_pairs(context, self.launch_arguments))
+            arguments = dict(perform_pairs(context, self.launch_arguments, "launch_arguments="))
         except LaunchError:
             return
         if path is None or path not in context.included_files:

@@ -48,8 +48,8 @@ class ReadyPanel(Action):
         context.plan.add_panel(
             PanelEntry(
                 title=title,
-                topics=perform_pairs(context, self.topics),
-                commands=perform_pairs(context, self.commands),
-                notes=perform_pairs(context, self.notes),
+                topics=perform_pairs(context, self.topics, "topics="),
+                commands=perform_pairs(context, self.commands, "commands="),
+                notes=perform_pairs(context, self.notes, "notes="),
             )
         )

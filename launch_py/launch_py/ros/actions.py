@@ -107,7 +107,8 @@ class Node(ExecuteProcess):
             ros += ["-r", f"__ns:={namespace}"]
         for parameters in self._parameter_files(context, namespace, name):
             ros += ["--params-file", parameters]
-        for old, new in [*context.remappings, *perform_pairs(context, self.remappings)]:
+        remappings = perform_pairs(context, self.remappings, "remappings=")
+        for old, new in [*context.remappings, *remappings]:
             ros += ["-r", f"{old}:={new}"]
         ros += [perform_text(context, word) for word in self.ros_arguments]
         words = [perform_text(context, word) for word in self.arguments]
