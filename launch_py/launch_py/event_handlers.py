@@ -61,6 +61,7 @@ class ProcessEventHandler(EventHandler):
             context.plan.add_for_each(lambda name: self._step(scope.scoped(), name))
             return
         inner = context.scoped()
+        inner.event = None  # Not the one that is waited for.
         inner.after = (*context.after, Trigger(self.kind, target))
         if self.function is not None:
             inner.plan.add(inner.deferred(self.function))

@@ -40,6 +40,8 @@ class LaunchContext:
     after: tuple[Trigger, ...] = ()
     delay_s: float = 0.0
     """What the steps added in this scope wait for, and how long after that."""
+    event: object = None
+    """What has happened, for the actions that are expanded then; see `LocalSubstitution`."""
     launch_file: Path | None = None
     included_files: tuple[Path, ...] = ()
     """The launch files around this scope, outermost first."""
@@ -89,7 +91,7 @@ class LaunchContext:
 
         def expand(event: EventT) -> Sequence[Step]:
             inner = self.scoped()
-            inner.after, inner.delay_s = (), 0.0
+            inner.after, inner.delay_s, inner.event = (), 0.0, event
             who = "an event handler"
             with blaming(lambda: who):
                 for action in check_actions(function(event, inner) or (), who):

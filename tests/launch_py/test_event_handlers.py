@@ -15,7 +15,7 @@ from launch_py import (
 )
 from launch_py.conditions import IfCondition
 from launch_py.errors import LaunchFileError
-from launch_py.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
+from launch_py.event_handlers import OnProcessIO, OnShutdown
 from launch_py.plan_listing import list_plan
 from launch_py.substitutions import LaunchConfiguration
 
@@ -130,122 +130,6 @@ def test_a_process_that_is_not_there_is_refused(expand):
         OnProcessIO(target_action=3, on_stdout=echo)  # pyright: ignore[reportArgumentType]
 
 
-# Any process
-
-
-def test_without_a_target_any_process_is_meant_also_a_later_one(trial):
-    heard = []
-    t = trial(
-        RegisterEventHandler(
-            OnProcessStart(on_start=lambda event, _: heard.append(f"{event.process_name} up"))
-        ),
-        RegisterEventHandler(
-            OnProcessExit(on_exit=lambda event, _: heard.append(f"{event.process_name} over"))
-        ),
-        on_io(on_stdout=lambda event: heard.append(f"{event.process_name} wrote")),
-        process("a", restart=RestartPolicy("on-failure", max_restarts=1)),
-        process("b", on_exit=lambda *_: process("c")),
-        process("off", condition=IfCondition("false")),
-    )
-    assert heard == ["a up", "b up"]
-    t["a"].end(1)
-    t.advance(0.5)
-    t["b"].end(0)
-    assert heard[2:] == ["b over", "c up"]
-    t["c"].write("x")
-    t["c"].end(0)
-    t["a"].end(0)
-    assert heard[4:] == ["c wrote", "c over", "a over"]
-    assert t.finish() == 0
-
-
-def test_a_function_may_choose_the_processes(trial):
-    heard = []
-    a, b = process("a"), process("b")
-    t = trial(
-        a,
-        b,
-        on_io(
-            target_action=lambda action: action == b,
-            on_stdout=lambda event: heard.append(event.text),
-        ),
-        RegisterEventHandler(
-            OnProcessExit(
-                target_action=lambda action: action == b, on_exit=[LogInfo(msg="b"), process("c")]
-            )
-        ),
-    )
-    t["a"].write("a")
-    t["b"].write("b")
-    t["a"].end(0)
-    assert "b" not in t.screen.lines
-    t["b"].end(0)
-    assert "b" in t.screen.lines
-    assert heard == [b"b\n"]
-    assert t.started == ["a", "b", "c"]
-
-
-def test_any_end_is_followed_also_while_everything_stops(trial):
-    heard = []
-    t = trial(
-        process("a", on_exit=Shutdown()),
-        process("b"),
-        RegisterEventHandler(OnProcessExit(on_exit=lambda event, _: heard.append(event.pid))),
-    )
-    t["a"].end(0)
-    t["b"].end(0)
-    t.settle()
-    assert heard == [1001, 1002]
-
-
-def test_actions_for_any_process_are_taken_for_each(trial):
-    t = trial(
-        process("a"),
-        process("b"),
-        RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg="one over")])),
-    )
-    t["a"].end(0)
-    t["b"].end(0)
-    assert t.screen.lines.count("one over") == 2
-
-
-# What events tell
-
-
-def test_events_tell_of_their_process(trial):
-    events = []
-    a = ExecuteProcess(cmd=["true", "x"], name="a", cwd="/tmp")
-    t = trial(
-        a,
-        process("b"),
-        RegisterEventHandler(
-            OnProcessStart(target_action=a, on_start=lambda event, _: events.append(event))
-        ),
-        on_io(target_action=a, on_stdout=events.append),
-        RegisterEventHandler(
-            OnProcessExit(target_action=a, on_exit=lambda event, _: events.append(event))
-        ),
-    )
-    t["a"].write("one")
-    t["a"].end(3)
-    assert [type(event).__name__ for event in events] == [
-        *("ProcessStarted", "ProcessIO", "ProcessExited")
-    ]
-    assert all(event.action == a and event.process_name == "a" for event in events)
-    assert {(event.cmd[1:], event.cwd, event.pid) for event in events} == {(("x",), "/tmp", 1001)}
-    assert all(event.env == {"FAKE": "1"} for event in events)
-    assert events[-1].returncode == 3
-
-
-def test_what_could_not_be_started_has_no_process(trial):
-    events = []
-    a = process("a", on_exit=lambda event, _: events.append(event))
-    t = trial(a, cannot_start=["a"])
-    t.settle()
-    (event,) = events
-    assert (event.action, event.pid, event.env, event.returncode) == (a, 0, {}, 127)
-
-
 # Shutdown
 
 
@@ -338,21 +222,6 @@ def test_handlers_are_listed(expand):
 
 
 # Real processes
-
-
-def test_events_tell_of_real_processes(launch):
-    launched = launch(
-        """
-        def tell(event, context):
-            print("TOLD", event.action is a, event.cmd[3:], event.env["OWN"], "PATH" in event.env)
-
-        a = python("a", "print('hello')", additional_env={"OWN": "x"}, on_exit=tell)
-        a.cmd.append("last")
-        actions = [a]
-        """
-    )
-    assert launched.wait() == 0, launched.output
-    assert "TOLD True ('last',) x True" in launched.lines
 
 
 def test_real_lines_and_a_real_shutdown(launch):

@@ -23,8 +23,8 @@ ROS_NAMES = {
     "launch_py.substitutions": (
         "AllSubstitution AndSubstitution AnySubstitution Command EnvironmentVariable "
         "EqualsSubstitution FindExecutable IfElseSubstitution LaunchConfiguration "
-        "NotEqualsSubstitution NotSubstitution OrSubstitution PathJoinSubstitution "
-        "PythonExpression TextSubstitution ThisLaunchFile ThisLaunchFileDir"
+        "LocalSubstitution NotEqualsSubstitution NotSubstitution OrSubstitution "
+        "PathJoinSubstitution PythonExpression TextSubstitution ThisLaunchFile ThisLaunchFileDir"
     ),
     "launch_py.ros.actions": (
         "Node PushROSNamespace PushRosNamespace SetParameter SetParametersFromFile SetRemap "

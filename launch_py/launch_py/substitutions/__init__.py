@@ -17,6 +17,7 @@ from launch_py.substitutions.python_expression import PythonExpression
 from launch_py.substitutions.text import (
     EnvironmentVariable,
     LaunchConfiguration,
+    LocalSubstitution,
     PathJoinSubstitution,
     TextSubstitution,
     ThisLaunchFile,
@@ -34,6 +35,7 @@ __all__ = [
     "FindExecutable",
     "IfElseSubstitution",
     "LaunchConfiguration",
+    "LocalSubstitution",
     "NotEqualsSubstitution",
     "NotSubstitution",
     "OrSubstitution",

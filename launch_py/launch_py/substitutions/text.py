@@ -51,6 +51,40 @@ class LaunchConfiguration(Substitution):
         return f"LaunchConfiguration({describe_text(self.variable_name)!r})"
 
 
+class LocalSubstitution(Substitution):
+    """What an event tells, as in `LocalSubstitution("event.reason")`.
+
+    It has a value in actions that are expanded when the event happens: those of `OnShutdown`, of a
+    function, and of a handler of any process. Other handlers' lists are expanded before.
+    """
+
+    def __init__(self, expression: str, description: str | None = None) -> None:
+        self.expression = expression
+        self.description = description
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the attribute of the event as a text."""
+        name, _, path = self.expression.partition(".")
+        if name != "event" or not path:
+            raise SubstitutionError(f"{self.describe()} has no value: only event.NAME has one")
+        value = context.event
+        if value is None:
+            raise SubstitutionError(
+                f"{self.describe()} has no value before the event; give the handler a function of "
+                "event and context"
+            )
+        for part in path.split("."):
+            if not hasattr(value, part):
+                kind = type(value).__name__
+                raise SubstitutionError(f"{self.describe()} has no value: no {part!r} in {kind}")
+            value = getattr(value, part)
+        return str(value)
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return self.description or f"LocalSubstitution({self.expression!r})"
+
+
 class EnvironmentVariable(Substitution):
     """The value of an environment variable, with what the launch file has set so far."""
 
