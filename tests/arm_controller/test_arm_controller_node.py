@@ -19,9 +19,11 @@ def set_pose(robot) -> Callable:
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
     from rcl_interfaces.srv import SetParameters
 
-    client = robot.node("parameter_client").create_client(
-        SetParameters, "/arm_controller_node/set_parameters"
-    )
+    from arm_node.testing import Acquaintance
+
+    node = robot.node("parameter_client")
+    client = node.create_client(SetParameters, "/arm_controller_node/set_parameters")
+    acquaintance = Acquaintance.with_server(node, client.service_name)
     types = {
         "double_array_value": ParameterType.PARAMETER_DOUBLE_ARRAY,
         "integer_array_value": ParameterType.PARAMETER_INTEGER_ARRAY,
@@ -34,6 +36,7 @@ def set_pose(robot) -> Callable:
             parameters=[Parameter(name="desired_param", value=ParameterValue(type=kind, **value))]
         )
         until(client.service_is_ready, "the parameter service")
+        until(lambda: acquaintance.complete, "known to the parameter service")
         future = client.call_async(request)
         until(future.done, "an answer of the parameter service")
         return future.result().results[0]

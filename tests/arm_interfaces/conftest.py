@@ -111,6 +111,14 @@ class Client:
                 pytest.fail(f"not within {timeout_s} s: {what}")
             self.executor.spin_once(timeout_sec=0.05)
 
+    def be_known_to_server(self, service: str) -> None:
+        """Spin until the process that serves a service knows of all that this node has."""
+        from arm_node.testing import Acquaintance
+
+        acquaintance = Acquaintance.with_server(self.node, service)
+        self.spin_until(lambda: acquaintance.complete, f"known to the server of {service}")
+        acquaintance.close()
+
     def wait_for(self, future: Any, what: str) -> Any:
         """Spin until a future is done; return its result."""
         self.spin_until(future.done, what)

@@ -44,6 +44,7 @@ class Goal:
         self.feedback: list[Any] = []
         self._action = ActionClient(client.node, action_type, name)
         client.spin_until(self._action.server_is_ready, f"the action {name}")
+        client.be_known_to_server(f"{name}/_action/send_goal")
         sent = self._action.send_goal_async(
             goal, feedback_callback=lambda message: self.feedback.append(message.feedback)
         )
@@ -104,6 +105,7 @@ def test_controllers_are_listed(client: Any, start_peer: Callable[..., Any]) -> 
     start_peer("controller_lister")
     service = client.node.create_client(ListControllers, "/controller_manager/list_controllers")
     client.spin_until(service.service_is_ready, "the service")
+    client.be_known_to_server(service.service_name)
     answer = client.wait_for(service.call_async(ListControllers.Request()), "the list")
     inner, outer = answer.controller
     assert (inner.name, inner.state, inner.update_rate) == ("inner", "active", 100)

@@ -60,6 +60,7 @@ def test_node_describes_its_types(
     start_peer("announcer", name)
     service = client.node.create_client(GetTypeDescription, "/announcer/get_type_description")
     client.spin_until(service.service_is_ready, "the description service")
+    client.be_known_to_server(service.service_name)
     # The service looks a type up in the graph, which a node's own topics join a moment later.
     client.spin_until(lambda: client.node.count_publishers(f"/{name}"), "the topic")
     request = GetTypeDescription.Request(type_name=name, type_hash=expected_types[name]["hash"])

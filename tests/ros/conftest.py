@@ -18,8 +18,6 @@ import pytest
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
-ANSWER_TIMEOUT_S = 0.5  # then the question is put again
-NO_TYPE_HASH = f"RIHS01_{0:064}"  # well-formed, so that nobody complains of it
 
 
 class Launched:
@@ -237,52 +235,21 @@ class Client:
         self.be_known_to_server(client.service_name)
         return self.result_of(client.call_async(request), name, timeout_s)
 
-    def be_known_to_readers(self, topic: str, plain: bool = False) -> None:
-        """Block until the processes that read a topic know of all that this node has.
+    def be_known_to_readers(self, topic: str) -> None:
+        """Block until the processes that read a topic know of all that this node has."""
+        from arm_node.testing import Acquaintance
 
-        What is sent before that may be lost, best-effort messages and answers alike. A process
-        hears of another's endpoints in their order: one who answers a client knows all that was
-        made before that client. Every node answers for its process, by `get_type_description`.
-        """
-        from type_description_interfaces.srv import GetTypeDescription
-
-        question = GetTypeDescription.Request(type_hash=NO_TYPE_HASH)
-        askers: dict[str, Any] = {}
-        known: set[bytes] = set()
-
-        def knows(reader: Any) -> bool:
-            if "UNKNOWN" in reader.node_name:
-                return False  # its name comes by a topic of its own, later
-            node = f"{reader.node_namespace.rstrip('/')}/{reader.node_name}"
-            if node not in askers:
-                service = f"{node}/get_type_description"
-                askers[node] = self.node.create_client(GetTypeDescription, service)
-            return self._answers(askers[node], question)
-
-        def known_to_all() -> bool:
-            readers = self.node.get_subscriptions_info_by_topic(topic, no_mangle=plain)
-            processes = {bytes(reader.endpoint_gid)[:12]: reader for reader in readers}
-            known.update(p for p, reader in processes.items() if p not in known and knows(reader))
-            return bool(processes) and processes.keys() <= known
-
-        self.wait_until(known_to_all, f"known to the readers of {topic}")
-        for asker in askers.values():
-            self.run(lambda asker=asker: self.node.destroy_client(asker), topic)
+        self._make(Acquaintance(self.node, topic), topic)
 
     def be_known_to_server(self, service: str) -> None:
         """Block until the process that serves a service knows of all that this node has."""
-        self.be_known_to_readers(f"rq{service}Request", plain=True)
+        from arm_node.testing import Acquaintance
 
-    @staticmethod
-    def _answers(client: Any, request: object) -> bool:
-        if not client.service_is_ready():
-            return False
-        answered = threading.Event()
-        future = client.call_async(request)
-        future.add_done_callback(lambda _: answered.set())
-        if not answered.wait(ANSWER_TIMEOUT_S):
-            client.remove_pending_request(future)
-        return answered.is_set()
+        self._make(Acquaintance.with_server(self.node, service), service)
+
+    def _make(self, acquaintance: Any, name: str) -> None:
+        self.wait_until(lambda: acquaintance.complete, f"known to those behind {name}")
+        self.run(acquaintance.close, name)
 
     def run(self, function: Callable[[], object], what: str) -> Any:
         """Run a function on the executor's thread; return what it returns."""
