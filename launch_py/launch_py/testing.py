@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Unpack
 
+from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
 from launch_py.errors import StartError
 from launch_py.plan import ProcessStep, StopDelays
 from launch_py.readiness import Probe
@@ -24,6 +26,11 @@ class ManualClock:
     def advance(self, seconds: float) -> None:
         """Let time pass."""
         self.now_s += seconds
+
+
+def fake_process(name: str, **options: Unpack[ProcessOptions]) -> ExecuteProcess:
+    """Return a process for a `FakeRunner`: its command does not matter."""
+    return ExecuteProcess(cmd=["true"], name=name, **options)
 
 
 class FakeChild:

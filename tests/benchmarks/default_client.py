@@ -4,6 +4,7 @@ Prints one JSON line per answer; wall times are CLOCK_MONOTONIC, the same in eve
 """
 
 import argparse
+import contextlib
 import json
 import random
 import threading
@@ -133,7 +134,9 @@ def main() -> None:
         record(node, arguments.topic, arguments.seconds, arguments.best_effort)
     else:
         command_latency(node, arguments.steps)
-    rclpy.try_shutdown()
+    # The signal that ends the client may have done so, in the midst of this.
+    with contextlib.suppress(RuntimeError):
+        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

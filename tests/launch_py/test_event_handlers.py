@@ -3,7 +3,6 @@
 import pytest
 
 from launch_py import (
-    ExecuteProcess,
     LogInfo,
     LogLine,
     OpaqueFunction,
@@ -18,10 +17,7 @@ from launch_py.errors import LaunchFileError
 from launch_py.event_handlers import OnProcessIO, OnShutdown
 from launch_py.plan_listing import list_plan
 from launch_py.substitutions import LaunchConfiguration
-
-
-def process(name, **options):
-    return ExecuteProcess(cmd=["true"], name=name, **options)
+from launch_py.testing import fake_process
 
 
 def on_io(**options):
@@ -41,7 +37,7 @@ def echo(event):
 
 def test_a_function_learns_of_each_line(trial):
     events = []
-    a = process("a", restart=RestartPolicy.on_failure())
+    a = fake_process("a", restart=RestartPolicy.on_failure())
     t = trial(a, on_io(target_action=a, on_stdout=events.append, on_stderr=events.append))
     t["a"].write("one")
     t["a"].write("zwölf", "stderr")
@@ -57,7 +53,7 @@ def test_a_function_learns_of_each_line(trial):
 
 
 def test_each_stream_has_its_function(trial):
-    t = trial(process("a"), process("b"), on_io(target_action="a", on_stderr=echo))
+    t = trial(fake_process("a"), fake_process("b"), on_io(target_action="a", on_stderr=echo))
     t["a"].write("out")
     t["b"].write("other", "stderr")
     assert not any("heard" in line for line in t.screen.lines)
@@ -66,7 +62,9 @@ def test_each_stream_has_its_function(trial):
 
 
 def test_what_follows_a_line_may_start_processes_each_time(trial):
-    t = trial(process("a"), on_io(target_action="a", on_stdout=lambda _event: process("b")))
+    t = trial(
+        fake_process("a"), on_io(target_action="a", on_stdout=lambda _event: fake_process("b"))
+    )
     t["a"].write("x")
     t["a"].write("x")
     assert t.started == ["a", "b", "b-2"]
@@ -74,9 +72,9 @@ def test_what_follows_a_line_may_start_processes_each_time(trial):
 
 def test_whoever_follows_a_line_may_wait_for_what_was_there_before(trial):
     t = trial(
-        process("a"),
-        process("c", ready=LogLine("up")),
-        on_io(target_action="a", on_stdout=lambda _event: process("b", depends_on="c")),
+        fake_process("a"),
+        fake_process("c", ready=LogLine("up")),
+        on_io(target_action="a", on_stdout=lambda _event: fake_process("b", depends_on="c")),
     )
     t["a"].write("x")
     assert "b" not in t.started
@@ -86,7 +84,8 @@ def test_whoever_follows_a_line_may_wait_for_what_was_there_before(trial):
 
 def test_lines_are_heard_once_the_handler_is_registered(trial):
     t = trial(
-        process("a"), TimerAction(period=1.0, actions=[on_io(target_action="a", on_stdout=echo)])
+        fake_process("a"),
+        TimerAction(period=1.0, actions=[on_io(target_action="a", on_stdout=echo)]),
     )
     t["a"].write("early")
     t.advance(1.0)
@@ -96,7 +95,7 @@ def test_lines_are_heard_once_the_handler_is_registered(trial):
 
 def test_lines_are_not_heard_any_more_when_everything_stops(trial):
     t = trial(
-        process("a"),
+        fake_process("a"),
         on_io(target_action="a", on_stdout=lambda _event: Shutdown(reason="enough")),
         on_io(target_action="a", on_stdout=echo),
     )
@@ -109,7 +108,9 @@ def test_lines_are_not_heard_any_more_when_everything_stops(trial):
 
 
 def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial):
-    t = trial(process("a"), on_io(target_action="a", on_stdout=lambda event: event.no_such_thing))
+    t = trial(
+        fake_process("a"), on_io(target_action="a", on_stdout=lambda event: event.no_such_thing)
+    )
     t["a"].write("x")
     t["a"].end(0)
     assert t.finish() == 1
@@ -117,15 +118,15 @@ def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial):
 
 
 def test_lines_of_a_process_that_is_switched_off_are_nobodys(trial):
-    a = process("a", condition=IfCondition("false"))
-    t = trial(a, process("b"), on_io(target_action=a, on_stdout=echo))
+    a = fake_process("a", condition=IfCondition("false"))
+    t = trial(a, fake_process("b"), on_io(target_action=a, on_stdout=echo))
     t["b"].write("x")
     assert t.screen.lines[-1] == "[b] x"
 
 
 def test_a_process_that_is_not_there_is_refused(expand):
     with pytest.raises(LaunchFileError, match="waits for unknown process 'b'; the processes are a"):
-        expand([process("a"), on_io(target_action="b", on_stdout=echo)])
+        expand([fake_process("a"), on_io(target_action="b", on_stdout=echo)])
     with pytest.raises(LaunchFileError, match=r"target_action= of OnProcessIO takes .*, not 3"):
         OnProcessIO(target_action=3, on_stdout=echo)  # pyright: ignore[reportArgumentType]
 
@@ -140,7 +141,7 @@ def test_the_shutdown_is_told_of_before_anything_is_asked_to_stop(trial):
         asked.append((event.reason, t.asked_to_stop()))
         return LogInfo(msg=f"bye: {event.reason}")
 
-    t = trial(process("a"), on_shutdown(farewell))
+    t = trial(fake_process("a"), on_shutdown(farewell))
     assert asked == []
     t.supervisor.stop("SIGINT received")
     t.supervisor.stop("again")
@@ -154,7 +155,7 @@ def test_the_shutdown_is_told_of_before_anything_is_asked_to_stop(trial):
 def test_actions_wait_for_the_shutdown(trial):
     called = []
     t = trial(
-        process("a"),
+        fake_process("a"),
         SetLaunchConfiguration("who", "all"),
         on_shutdown(
             [
@@ -173,14 +174,14 @@ def test_actions_wait_for_the_shutdown(trial):
 
 def test_the_shutdown_is_told_of_once_also_where_all_ends_by_itself(trial):
     reasons = []
-    t = trial(process("a"), on_shutdown(lambda event, _context: reasons.append(event.reason)))
+    t = trial(fake_process("a"), on_shutdown(lambda event, _context: reasons.append(event.reason)))
     t["a"].end(3)
     assert t.finish() == 3
     assert reasons == ["idle"]
 
 
 def test_the_end_of_a_required_process_is_a_shutdown(trial):
-    t = trial(process("a", on_exit=Shutdown()), on_shutdown(LogInfo(msg="bye")))
+    t = trial(fake_process("a", on_exit=Shutdown()), on_shutdown(LogInfo(msg="bye")))
     t["a"].end(3)
     assert "bye" in t.screen.lines
     assert t.finish() == 3
@@ -188,14 +189,14 @@ def test_the_end_of_a_required_process_is_a_shutdown(trial):
 
 def test_a_handler_that_is_not_registered_yet_says_nothing(trial):
     t = trial(
-        process("a"), TimerAction(period=9.0, actions=[on_shutdown(LogInfo(msg="too early"))])
+        fake_process("a"), TimerAction(period=9.0, actions=[on_shutdown(LogInfo(msg="too early"))])
     )
     t.supervisor.stop("now")
     assert "too early" not in t.screen.lines
 
 
 def test_nothing_is_started_while_everything_stops(trial):
-    t = trial(process("a"), on_shutdown([process("b"), LogInfo(msg="bye")]))
+    t = trial(fake_process("a"), on_shutdown([fake_process("b"), LogInfo(msg="bye")]))
     t.supervisor.stop("now")
     assert t.started == ["a"]
     assert t.screen.problems == ["b is not started: everything stops"]
@@ -204,7 +205,7 @@ def test_nothing_is_started_while_everything_stops(trial):
 
 def test_a_mistake_in_a_farewell_does_not_keep_the_others_from_stopping(trial):
     t = trial(
-        process("a"),
+        fake_process("a"),
         on_shutdown(lambda event, _context: event.nothing),
         on_shutdown(LogInfo(msg="bye")),
     )
@@ -217,7 +218,7 @@ def test_a_mistake_in_a_farewell_does_not_keep_the_others_from_stopping(trial):
 
 
 def test_handlers_are_listed(expand):
-    plan = expand([process("a"), on_io(target_action="a"), on_shutdown(LogInfo(msg="bye"))])
+    plan = expand([fake_process("a"), on_io(target_action="a"), on_shutdown(LogInfo(msg="bye"))])
     assert list_plan(plan, {}).count("actions that a function of the launch file decides") == 2
 
 

@@ -6,7 +6,6 @@ import threading
 import pytest
 
 from launch_py import (
-    ExecuteProcess,
     LogInfo,
     OpaqueFunction,
     RegisterEventHandler,
@@ -15,10 +14,7 @@ from launch_py import (
 )
 from launch_py.event_handlers import OnProcessExit
 from launch_py.supervision.late_calls import LIMIT_S
-
-
-def process(name, **options):
-    return ExecuteProcess(cmd=["true"], name=name, **options)
+from launch_py.testing import fake_process
 
 
 def on_exit(target, reaction):
@@ -28,8 +24,8 @@ def on_exit(target, reaction):
 def test_ends_are_followed_also_while_everything_stops(trial):
     events = []
     t = trial(
-        process("a", on_exit=Shutdown()),
-        process("b", on_exit=[LogInfo(msg="b is over")]),
+        fake_process("a", on_exit=Shutdown()),
+        fake_process("b", on_exit=[LogInfo(msg="b is over")]),
         on_exit("b", lambda event, _context: events.append((event.process_name, event.returncode))),
     )
     t["a"].end(0)
@@ -41,7 +37,7 @@ def test_ends_are_followed_also_while_everything_stops(trial):
 
 
 def test_the_end_that_stops_everything_has_its_other_handlers(trial):
-    a = process("a", on_exit=Shutdown())
+    a = fake_process("a", on_exit=Shutdown())
     t = trial(a, on_exit(a, lambda event, _context: LogInfo(msg=f"verdict {event.returncode}")))
     t["a"].end(3)
     t.settle()
@@ -51,8 +47,10 @@ def test_the_end_that_stops_everything_has_its_other_handlers(trial):
 
 def test_nothing_is_started_by_them_and_no_timer_waited_for(trial):
     t = trial(
-        process("a", on_exit=[process("b"), TimerAction(period=1.0, actions=[LogInfo(msg="no")])]),
-        on_exit("a", lambda *_: [process("c"), LogInfo(msg="said"), Shutdown()]),
+        fake_process(
+            "a", on_exit=[fake_process("b"), TimerAction(period=1.0, actions=[LogInfo(msg="no")])]
+        ),
+        on_exit("a", lambda *_: [fake_process("c"), LogInfo(msg="said"), Shutdown()]),
         on_exit("b", LogInfo(msg="b has no end")),
         on_exit("a", OpaqueFunction(function=lambda _context: LogInfo(msg="asked"))),
     )
@@ -67,7 +65,7 @@ def test_nothing_is_started_by_them_and_no_timer_waited_for(trial):
 
 
 def test_what_has_not_happened_before_the_stop_is_left_out(trial):
-    t = trial(process("a"), LogInfo(msg="later"), cannot_start=["a"])
+    t = trial(fake_process("a"), LogInfo(msg="later"), cannot_start=["a"])
     assert t.finish() == 127
     assert "later" not in t.screen.lines
 
@@ -75,8 +73,8 @@ def test_what_has_not_happened_before_the_stop_is_left_out(trial):
 @pytest.mark.parametrize("mistake", [lambda: {}["missing"], lambda: exit(7)])
 def test_a_mistake_is_said_and_changes_nothing_else(trial, mistake):
     t = trial(
-        process("a"),
-        process("b"),
+        fake_process("a"),
+        fake_process("b"),
         on_exit("a", lambda *_: mistake()),
         on_exit("b", lambda *_: LogInfo(msg="b is over")),
     )
@@ -92,8 +90,8 @@ def test_a_mistake_is_said_and_changes_nothing_else(trial, mistake):
 def test_a_function_that_does_not_return_holds_up_no_stop_and_is_left_in_the_end(trial):
     never = threading.Event()
     t = trial(
-        process("a"),
-        process("b", depends_on="a"),
+        fake_process("a"),
+        fake_process("b", depends_on="a"),
         on_exit("b", lambda *_: never.wait()),
         on_exit("a", lambda *_: LogInfo(msg="never asked")),
     )
@@ -110,7 +108,7 @@ def test_a_function_that_does_not_return_holds_up_no_stop_and_is_left_in_the_end
 
 def test_a_forced_stop_waits_for_no_function(trial):
     never = threading.Event()
-    t = trial(process("a"), process("b"), on_exit("a", lambda *_: never.wait()))
+    t = trial(fake_process("a"), fake_process("b"), on_exit("a", lambda *_: never.wait()))
     t.supervisor.stop("first")
     t["a"].end(0)
     t.supervisor.kill("second")

@@ -15,10 +15,7 @@ from launch_py.conditions import IfCondition
 from launch_py.errors import SubstitutionError
 from launch_py.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
 from launch_py.substitutions import LocalSubstitution
-
-
-def process(name, **options):
-    return ExecuteProcess(cmd=["true"], name=name, **options)
+from launch_py.testing import fake_process
 
 
 def on_io(**options):
@@ -42,9 +39,9 @@ def test_without_a_target_any_process_is_meant_also_a_later_one(trial):
             OnProcessExit(on_exit=lambda event, _: heard.append(f"{event.process_name} over"))
         ),
         on_io(on_stdout=lambda event: heard.append(f"{event.process_name} wrote")),
-        process("a", restart=RestartPolicy("on-failure", max_restarts=1)),
-        process("b", on_exit=lambda *_: process("c")),
-        process("off", condition=IfCondition("false")),
+        fake_process("a", restart=RestartPolicy("on-failure", max_restarts=1)),
+        fake_process("b", on_exit=lambda *_: fake_process("c")),
+        fake_process("off", condition=IfCondition("false")),
     )
     assert heard == ["a up", "b up"]
     t["a"].end(1)
@@ -60,7 +57,7 @@ def test_without_a_target_any_process_is_meant_also_a_later_one(trial):
 
 def test_a_function_may_choose_the_processes(trial):
     heard = []
-    a, b = process("a"), process("b")
+    a, b = fake_process("a"), fake_process("b")
     t = trial(
         a,
         b,
@@ -70,7 +67,8 @@ def test_a_function_may_choose_the_processes(trial):
         ),
         RegisterEventHandler(
             OnProcessExit(
-                target_action=lambda action: action == b, on_exit=[LogInfo(msg="b"), process("c")]
+                target_action=lambda action: action == b,
+                on_exit=[LogInfo(msg="b"), fake_process("c")],
             )
         ),
     )
@@ -87,8 +85,8 @@ def test_a_function_may_choose_the_processes(trial):
 def test_any_end_is_followed_also_while_everything_stops(trial):
     heard = []
     t = trial(
-        process("a", on_exit=Shutdown()),
-        process("b"),
+        fake_process("a", on_exit=Shutdown()),
+        fake_process("b"),
         RegisterEventHandler(OnProcessExit(on_exit=lambda event, _: heard.append(event.pid))),
     )
     t["a"].end(0)
@@ -99,8 +97,8 @@ def test_any_end_is_followed_also_while_everything_stops(trial):
 
 def test_actions_for_any_process_are_taken_for_each(trial):
     t = trial(
-        process("a"),
-        process("b"),
+        fake_process("a"),
+        fake_process("b"),
         RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg="one over")])),
     )
     t["a"].end(0)
@@ -116,7 +114,7 @@ def test_events_tell_of_their_process(trial):
     a = ExecuteProcess(cmd=["true", "x"], name="a", cwd="/tmp")
     t = trial(
         a,
-        process("b"),
+        fake_process("b"),
         RegisterEventHandler(
             OnProcessStart(target_action=a, on_start=lambda event, _: events.append(event))
         ),
@@ -138,7 +136,7 @@ def test_events_tell_of_their_process(trial):
 
 def test_what_could_not_be_started_has_no_process(trial):
     events = []
-    a = process("a", on_exit=lambda event, _: events.append(event))
+    a = fake_process("a", on_exit=lambda event, _: events.append(event))
     t = trial(a, cannot_start=["a"])
     t.settle()
     (event,) = events
@@ -148,7 +146,7 @@ def test_what_could_not_be_started_has_no_process(trial):
 def test_actions_may_say_what_the_event_tells(trial):
     code = LogInfo(msg=["code ", LocalSubstitution("event.returncode")])
     t = trial(
-        process("a", on_exit=lambda *_: code),
+        fake_process("a", on_exit=lambda *_: code),
         on_shutdown(LogInfo(msg=["bye: ", LocalSubstitution("event.reason", "why")])),
     )
     t["a"].end(3)
@@ -165,15 +163,15 @@ def test_actions_may_say_what_the_event_tells(trial):
     ],
 )
 def test_what_the_event_does_not_tell_is_a_sentence(trial, expression, said):
-    t = trial(process("a"), on_shutdown(LogInfo(msg=LocalSubstitution(expression))))
+    t = trial(fake_process("a"), on_shutdown(LogInfo(msg=LocalSubstitution(expression))))
     t["a"].end(0)
     assert t.finish() == 1
     assert re.search(said, str(t.screen.last_line))
 
 
 def test_a_handler_s_list_does_not_take_the_event_around_it(trial):
-    inner = process("b", on_exit=LogInfo(msg=LocalSubstitution("event.pid")))
-    t = trial(process("a", on_exit=lambda *_: inner))
+    inner = fake_process("b", on_exit=LogInfo(msg=LocalSubstitution("event.pid")))
+    t = trial(fake_process("a", on_exit=lambda *_: inner))
     t["a"].end(0)
     assert t.finish() == 1
     assert "has no value before the event" in str(t.screen.last_line)
@@ -182,7 +180,7 @@ def test_a_handler_s_list_does_not_take_the_event_around_it(trial):
 def test_before_the_event_it_tells_nothing(expand):
     code = LogInfo(msg=LocalSubstitution("event.returncode"))
     with pytest.raises(SubstitutionError, match="has no value before the event; give the handler"):
-        expand([process("a", on_exit=code)])
+        expand([fake_process("a", on_exit=code)])
 
 
 # Real processes

@@ -16,22 +16,19 @@ from launch_py import (
     TopicPublished,
 )
 from launch_py.event_handlers import OnProcessExit, OnProcessStart
+from launch_py.testing import fake_process
 
 UP = LogLine("up")
 
 
-def process(name, **options):
-    return ExecuteProcess(cmd=["true"], name=name, **options)
-
-
 def test_a_process_without_condition_is_ready_when_started(trial):
-    t = trial(process("b", depends_on="a"), process("a"))
+    t = trial(fake_process("b", depends_on="a"), fake_process("a"))
     assert t.started == ["a", "b"]
     assert t.screen.ready_after_s == 0.0
 
 
 def test_starts_follow_readiness(trial):
-    t = trial(process("a", ready=UP), process("b", ready=UP, depends_on="a"))
+    t = trial(fake_process("a", ready=UP), fake_process("b", ready=UP, depends_on="a"))
     assert t.started == ["a"]
     t["a"].write("not yet")
     assert t.started == ["a"]
@@ -46,7 +43,7 @@ def test_starts_follow_readiness(trial):
 
 def test_all_of_several_conditions_must_hold(trial):
     topic = TopicPublished("/a")
-    t = trial(process("a", ready=[UP, Notified(), topic]))
+    t = trial(fake_process("a", ready=[UP, Notified(), topic]))
     t["a"].write("up")
     t.runner.watched[topic]()
     assert t.screen.ready_after_s is None
@@ -55,14 +52,18 @@ def test_all_of_several_conditions_must_hold(trial):
 
 
 def test_a_one_shot_is_ready_when_it_has_exited(trial):
-    t = trial(process("spawner", ready=ProcessExited()), process("b", depends_on="spawner"))
+    t = trial(
+        fake_process("spawner", ready=ProcessExited()), fake_process("b", depends_on="spawner")
+    )
     assert t.started == ["spawner"]
     t["spawner"].end(0)
     assert t.started == ["spawner", "b"]
 
 
 def test_a_one_shot_that_fails_ends_the_launch_with_its_code(trial):
-    t = trial(process("spawner", ready=ProcessExited()), process("b", depends_on="spawner"))
+    t = trial(
+        fake_process("spawner", ready=ProcessExited()), fake_process("b", depends_on="spawner")
+    )
     t["spawner"].end(3)
     assert t.finish() == 3
     assert t.started == ["spawner"]
@@ -71,7 +72,7 @@ def test_a_one_shot_that_fails_ends_the_launch_with_its_code(trial):
 
 def test_a_time_out_says_what_is_missing_and_ends_everything(trial):
     condition = LogLine("up", timeout_s=5.0)
-    t = trial(process("a", ready=[condition, TopicPublished("/clock", timeout_s=9.0)]))
+    t = trial(fake_process("a", ready=[condition, TopicPublished("/clock", timeout_s=9.0)]))
     t.advance(5.0)
     assert t.asked_to_stop() == {"a"}
     t["a"].end(0)
@@ -81,7 +82,7 @@ def test_a_time_out_says_what_is_missing_and_ends_everything(trial):
 
 
 def test_a_process_that_is_ready_in_time_is_not_late(trial):
-    t = trial(process("a", ready=LogLine("up", timeout_s=5.0)))
+    t = trial(fake_process("a", ready=LogLine("up", timeout_s=5.0)))
     t["a"].write("up")
     t.advance(10.0)
     assert t.asked_to_stop() == set()
@@ -95,7 +96,7 @@ def test_a_process_that_is_ready_in_time_is_not_late(trial):
     ],
 )
 def test_an_end_before_readiness_ends_the_launch(trial, code, launch_code, said):
-    t = trial(process("a", ready=UP), process("b"))
+    t = trial(fake_process("a", ready=UP), fake_process("b"))
     t["a"].end(code)
     assert t.asked_to_stop() == {"b"}
     t["b"].end(0)
@@ -104,7 +105,7 @@ def test_an_end_before_readiness_ends_the_launch(trial, code, launch_code, said)
 
 
 def test_a_process_that_cannot_be_started_ends_the_launch(trial):
-    t = trial(process("a"), process("b"), cannot_start=["b"])
+    t = trial(fake_process("a"), fake_process("b"), cannot_start=["b"])
     assert t.asked_to_stop() == {"a"}
     t["a"].end(0)
     assert t.finish() == 127
@@ -112,14 +113,14 @@ def test_a_process_that_cannot_be_started_ends_the_launch(trial):
 
 
 def test_a_failure_of_a_process_that_nothing_needs_is_reported_only(trial):
-    t = trial(process("a"), process("b"))
+    t = trial(fake_process("a"), fake_process("b"))
     t["a"].end(139)
     assert t.screen.problems == ["a was killed by SIGSEGV after 0.00 s"]
     assert not t.supervisor.stopping
 
 
 def test_when_all_have_ended_the_first_failure_is_the_exit_code(trial):
-    t = trial(process("a"), process("b"), process("c"))
+    t = trial(fake_process("a"), fake_process("b"), fake_process("c"))
     t["a"].end(0)
     t["b"].end(7)
     t["c"].end(8)
@@ -127,13 +128,13 @@ def test_when_all_have_ended_the_first_failure_is_the_exit_code(trial):
 
 
 def test_when_all_have_succeeded_the_exit_code_is_0(trial):
-    t = trial(process("a"))
+    t = trial(fake_process("a"))
     t["a"].end(0)
     assert t.finish() == 0
 
 
 def test_a_required_process_ends_the_launch_with_its_code(trial):
-    t = trial(process("a", on_exit=Shutdown()), process("b"))
+    t = trial(fake_process("a", on_exit=Shutdown()), fake_process("b"))
     t["a"].end(6)
     assert t.asked_to_stop() == {"b"}
     t["b"].end(0)
@@ -142,7 +143,7 @@ def test_a_required_process_ends_the_launch_with_its_code(trial):
 
 
 def test_a_required_process_that_succeeds_ends_the_launch_well(trial):
-    t = trial(process("a", on_exit=Shutdown(reason="done")), process("b"))
+    t = trial(fake_process("a", on_exit=Shutdown(reason="done")), fake_process("b"))
     t["a"].end(0)
     t["b"].end(1)
     assert t.finish() == 0
@@ -151,7 +152,10 @@ def test_a_required_process_that_succeeds_ends_the_launch_well(trial):
 
 def test_stops_go_against_the_dependencies(trial):
     t = trial(
-        process("a"), process("b", depends_on="a"), process("c", depends_on="b"), process("d")
+        fake_process("a"),
+        fake_process("b", depends_on="a"),
+        fake_process("c", depends_on="b"),
+        fake_process("d"),
     )
     t.supervisor.stop("test")
     assert t.asked_to_stop() == {"c", "d"}
@@ -166,7 +170,7 @@ def test_stops_go_against_the_dependencies(trial):
 
 
 def test_after_a_stop_nothing_new_starts(trial):
-    t = trial(process("a", ready=UP), process("b", depends_on="a"))
+    t = trial(fake_process("a", ready=UP), fake_process("b", depends_on="a"))
     t.supervisor.stop("test")
     t["a"].write("up")
     t["a"].end(0)
@@ -175,7 +179,7 @@ def test_after_a_stop_nothing_new_starts(trial):
 
 
 def test_a_hasty_stop_asks_all_at_once(trial):
-    t = trial(process("a"), process("b", depends_on="a"))
+    t = trial(fake_process("a"), fake_process("b", depends_on="a"))
     t.supervisor.stop_hastily("test")
     assert t.asked_to_stop() == {"a", "b"}
     assert t["a"].stop_delays is not None
@@ -183,7 +187,7 @@ def test_a_hasty_stop_asks_all_at_once(trial):
 
 
 def test_a_forced_stop_kills_all_and_shows_in_the_exit_code(trial):
-    t = trial(process("a"), process("b", depends_on="a"))
+    t = trial(fake_process("a"), fake_process("b", depends_on="a"))
     t.supervisor.stop("first")
     t.supervisor.kill("second")
     assert t["a"].killed
@@ -192,7 +196,7 @@ def test_a_forced_stop_kills_all_and_shows_in_the_exit_code(trial):
 
 
 def test_a_process_that_had_to_be_killed_shows_in_the_exit_code(trial):
-    t = trial(process("a"))
+    t = trial(fake_process("a"))
     t.supervisor.stop("test")
     t["a"].killed = True
     t["a"].end(137)
@@ -201,7 +205,7 @@ def test_a_process_that_had_to_be_killed_shows_in_the_exit_code(trial):
 
 
 def test_a_failed_process_is_restarted_after_its_delay(trial):
-    t = trial(process("a", restart=RestartPolicy.on_failure()))
+    t = trial(fake_process("a", restart=RestartPolicy.on_failure()))
     t["a"].end(1)
     t.advance(0.4)
     assert t.started == ["a"]
@@ -212,7 +216,7 @@ def test_a_failed_process_is_restarted_after_its_delay(trial):
 
 
 def test_a_crash_loop_is_given_up_and_said(trial):
-    t = trial(process("a", restart=RestartPolicy.on_failure(), on_exit=Shutdown()))
+    t = trial(fake_process("a", restart=RestartPolicy.on_failure(), on_exit=Shutdown()))
     for delay_s in (0.5, 1.0, 2.0, 4.0):
         t["a"].end(9)
         t.advance(delay_s)
@@ -222,7 +226,7 @@ def test_a_crash_loop_is_given_up_and_said(trial):
 
 
 def test_a_restart_that_is_due_does_not_happen_after_a_stop(trial):
-    t = trial(process("a", restart=RestartPolicy.always()))
+    t = trial(fake_process("a", restart=RestartPolicy.always()))
     t["a"].end(0)
     t.supervisor.stop("test")
     t.advance(10.0)
@@ -232,7 +236,8 @@ def test_a_restart_that_is_due_does_not_happen_after_a_stop(trial):
 
 def test_a_process_may_become_ready_in_its_second_run(trial):
     t = trial(
-        process("a", ready=UP, restart=RestartPolicy.on_failure()), process("b", depends_on="a")
+        fake_process("a", ready=UP, restart=RestartPolicy.on_failure()),
+        fake_process("b", depends_on="a"),
     )
     t["a"].end(1)
     t.advance(0.5)
@@ -241,12 +246,12 @@ def test_a_process_may_become_ready_in_its_second_run(trial):
 
 
 def test_handlers_of_starts_and_ends(trial):
-    a = process("a")
+    a = fake_process("a")
     t = trial(
         a,
-        RegisterEventHandler(OnProcessStart(target_action=a, on_start=process("b"))),
+        RegisterEventHandler(OnProcessStart(target_action=a, on_start=fake_process("b"))),
         RegisterEventHandler(
-            OnProcessExit(target_action=a, on_exit=[LogInfo(msg="x"), process("c")])
+            OnProcessExit(target_action=a, on_exit=[LogInfo(msg="x"), fake_process("c")])
         ),
     )
     assert t.started == ["a", "b"]
@@ -256,7 +261,7 @@ def test_handlers_of_starts_and_ends(trial):
 
 
 def test_handlers_of_ends_wait_for_the_last_end(trial):
-    t = trial(process("a", restart=RestartPolicy.on_failure(), on_exit=process("b")))
+    t = trial(fake_process("a", restart=RestartPolicy.on_failure(), on_exit=fake_process("b")))
     t["a"].end(1)
     t.advance(0.5)
     assert t.started == ["a", "a"]
@@ -269,9 +274,9 @@ def test_a_function_as_handler_learns_of_the_event(trial):
 
     def on_exit(event, _context):
         events.append((event.process_name, event.returncode, event.pid))
-        return [process("b", depends_on="c"), process("c")]
+        return [fake_process("b", depends_on="c"), fake_process("c")]
 
-    t = trial(process("a", on_exit=on_exit))
+    t = trial(fake_process("a", on_exit=on_exit))
     assert not t.supervisor.done
     t["a"].end(2)
     assert events == [("a", 2, 1001)]
@@ -280,8 +285,10 @@ def test_a_function_as_handler_learns_of_the_event(trial):
 
 def test_a_handler_that_fails_ends_the_launch_with_a_sentence(trial):
     t = trial(
-        process("b"),
-        process("a", on_exit=lambda _event, _context: ExecuteProcess(cmd=["no-such-program-x"])),
+        fake_process("b"),
+        fake_process(
+            "a", on_exit=lambda _event, _context: ExecuteProcess(cmd=["no-such-program-x"])
+        ),
     )
     t["a"].end(0)
     t["b"].end(0)
@@ -294,32 +301,32 @@ def test_a_handler_that_fails_ends_the_launch_with_a_sentence(trial):
     [
         (lambda event, _context: event.no_such_thing, "an event handler: AttributeError"),
         (lambda _event, _context: 3, "an event handler: TypeError"),
-        (lambda *_: process("b", prefix="'"), "an ExecuteProcess of b: ValueError"),
+        (lambda *_: fake_process("b", prefix="'"), "an ExecuteProcess of b: ValueError"),
         (OpaqueFunction(function=lambda _context: 3), "an event handler: TypeError"),
     ],
 )
 def test_a_handler_with_a_mistake_ends_the_launch_with_a_sentence(trial, handler, said):
-    t = trial(process("a", on_exit=handler))
+    t = trial(fake_process("a", on_exit=handler))
     t["a"].end(0)
     assert t.finish() == 1
     assert said in str(t.screen.last_line)
 
 
 def test_whoever_waits_for_a_process_does_not_wait_for_its_handlers(trial):
-    a = process("a", on_exit=process("mourner"))
-    t = trial(a, process("b", depends_on=a))
+    a = fake_process("a", on_exit=fake_process("mourner"))
+    t = trial(a, fake_process("b", depends_on=a))
     assert t.started == ["a", "b"]
 
 
 def test_a_timer_keeps_the_launch_alive(trial):
-    t = trial(TimerAction(period=2.0, actions=[process("a")]))
+    t = trial(TimerAction(period=2.0, actions=[fake_process("a")]))
     assert not t.supervisor.done
     t.advance(2.0)
     assert t.started == ["a"]
 
 
 def test_the_status_says_who_is_waited_for_and_what_they_say(trial):
-    t = trial(process("a", ready=UP), process("b", depends_on="a"))
+    t = trial(fake_process("a", ready=UP), fake_process("b", depends_on="a"))
     assert t.supervisor.status() == "up 0:00 · 1 process · waiting for a, b"
     t["a"].write("up")
     t.supervisor.members["a"].notified({"STATUS": "100 Hz"})
@@ -328,7 +335,7 @@ def test_the_status_says_who_is_waited_for_and_what_they_say(trial):
 
 
 def test_only_the_shown_streams_reach_the_screen(trial, tmp_path):
-    t = trial(process("a", output="log"))
+    t = trial(fake_process("a", output="log"))
     t["a"].write("quiet")
     t["a"].write("loud", "stderr")
     assert "[a] loud" in t.screen.lines
