@@ -5,6 +5,7 @@ fast.
 """
 
 import argparse
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -127,10 +128,23 @@ class VerbFamily:
 
 
 def said_to_user(program: str, action: Callable[[], int | None]) -> int:
-    """Return an action's exit code; what it raises for the user becomes one line on stderr."""
-    try:
-        return action() or 0
-    except ArmCliError as error:
-        sys.stdout.flush()
-        print(f"{program}: {error}", file=sys.stderr)
-        return error.exit_code
+    """Return an action's exit code; what it raises for the user becomes one line on stderr.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C, whatever the interrupted code made of it.
+    """
+    # Only here: `arm --help` needs nothing of launch_py.
+    from launch_py.interruption import Interruption
+
+    interruption = Interruption()
+    with interruption.at(signal.SIGINT):
+        try:
+            return action() or 0
+        except Exception as error:
+            if interruption.came:
+                raise KeyboardInterrupt from error
+            if not isinstance(error, ArmCliError):
+                raise
+            sys.stdout.flush()
+            print(f"{program}: {error}", file=sys.stderr)
+            return error.exit_code

@@ -8,14 +8,14 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from launch_py.errors import LaunchError, UsageError
 from launch_py.expansion import expand_description, survey_description
+from launch_py.interruption import Interruption
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.near_names import describe_known
 from launch_py.packages import Packages, ament_prefixes
@@ -58,22 +58,30 @@ def run(
     """
     started_s = time.monotonic()
     parser = _parser(program, short_names)
-    options, unknown = parser.parse_known_intermixed_args(argv)
-    try:
-        _refuse_unknown_options(unknown, parser)
-        request = parse_request(options, short_names)
-        with _stop_signals_interrupt():
-            return _carry_out(request, started_s, before_start)
-    except KeyboardInterrupt:
-        if options.show_args or options.print_plan:
-            return EXIT_INTERRUPTED
-        sys.stderr.write(f"{program}: stopped before anything was started\n")
-        return 0
-    except LaunchError as error:
-        if options.debug:
-            traceback.print_exc()
-        sys.stderr.write(f"{program}: {error}\n")
-        return EXIT_USAGE
+    options = argparse.Namespace(debug=False, show_args=False, print_plan=False)
+    interruption = Interruption()
+    with interruption.at(signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        try:
+            options, unknown = parser.parse_known_intermixed_args(argv)
+            _refuse_unknown_options(unknown, parser)
+            request = parse_request(options, short_names)
+            return _carry_out(request, started_s, before_start, interruption)
+        except BaseException as error:
+            if interruption.came or isinstance(error, KeyboardInterrupt):
+                return _interrupted(program, options)
+            if not isinstance(error, LaunchError):
+                raise
+            if options.debug:
+                traceback.print_exc()
+            sys.stderr.write(f"{program}: {error}\n")
+            return EXIT_USAGE
+
+
+def _interrupted(program: str, options: argparse.Namespace) -> int:
+    if options.show_args or options.print_plan:
+        return EXIT_INTERRUPTED
+    sys.stderr.write(f"{program}: stopped before anything was started\n")
+    return 0
 
 
 def parse_request(
@@ -144,23 +152,12 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
     )
 
 
-@contextmanager
-def _stop_signals_interrupt() -> Iterator[None]:
-    """Let SIGTERM and SIGHUP do what Ctrl-C does, until the supervisor takes them all over."""
-    numbers = [
-        n
-        for n in (signal.SIGTERM, signal.SIGHUP)
-        if signal.getsignal(n) is not signal.SIG_IGN  # nohup
-    ]
-    previous = {number: signal.signal(number, signal.default_int_handler) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
-
-
-def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[[], None]) -> int:
+def _carry_out(
+    request: LaunchRequest,
+    started_s: float,
+    before_start: Callable[[], None],
+    interruption: Interruption,
+) -> int:
     # Launch files look packages up, too, before any process of theirs exists.
     os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(ament_prefixes(os.environ))
     environ = dict(os.environ)
@@ -187,6 +184,7 @@ def _carry_out(request: LaunchRequest, started_s: float, before_start: Callable[
         started_s=start_of_program(started_s),
         show_all=request.show_all,
     )
+    interruption.check()
     return run_plan(plan, environ, options)
 
 

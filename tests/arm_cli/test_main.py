@@ -1,5 +1,6 @@
 """The `arm` command: its help, its verbs, what it refuses."""
 
+import signal
 import subprocess
 import sys
 import tomllib
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from arm_cli.main import main
+from arm_cli.verb import said_to_user
 from arm_cli.verbs import VERBS
 
 PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
@@ -90,3 +92,25 @@ def test_a_domain_that_is_none_is_said_before_anything_starts(capsys, monkeypatc
     assert captured.err.endswith(
         ": ROS_DOMAIN_ID is 'abc'; it must be a whole number from 0 to 232\n"
     )
+
+
+def test_an_interrupt_is_one_whatever_the_interrupted_code_makes_of_it():
+    def check() -> int:
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+        return 0
+
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        said_to_user("arm check", check)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_an_error_that_no_interrupt_made_stays_one():
+    def check() -> int:
+        raise ImportError("no module")
+
+    with pytest.raises(ImportError, match="no module"):
+        said_to_user("arm check", check)

@@ -21,6 +21,24 @@ def test_an_end_while_the_launch_file_is_read_is_none_with_a_traceback(launch, n
     assert "Traceback" not in launched.output
 
 
+@pytest.mark.parametrize("makes", ["raise ImportError('IMPORTANT')", "pass"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_end_of_which_other_code_makes_something_else_is_an_end(launch, number, makes):
+    launched = launch(f"""
+        import signal
+        try:
+            print('importing', flush=True)
+            signal.pause()
+        except KeyboardInterrupt:
+            {makes}
+        actions = [forever('a')]
+        """)
+    launched.wait_for("importing")
+    launched.signal(number)
+    assert launched.wait() == 0
+    assert launched.lines[1:] == ["launch_py: stopped before anything was started"]
+
+
 def test_a_listing_that_is_interrupted_is_no_success(launch):
     launched = launch(
         "print('reading', flush=True); import signal; signal.pause(); actions = []", "--print"
