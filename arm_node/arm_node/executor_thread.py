@@ -15,6 +15,15 @@ CALLBACKS_TIMEOUT_S = 2.0
 logger = logging.getLogger("arm_node")
 
 
+class _SpinningThread(threading.Thread):
+    """Told from others by its class."""
+
+
+def is_spinning() -> bool:
+    """Return whether any executor has a thread that is alive, as after a `stop` in vain."""
+    return any(isinstance(thread, _SpinningThread) for thread in threading.enumerate())
+
+
 class ExecutorThread:
     """Spins an executor in a thread of its own, from `start` to `stop`.
 
@@ -33,14 +42,17 @@ class ExecutorThread:
         self.executor = executor
         self._stopping = threading.Event()
         self._failures: dict[tuple[type[Exception], str, int | None], float] = {}
-        self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
+        self._thread = _SpinningThread(target=self._spin, name=name, daemon=True)
 
     def start(self) -> None:
         """Serve the executor's nodes from now on."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Serve no more, and wait for the callback that is running; a second time does nothing."""
+        """Serve no more, and wait for the callback that is running, 5 s at most.
+
+        A second time does nothing.
+        """
         if self._stopping.is_set():
             return
         self._stopping.set()
@@ -48,6 +60,12 @@ class ExecutorThread:
             # `wake` would not do: the executor goes back to sleep where it finds no work.
             self.executor.create_task(_do_nothing)
             self._thread.join(JOIN_TIMEOUT_S)
+            if self._thread.is_alive():
+                logger.warning(
+                    "a callback in thread '%s' does not end: left alone after %g s",
+                    self._thread.name,
+                    JOIN_TIMEOUT_S,
+                )
         self.executor.shutdown(CALLBACKS_TIMEOUT_S)
 
     def _spin(self) -> None:

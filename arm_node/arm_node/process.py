@@ -14,7 +14,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -145,9 +145,26 @@ def _run_with_ros(
         sys.stderr.write(f"cannot start ROS: {first_line(error)}\n")
         return EXIT_USAGE
     try:
-        return _run_initialised(application, user_errors, stop)
+        exit_code = _run_initialised(application, user_errors, stop)
     finally:
         try_shutdown()
+    _leave_hanging_callbacks(exit_code)
+    return exit_code
+
+
+def _leave_hanging_callbacks(exit_code: int) -> None:
+    """Exit at once where a callback does not end.
+
+    Python's own teardown would end its thread as soon as that comes back from rclpy, in the midst
+    of C++, which aborts the process.
+    """
+    from arm_node.executor_thread import is_spinning
+
+    if is_spinning():
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            with suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(exit_code)
 
 
 def _run_initialised(

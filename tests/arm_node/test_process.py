@@ -59,3 +59,40 @@ def test_a_terminal_that_goes_ends_the_process_unless_it_runs_under_nohup(
         check=True,
     )
     assert run.stdout.split("\n")[0] == then
+
+
+ENDLESS = """
+import sys
+from contextlib import contextmanager
+
+from arm_node.process import run_process
+
+@contextmanager
+def application(process):
+    from rclpy import create_node
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+
+    def work_without_end():
+        context = Context()
+        context.init()
+        executor = SingleThreadedExecutor(context=context)
+        process.stop(7)
+        while True:
+            executor.spin_once(timeout_sec=0.001)
+
+    node = create_node("worker")
+    node.create_timer(0.01, work_without_end)
+    process.executor.add_node(node)
+    yield
+
+sys.exit(run_process(application, ["program"]))
+"""
+
+
+def test_a_callback_that_does_not_end_is_left_alone():
+    run = subprocess.run(
+        [sys.executable, "-c", ENDLESS], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert run.returncode == 7, run.stderr
+    assert "a callback in thread 'executor' does not end: left alone after 5 s" in run.stderr
