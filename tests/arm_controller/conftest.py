@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 WAIT_TIMEOUT_S = 30.0
+END_TIMEOUT_S = 15.0
 JOINTS = ("j0", "j1", "j2", "j3")
 STATE_ORDER = ("j3", "j0", "j2", "j1")
 """Joint states come in any order; this one is nobody's default."""
@@ -223,9 +224,16 @@ class Program:
         return code
 
     def close(self) -> None:
-        """Leave nothing behind, whatever the test did."""
+        """Leave nothing behind, whatever the test did.
+
+        Killed, it might hold a lock in the shared memory of others, who would then hang.
+        """
         if self.process.poll() is None:
-            self.process.kill()
+            self.process.terminate()
+            try:
+                self.process.wait(END_TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
         self.wait()
         for stream in (self.process.stdin, self.process.stdout):
             if stream is not None and not stream.closed:

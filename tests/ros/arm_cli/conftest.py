@@ -14,6 +14,7 @@ import pytest
 from launch_py.supervision.shared_memory import SharedMemoryLedger
 
 TIMEOUT_S = 120.0
+END_TIMEOUT_S = 15.0
 FOREIGN = "RTPS_TRANSPORT_SHM"
 """What Fast DDS's own complaints about shared memory have in common."""
 
@@ -102,9 +103,16 @@ class CommandLine:
         ledger.sweep()
 
     def close(self) -> None:
-        """End it, whatever the test did."""
+        """End it, whatever the test did.
+
+        Killed, it might hold a lock in the shared memory of others, who would then hang.
+        """
         if self.process.poll() is None:
-            self.process.kill()
+            self.process.terminate()
+            try:
+                self.process.wait(END_TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
         self.wait()
         for stream in (self.process.stdout, self.process.stderr):
             if stream is not None:
