@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from arm_control.errors import LoopStoppedError
 from arm_control.loop_priority import LoopPriority
+from arm_control.outbox import Outbox
 from arm_control.pacer import Pacer
 
 ResultT = TypeVar("ResultT")
@@ -22,6 +23,10 @@ class ControlLoop:
 
     A function handed in while the loop waits for its next deadline, or while it is paused, runs
     at once. Every public method may be called from any thread.
+
+    Attributes:
+        pacer: says when a tick is due.
+        outbox: takes what is published on the loop thread.
     """
 
     def __init__(
@@ -31,6 +36,7 @@ class ControlLoop:
         *,
         on_failure: Callable[[Exception], None] | None = None,
         priority: LoopPriority | None = None,
+        outbox: Outbox | None = None,
     ) -> None:
         """Prepare the thread; `start` starts it.
 
@@ -39,8 +45,10 @@ class ControlLoop:
             pacer: says when a tick is due; from now on it belongs to the loop thread.
             on_failure: called on the loop thread with what the tick raised, after it was logged.
             priority: chooses the scheduler of the loop thread; default the ordinary one.
+            outbox: where ticks put what they publish; default one of the loop's own.
         """
         self.pacer = pacer
+        self.outbox = outbox or Outbox()
         self._tick = tick
         self._on_failure = on_failure
         self._priority = priority or LoopPriority(0)
@@ -152,6 +160,7 @@ class ControlLoop:
             self._serve_calls()
             pacer.begin()
             self._tick()
+            self.outbox.end_tick()
             pacer.end()
             self._priority.note(pacer.period_s, pacer.wall_period_s)
 
@@ -160,14 +169,17 @@ class ControlLoop:
             self._wait_for_call(None)
             return
         self._tick()
+        self.outbox.end_tick()
         request = self._step_requests[0]
         request.done += 1
         if request.done == request.count:
+            self.outbox.send()
             self._step_requests.popleft()
             request.future.set_result(request.done)
         self._serve_calls()
 
     def _wait_for_call(self, timeout_s: float | None) -> None:
+        self.outbox.send()
         try:
             call = self._calls.get(timeout=timeout_s)
         except Empty:
@@ -176,7 +188,11 @@ class ControlLoop:
 
     def _serve_calls(self) -> None:
         # Only what is there now: callers that keep coming must not hold up the tick.
-        for _ in range(self._calls.qsize()):
+        count = self._calls.qsize()
+        if count:
+            # Whoever calls finds everything sent, and may destroy what it was sent with.
+            self.outbox.send()
+        for _ in range(count):
             self._calls.get_nowait().run()
 
     def _pause(self) -> None:

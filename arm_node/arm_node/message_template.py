@@ -156,8 +156,15 @@ class MessageTemplate:
         return self._payload.tobytes()
 
     def publish(self, publisher: Publisher) -> None:
-        """Publish the message as it stands."""
-        publisher.publish(self._payload.tobytes())
+        """Publish the message as it stands.
+
+        Raises:
+            RCLError: the publisher is destroyed already.
+        """
+        # Not `publisher.publish`: its check of the type and its hold on the handle take longer
+        # than the middleware. Neither this call nor `destroy` lets go of the interpreter, so the
+        # handle cannot go in between.
+        publisher.handle.publish_raw(self._payload.tobytes())
 
     def _locate(
         self,

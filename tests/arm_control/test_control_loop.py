@@ -11,7 +11,9 @@ import pytest
 from arm_control.control_loop import ControlLoop
 from arm_control.errors import LoopStoppedError
 from arm_control.loop_priority import LoopPriority
+from arm_control.outbox import MOST_TICKS, Outbox
 from arm_control.pacer import Pacer
+from arm_control.testing import ManualClock
 
 TIMEOUT_S = 20.0
 
@@ -299,3 +301,50 @@ def test_its_thread_is_raised_while_it_paces_and_lowered_while_it_does_not(
     loop.pause().result(TIMEOUT_S)
     (thread,) = ticks.threads
     assert asked == [(os.SCHED_FIFO, thread), (os.SCHED_OTHER, thread)]
+
+
+class Publisher:
+    """A tick that publishes its number through an outbox that time does not press."""
+
+    def __init__(self) -> None:
+        self.outbox = Outbox(ManualClock())
+        self.sent: list[int] = []
+        self.most_together = 0
+        self.count = 0
+        self.done = threading.Event()
+
+    def __call__(self) -> None:
+        number = self.count
+        self.outbox.put(lambda _: self.sent.append(number), b"")
+        self.most_together = max(self.most_together, number - len(self.sent))
+        self.count += 1
+        if self.count == 50:
+            self.done.set()
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_whoever_pauses_finds_everything_published(start: Any, factor: float) -> None:
+    tick = Publisher()
+    loop = start(tick, factor, outbox=tick.outbox)
+    for _ in range(50):
+        loop.resume().result(TIMEOUT_S)
+        loop.pause().result(TIMEOUT_S)
+        count = loop.call(lambda: tick.count).result(TIMEOUT_S)
+        assert tick.sent == list(range(count))
+
+
+def test_whoever_waits_for_steps_finds_them_published(start: Any) -> None:
+    tick = Publisher()
+    loop = start(tick, paused=True, outbox=tick.outbox)
+    for count in (1, 2, MOST_TICKS, 2 * MOST_TICKS + 1):
+        before = len(tick.sent)
+        loop.step(count).result(TIMEOUT_S)
+        assert len(tick.sent) == before + count
+
+
+def test_ticks_that_follow_at_once_are_published_together(start: Any) -> None:
+    tick = Publisher()
+    loop = start(tick, factor=0.0, outbox=tick.outbox)
+    assert tick.done.wait(TIMEOUT_S)
+    loop.pause().result(TIMEOUT_S)
+    assert tick.most_together == MOST_TICKS - 1

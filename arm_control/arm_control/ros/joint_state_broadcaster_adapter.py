@@ -12,6 +12,7 @@ from arm_control.joint_state_broadcaster import (
     JointStateBroadcasterParameters,
 )
 from arm_control.joint_state_layout import QUANTITIES, JointStateLayout
+from arm_control.outbox import Outbox
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_node.message_template import MessageTemplate
 
@@ -33,7 +34,9 @@ class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
                 DynamicJointState, f"{prefix}dynamic_joint_states", qos
             )
             self._publishers = (joint_states, dynamic)
-        self.controller.sink = JointStatePublisher(joint_states, dynamic, parameters.frame_id)
+        self.controller.sink = JointStatePublisher(
+            joint_states, dynamic, parameters.frame_id, self.loop.outbox
+        )
 
     def on_cleanup(self) -> None:
         """Destroy the publishers."""
@@ -46,24 +49,34 @@ class _StampedArray:
     """A message of fixed shape whose float64 values are one flat array. Loop thread only."""
 
     def __init__(
-        self, publisher: Publisher, template: MessageTemplate, where: NDArray[np.intp]
+        self,
+        publisher: Publisher,
+        template: MessageTemplate,
+        where: NDArray[np.intp],
+        outbox: Outbox,
     ) -> None:
-        self._publisher = publisher
+        self._send = publisher.handle.publish_raw
+        self._outbox = outbox
         self._template = template
         self._where = where
 
     def publish(self, stamp_ns: int, values: NDArray[np.float64]) -> None:
         self._template.set_stamps(stamp_ns)
         self._template.float64[self._where] = values
-        self._template.publish(self._publisher)
+        self._outbox.put(self._send, self._template.to_bytes())
 
 
 class JointStatePublisher:
     """Publishes joint states as sensor_msgs and control_msgs; see `JointStateSink`."""
 
     def __init__(
-        self, joint_states: Publisher, dynamic_joint_states: Publisher | None, frame_id: str
+        self,
+        joint_states: Publisher,
+        dynamic_joint_states: Publisher | None,
+        frame_id: str,
+        outbox: Outbox,
     ) -> None:
+        self._outbox = outbox
         self._joint_states = joint_states
         self._dynamic_joint_states = dynamic_joint_states
         self._frame_id = frame_id
@@ -95,7 +108,7 @@ class JointStatePublisher:
         message.header.frame_id = self._frame_id
         template = MessageTemplate(message)
         where = np.concatenate([template.indices(quantity) for quantity in QUANTITIES])
-        return _StampedArray(self._joint_states, template, where)
+        return _StampedArray(self._joint_states, template, where, self._outbox)
 
     def _open_components(self, layout: JointStateLayout, publisher: Publisher) -> _StampedArray:
         message = DynamicJointState(
@@ -107,4 +120,5 @@ class JointStatePublisher:
         )
         message.header.frame_id = self._frame_id
         template = MessageTemplate(message)
-        return _StampedArray(publisher, template, template.indices("interface_values[*].values"))
+        where = template.indices("interface_values[*].values")
+        return _StampedArray(publisher, template, where, self._outbox)

@@ -4,6 +4,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
+from arm_control.outbox import Outbox
 from arm_node.message_template import MessageTemplate
 
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
@@ -17,8 +18,15 @@ class RosClockPublisher:
     last is what everybody else takes for the time.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, outbox: Outbox) -> None:
+        """Offer the topic.
+
+        Args:
+            node: of the simulation.
+            outbox: of the loop that publishes.
+        """
         self._node = node
+        self._outbox = outbox
         self._known_publishers = 1
         self._publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
         self._message = MessageTemplate(Clock())
@@ -31,8 +39,10 @@ class RosClockPublisher:
     def publish(self, time_s: float) -> None:
         """Publish a simulation time."""
         self._time_s = time_s
-        self._message.set_stamps(round(time_s * 1e9))
-        self._message.publish(self._publisher)
+        # Asked without `Publisher`'s hold on the handle, as in `MessageTemplate.publish`.
+        if self._publisher.handle.get_subscription_count():
+            self._message.set_stamps(round(time_s * 1e9))
+            self._outbox.put(self._publisher.handle.publish_raw, self._message.to_bytes())
 
     def take_warning(self) -> str | None:
         """Return that others publish the time as well, where there are more than the last time.

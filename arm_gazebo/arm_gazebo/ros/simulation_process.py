@@ -15,6 +15,7 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_control.control_loop import ControlLoop
+from arm_control.outbox import Outbox
 from arm_control.pacer import Pacer
 from arm_control.ros.controller_manager_node import ControllerManagerNode
 from arm_gazebo.camera.feed import CameraFeed
@@ -62,7 +63,8 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             node = Node(NODE_NAME)
         process.executor.add_node(node)
         settings = read_settings(node)
-        clock = RosClockPublisher(node)
+        outbox = Outbox()
+        clock = RosClockPublisher(node, outbox)
         robots = []
         for robot_settings in settings.robots:
             robots.append(ManagedRobot(robot_settings, arguments, clock))
@@ -81,7 +83,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         managers = [robot.manager for robot in robots]
         shown = [*feeds, *_sensor_feed(robots, node, timing)]
         tick = SimulationTick(managers, simulation, clock, shown, timing.period_s)
-        loop = _loop(process, tick, timing, settings, robots[0].node)
+        loop = _loop(process, tick, timing, settings, robots[0].node, outbox)
         ending.enter_context(_standing_still(loop))
         for robot in robots:
             ending.callback(robot.shutdown)
@@ -122,6 +124,7 @@ def _loop(
     timing: PhysicsTiming,
     settings: SimulationSettings,
     manager: ControllerManagerNode,
+    outbox: Outbox,
 ) -> ControlLoop:
     """Make the loop that all robots share; the first one's manager says how it runs."""
     pacer = Pacer(
@@ -134,6 +137,7 @@ def _loop(
         pacer,
         on_failure=lambda _: process.stop(EXIT_FAILED),
         priority=manager.loop_priority(),
+        outbox=outbox,
     )
 
 
