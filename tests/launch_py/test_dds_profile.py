@@ -81,7 +81,7 @@ def test_launched_processes_may_be_held_up_for_a_while():
 def test_descriptions_of_end_points_are_sent_some_together():
     tree = etree.parse(profile_path(PROFILES[0]))
     (controller,) = tree.iterfind(".//d:throughputController", NAMESPACE)
-    assert [int(text) for text in controller.itertext() if text.strip()] == [8000, 1]
+    assert [int(text) for text in controller.itertext() if text.strip()] == [30000, 20]
 
 
 @pytest.mark.parametrize("name", PROFILES)
