@@ -7,8 +7,10 @@ numbers in the serialised bytes, and writing eight bytes is all that a new value
 The places are found by serialising: every number gets a mark of its own, twice with different
 marks, and each mark must stand in exactly one aligned word both times. No rule of the encoding
 is assumed, so an encoding that does not keep numbers in aligned words is refused, not damaged.
+No marks come again: padding holds whatever lay in memory, and that may be a message marked before.
 """
 
+import itertools
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -29,8 +31,9 @@ HEADER_BYTES = 4
 _STEP = re.compile(r"(\w+)(?:\[(\*|\d+)\])?")
 _FLOAT64 = re.compile(r"(?:sequence<double(?:, \d+)?>|double\[\d+\])")
 # Marks: tag << 32 | number, as float64 small ordinary numbers; tag << 20 | number, positive int32.
-_TAGS_64 = (0x3FA5A5A5, 0x40C3C3C3)
-_TAGS_32 = (0x5A5, 0x3C3)
+_TAGS_64 = itertools.cycle(range(0x3FA00000, 0x3FB00000))
+_TAGS_32 = itertools.cycle(range(0x100, 0x800))
+_PASSES = 2
 _SECONDS_END = 2**31
 
 
@@ -170,18 +173,18 @@ class MessageTemplate:
         self,
         find_fields: Callable[[Message], Iterator[_Field]],
         word: np.dtype[Any],
-        tags: Sequence[int],
+        tags: Iterator[int],
         shift: int,
     ) -> NDArray[np.intp]:
         found: NDArray[np.bool_] | None = None
         count = 0
         marked = np.empty(0, dtype=word)
-        for tag in tags:
+        for tag in itertools.islice(tags, _PASSES):
             message = deserialize_message(self._serialized, self._type)
             count = _mark(find_fields(message), word, tag << shift)
             marked = self._words(serialize_message(message), word)
             here = marked >> shift == tag
-            # Padding is whatever lay in memory, but not the right mark both times.
+            # Text and lengths may look like a mark, but not like both.
             found = here if found is None else found & here
         where = np.flatnonzero(found) if found is not None else np.empty(0, dtype=np.intp)
         numbers = marked[where] & word.type((1 << shift) - 1)

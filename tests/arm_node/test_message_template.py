@@ -7,14 +7,15 @@ import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.msg import DynamicJointState, InterfaceValue
 from geometry_msgs.msg import PoseWithCovariance, TransformStamped
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, JointState
 from std_msgs.msg import Float64MultiArray, String
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_node.message_template import MessageLayoutError, MessageTemplate
+from arm_node import message_template
+from arm_node.message_template import HEADER_BYTES, MessageLayoutError, MessageTemplate
 
 STAMP_NS = 1_234_567_890_123_456_789
 
@@ -226,3 +227,43 @@ def test_a_path_that_leads_to_no_numbers_is_refused(prototype, path, message):
 def test_values_in_several_places_have_no_view():
     with pytest.raises(MessageLayoutError, match="several places"):
         MessageTemplate(tf_message(2)).doubles("transforms[*].transform")
+
+
+class DirtyMemory:
+    """Serialises into what the pass before last left behind, as memory that is used again does."""
+
+    def __init__(self, padding: dict[tuple[int, ...], list[int]]) -> None:
+        """Know the padding, as bytes, by the lengths of position and velocity."""
+        self._padding = padding
+        self._left: list[bytes] = [b"", b""]
+
+    def serialize(self, message: JointState) -> bytes:
+        data = bytearray(serialize_message(message))
+        before = self._left.pop(0)
+        if before:
+            for place in self._padding[len(message.position), len(message.velocity)]:
+                data[place] = before[place]
+        self._left.append(bytes(data))
+        return bytes(data)
+
+
+def padding_of(message: JointState) -> list[int]:
+    """Return which bytes lie between the lengths of position and velocity and their numbers."""
+    template = MessageTemplate(message)
+    words = [int(template.indices(path)[0]) for path in ("position", "velocity")]
+    return [HEADER_BYTES + 8 * word - 4 + byte for word in words for byte in range(4)]
+
+
+def test_marks_left_in_the_memory_by_another_message_mislead_nobody(monkeypatch):
+    # Of the same size: where one has a position, the other has padding.
+    first = JointState(position=[0.0, 0.0], velocity=[0.0])
+    second = JointState(position=[0.0], velocity=[0.0, 0.0])
+    padding = {
+        (len(message.position), len(message.velocity)): padding_of(message)
+        for message in (first, second)
+    }
+    templates = [MessageTemplate(message) for message in (first, second)]
+    expected = [list(template.indices("position")) for template in templates]
+    dirty = DirtyMemory(padding)
+    monkeypatch.setattr(message_template, "serialize_message", dirty.serialize)
+    assert [list(template.indices("position")) for template in templates] == expected
