@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message, serialize_message
 
+from arm_node.raw_publisher import RawPublisher
+
 Message = Any
 """A generated message class's instance: they share no typed base."""
 
@@ -164,10 +166,7 @@ class MessageTemplate:
         Raises:
             RCLError: the publisher is destroyed already.
         """
-        # Not `publisher.publish`: its check of the type and its hold on the handle take longer
-        # than the middleware. Neither this call nor `destroy` lets go of the interpreter, so the
-        # handle cannot go in between.
-        publisher.handle.publish_raw(self._payload.tobytes())
+        RawPublisher(publisher).publish(self._payload.tobytes())
 
     def _locate(
         self,

@@ -15,6 +15,7 @@ from arm_control.joint_state_layout import QUANTITIES, JointStateLayout
 from arm_control.outbox import Outbox
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_node.message_template import MessageTemplate
+from arm_node.raw_publisher import RawPublisher
 
 
 class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
@@ -55,7 +56,7 @@ class _StampedArray:
         where: NDArray[np.intp],
         outbox: Outbox,
     ) -> None:
-        self._send = publisher.handle.publish_raw
+        self._publisher = RawPublisher(publisher)
         self._outbox = outbox
         self._template = template
         self._where = where
@@ -63,7 +64,7 @@ class _StampedArray:
     def publish(self, stamp_ns: int, values: NDArray[np.float64]) -> None:
         self._template.set_stamps(stamp_ns)
         self._template.float64[self._where] = values
-        self._outbox.put(self._send, self._template.to_bytes())
+        self._outbox.put(self._publisher.publish, self._template.to_bytes())
 
 
 class JointStatePublisher:

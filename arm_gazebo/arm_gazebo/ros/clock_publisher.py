@@ -6,6 +6,7 @@ from rosgraph_msgs.msg import Clock
 
 from arm_control.outbox import Outbox
 from arm_node.message_template import MessageTemplate
+from arm_node.raw_publisher import RawPublisher
 
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that best-effort subscribers match as well as default ones."""
@@ -28,7 +29,9 @@ class RosClockPublisher:
         self._node = node
         self._outbox = outbox
         self._known_publishers = 1
-        self._publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
+        publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
+        self._topic = publisher.topic_name
+        self._publisher = RawPublisher(publisher)
         self._message = MessageTemplate(Clock())
         self._time_s = 0.0
 
@@ -39,17 +42,16 @@ class RosClockPublisher:
     def publish(self, time_s: float) -> None:
         """Publish a simulation time."""
         self._time_s = time_s
-        # Asked without `Publisher`'s hold on the handle, as in `MessageTemplate.publish`.
-        if self._publisher.handle.get_subscription_count():
+        if self._publisher.wanted():
             self._message.set_stamps(round(time_s * 1e9))
-            self._outbox.put(self._publisher.handle.publish_raw, self._message.to_bytes())
+            self._outbox.put(self._publisher.publish, self._message.to_bytes())
 
     def take_warning(self) -> str | None:
         """Return that others publish the time as well, where there are more than the last time.
 
         Executor's thread.
         """
-        topic = self._publisher.topic_name
+        topic = self._topic
         known, self._known_publishers = self._known_publishers, self._node.count_publishers(topic)
         if self._known_publishers <= max(known, 1):
             return None
