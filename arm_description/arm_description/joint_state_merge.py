@@ -174,13 +174,27 @@ def _compose(name: str, dependences: dict[str, Dependence]) -> Dependence:
     return Dependence(parent, factor, offset)
 
 
-def _free_joint(joint: Joint, settings: JointPublisherSettings) -> _FreeJoint:
+def position_range(joint: Joint, with_soft_limits: bool = True) -> tuple[float, float]:
+    """Return between which positions a joint of one position is moved: rad, or m.
+
+    Without limits that is half a turn to both sides.
+
+    Args:
+        joint: of a type in `PUBLISHED`.
+        with_soft_limits: whether those of a `<safety_controller>` narrow the range. It is empty,
+            the lower end above the upper, where they leave the joint no position.
+    """
     lower, upper = -math.pi, math.pi
     if joint.type != "continuous" and joint.limit is not None:
         lower, upper = joint.limit.lower, joint.limit.upper
-    if settings.use_smallest_joint_limits and joint.safety is not None:
+    if with_soft_limits and joint.safety is not None:
         lower = max(lower, joint.safety.soft_lower)
         upper = min(upper, joint.safety.soft_upper)
+    return lower, upper
+
+
+def _free_joint(joint: Joint, settings: JointPublisherSettings) -> _FreeJoint:
+    lower, upper = position_range(joint, settings.use_smallest_joint_limits)
     zero = settings.zeros.get(joint.name)
     if zero is None:
         zero = 0.0 if lower <= 0.0 <= upper else (lower + upper) / 2.0

@@ -4,16 +4,15 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from arm_description.joint_state_merge import PUBLISHED, position_range
 from arm_description.robot import Joint
 
-ENDLESS_RAD = math.pi
-"""A joint without limits is moved so far to both sides."""
 STEPS = 1000
 
 
 @dataclass(frozen=True, slots=True)
 class JointRange:
-    """The joint's limits: rad, or m for a prismatic joint."""
+    """The joint's limits, soft ones included: rad, or m for a prismatic joint."""
 
     name: str
     lower: float
@@ -49,11 +48,9 @@ def joint_ranges(joints: Iterable[Joint]) -> tuple[JointRange, ...]:
     """
     ranges = []
     for joint in joints:
-        if joint.mimic is not None or joint.type not in ("revolute", "continuous", "prismatic"):
+        if joint.mimic is not None or joint.type not in PUBLISHED:
             continue
-        lower, upper = -ENDLESS_RAD, ENDLESS_RAD
-        if joint.type != "continuous" and joint.limit is not None:
-            lower, upper = joint.limit.lower, joint.limit.upper
+        lower, upper = position_range(joint)
         if math.isfinite(upper - lower) and lower < upper:
             ranges.append(JointRange(joint.name, lower, upper))
     return tuple(ranges)

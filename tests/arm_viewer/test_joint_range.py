@@ -29,6 +29,17 @@ def test_only_joints_with_a_position_of_their_own_and_room_have_one():
     assert (push.name, push.lower, push.upper) == ("push", 0.0, 0.05)
 
 
+def test_soft_limits_narrow_the_range_as_joint_state_publisher_gui_has_it():
+    (joint,) = joint_ranges(
+        parse_urdf("""<robot name='r'><link name='base'/><link name='a'/>
+          <joint name='j' type='revolute'><parent link='base'/><child link='a'/>
+            <limit lower='-1' upper='1' effort='1' velocity='1'/>
+            <safety_controller k_velocity='1' soft_lower_limit='0.5' soft_upper_limit='9'/>
+          </joint></robot>""").joints
+    )
+    assert (joint.lower, joint.upper, joint.centre) == (0.5, 1.0, 0.75)
+
+
 @pytest.mark.parametrize(
     ("lower", "upper", "centre"), [(-1.0, 3.0, 0.0), (0.0, 1.0, 0.0), (0.2, 2.0, 1.1), (-3, -1, -2)]
 )
