@@ -81,7 +81,7 @@ class RobotPanel:
         """Make a robot anew where its description is another one, or its links' frames are."""
         shown = self._robots.get(topic)
         robot = description.robot
-        places = {} if robot is None else _places(robot, description.namespace, self._frames.known)
+        places = {} if robot is None else link_frames(robot, description.namespace, self._frames.known)
         if shown is not None:
             if shown.description is description and shown.places == places:
                 return
@@ -97,17 +97,16 @@ class RobotPanel:
             self._problem.visible = bool(problem)
 
 
-def _places(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, str]:
-    """Return the frame of each link: its own name, or that below the robot's namespace.
+def link_frames(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, str]:
+    """Return the frame of each link: that below the robot's namespace, or its own name.
 
-    The second is what a state publisher's frame_prefix is used for, where robots of one kind are
-    told apart by namespaces only.
+    The first is what a state publisher's frame_prefix is used for, where robots of one kind are
+    told apart by namespaces only. It goes first: the bare name may be another robot's, of the root
+    namespace.
     """
     prefix = f"{namespace.strip('/')}/"
     return {
-        link.name: prefixed
-        if link.name not in frames and (prefixed := prefix + link.name) in frames
-        else link.name
+        link.name: prefixed if (prefixed := prefix + link.name) in frames else link.name
         for link in robot.links
     }
 
