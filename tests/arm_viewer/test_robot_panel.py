@@ -24,3 +24,8 @@ PREFIXED = {"base": "left/base", "tip": "left/tip"}
 )
 def test_the_frame_below_the_robot_s_namespace_goes_first(namespace, known, frames):
     assert link_frames(parse_urdf(ROBOT), namespace, known) == frames
+
+
+def test_a_link_s_name_may_begin_with_a_slash():
+    robot = parse_urdf("<robot name='r'><link name='/base'/></robot>")
+    assert link_frames(robot, "", {"base"}) == {"/base": "base"}

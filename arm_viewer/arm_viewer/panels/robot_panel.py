@@ -7,6 +7,7 @@ from viser import GuiApi, SceneApi
 
 from arm_description.names import listing
 from arm_description.robot import Robot
+from arm_viewer.frame_name import frame_name
 from arm_viewer.panels.note import PROBLEM_COLOUR, note
 from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.frames import Frames
@@ -81,7 +82,9 @@ class RobotPanel:
         """Make a robot anew where its description is another one, or its links' frames are."""
         shown = self._robots.get(topic)
         robot = description.robot
-        places = {} if robot is None else link_frames(robot, description.namespace, self._frames.known)
+        places = (
+            {} if robot is None else link_frames(robot, description.namespace, self._frames.known)
+        )
         if shown is not None:
             if shown.description is description and shown.places == places:
                 return
@@ -106,7 +109,7 @@ def link_frames(robot: Robot, namespace: str, frames: Container[str]) -> dict[st
     """
     prefix = f"{namespace.strip('/')}/"
     return {
-        link.name: prefixed if (prefixed := prefix + link.name) in frames else link.name
+        link.name: prefixed if (prefixed := prefix + link.name) in frames else frame_name(link.name)
         for link in robot.links
     }
 

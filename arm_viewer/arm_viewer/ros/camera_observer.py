@@ -8,6 +8,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_viewer.frame_name import frame_name
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_family import type_name
 from arm_viewer.ros.topic_reader import TopicReader
@@ -60,7 +61,7 @@ class CameraObserver:
 def _read(message: CameraInfo) -> CameraView | None:
     """Return the view; None of a camera that does not say how it sees, by zeros or otherwise."""
     fx, _, cx, _, fy, cy = (float(value) for value in message.k[:6])
-    frame = message.header.frame_id
+    frame = frame_name(message.header.frame_id)
     sizes = (message.width, message.height, fx, fy)
     if not frame or min(sizes) <= 0.0 or not all(map(math.isfinite, (*sizes, cx, cy))):
         return None

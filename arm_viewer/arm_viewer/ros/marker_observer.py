@@ -10,6 +10,7 @@ from visualization_msgs.msg import Marker as MarkerMessage
 from visualization_msgs.msg import MarkerArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_viewer.frame_name import frame_name
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_family import TopicFamily
 from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
@@ -72,4 +73,4 @@ def _read(message: MarkerMessage) -> Marker | None:
     points = np.array([(p.x, p.y, p.z) for p in message.points], dtype=np.float32)
     look = MarkerLook(_SHAPES[message.type], scale, rgba, message.mesh_resource, points.tobytes())
     x, y, z, w = (component / length for component in rotation)
-    return Marker(look, message.header.frame_id, position, (x, y, z, w))
+    return Marker(look, frame_name(message.header.frame_id), position, (x, y, z, w))

@@ -8,6 +8,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_viewer.frame_name import frame_name
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import Transform
@@ -51,13 +52,14 @@ class TransformObserver:
 def _read(message: TFMessage) -> dict[str, Transform]:
     result: dict[str, Transform] = {}
     for stamped in message.transforms:
+        parent, child = frame_name(stamped.header.frame_id), frame_name(stamped.child_frame_id)
         move, turn = stamped.transform.translation, stamped.transform.rotation
         position, rotation = (move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w)
         # tf2 refuses the same: no name, a frame in itself, what is no number, what is no rotation.
         if (
-            len({"", stamped.child_frame_id, stamped.header.frame_id}) == 3
+            len({"", parent, child}) == 3
             and all(map(math.isfinite, (*position, *rotation)))
             and abs(math.hypot(*rotation) - 1.0) < 0.01
         ):
-            result[stamped.child_frame_id] = Transform(stamped.header.frame_id, position, rotation)
+            result[child] = Transform(parent, position, rotation)
     return result

@@ -108,6 +108,41 @@ def test_transforms_are_kept_and_those_that_are_none_left_out(client, viewer):
     assert "finger" not in viewer.node.latest().transforms
 
 
+def test_frames_are_the_same_with_a_slash_before_their_names(client, viewer, latched):
+    from geometry_msgs.msg import TransformStamped
+    from sensor_msgs.msg import CameraInfo
+    from tf2_msgs.msg import TFMessage
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    good, itself = TransformStamped(), TransformStamped()
+    good.header.frame_id, good.child_frame_id = "/odom", "/slashed/base"
+    itself.header.frame_id, itself.child_frame_id = "/odom", "odom"
+    transforms = client.node.create_publisher(TFMessage, "/tf", 10)
+    message = TFMessage(transforms=[itself, good])
+    base = viewer.seen(
+        lambda s: s.transforms.get("slashed/base"), lambda: transforms.publish(message)
+    )
+    assert base.parent == "odom"
+    assert "odom" not in viewer.node.latest().transforms
+
+    marker = Marker(ns="slashed", type=Marker.CUBE)
+    marker.header.frame_id = "/odom"
+    markers = client.node.create_publisher(MarkerArray, "/world_markers", latched)
+    markers.publish(MarkerArray(markers=[marker]))
+    shown = viewer.seen(lambda s: s.markers.get("/world_markers/slashed/0"))
+    assert shown.frame == "odom"
+    markers.publish(MarkerArray(markers=[Marker(action=Marker.DELETEALL)]))
+    viewer.seen(lambda s: not s.markers)
+
+    info = CameraInfo(width=4, height=2, k=[3.0, 0.0, 2.0, 0.0, 5.0, 1.0, 0.0, 0.0, 1.0])
+    info.header.frame_id = "/optical"
+    cameras = client.node.create_publisher(CameraInfo, "/slashed/camera_info", 10)
+    view = viewer.seen(
+        lambda s: s.cameras.get("/slashed/camera_info"), lambda: cameras.publish(info)
+    )
+    assert view.frame == "optical"
+
+
 def test_joint_states_need_not_say_everything(client, viewer):
     from sensor_msgs.msg import JointState
 
