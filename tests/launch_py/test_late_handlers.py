@@ -155,3 +155,50 @@ def test_a_second_ctrl_c_stops_now_also_where_a_function_hangs(launch):
     while launched.process.poll() is None:  # One that comes at once counts as the first.
         launched.signal(signal.SIGINT)
     assert launched.wait() == 130, launched.output
+
+
+def test_what_a_function_runs_keeps_its_exit_code(launch):
+    launched = launch(
+        """
+        import subprocess
+
+        def tell(event, context):
+            fail = ["sh", "-c", "sleep 0.02; exit 3"]
+            codes = [subprocess.run(fail, start_new_session=i % 2).returncode for i in range(10)]
+            for _ in range(10):
+                child = subprocess.Popen(fail)
+                while child.poll() is None:
+                    pass
+                codes.append(child.returncode)
+            print("CODES", set(codes), flush=True)
+
+        actions = [forever("a", on_exit=tell)]
+        """
+    )
+    launched.wait_for("^ready ")
+    launched.signal(signal.SIGINT)
+    assert launched.wait() == 0, launched.output
+    assert "CODES {3}" in launched.lines
+
+
+def test_what_a_function_left_running_keeps_its_exit_code(launch):
+    launched = launch(
+        """
+        import subprocess
+        children = []
+
+        def begin(event, context):
+            children.append(subprocess.Popen(["sh", "-c", "exit 3"]))
+
+        def tell(event, context):
+            print("CODE", children[0].wait(), flush=True)
+
+        a = forever("a", on_exit=tell)
+        b = python("b", "import time; time.sleep(0.2)", ready=ProcessExited())
+        actions = [a, b, RegisterEventHandler(OnProcessStart(target_action=a, on_start=begin))]
+        """
+    )
+    launched.wait_for("^ready ")
+    launched.signal(signal.SIGINT)
+    assert launched.wait() == 0, launched.output
+    assert "CODE 3" in launched.lines

@@ -28,6 +28,35 @@ def test_a_child_that_stops_has_not_ended_and_one_that_ended_is_left_to_be_reape
     assert answers == ["without children False", "stopped False", "ended True True", "reaped False"]
 
 
+ADOPTED = """
+import os, subprocess, sys
+from launch_py.supervision import linux
+
+os.setsid()
+linux.become_subreaper()
+own = [subprocess.Popen(["sleep", "60"], start_new_session=led) for led in (False, True)]
+leave_one = "sleep 60 >/dev/null & echo $!"
+orphan = int(subprocess.check_output(["sh", "-c", leave_one], start_new_session=True))
+print(set(linux.children()) == {orphan, *(child.pid for child in own)})
+print(linux.adopted_children() == [orphan])
+os.kill(orphan, 9)
+os.waitid(os.P_PID, orphan, os.WEXITED | os.WNOWAIT)
+print(linux.adopted_children() == [orphan])
+for child in own:
+    child.kill()
+"""
+
+
+def test_orphans_are_told_from_what_this_process_has_started():
+    done = subprocess.run(
+        [sys.executable, "-c", ADOPTED],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.stdout.split() == ["True"] * 3, done.stderr
+
+
 START = """
 import sys, time
 entered_s = time.monotonic()

@@ -65,6 +65,18 @@ def children() -> list[int]:
     return pids
 
 
+def adopted_children() -> list[int]:
+    """Return the children that surely are orphans, made by other processes.
+
+    To be called in the leader of a session whose supervised children lead sessions of their own. A
+    child that this process has made itself, as a function of the launch file does with subprocess,
+    is in its session or leads one, and is left to whoever made it: reaped here, its exit code would
+    be lost. An orphan that leads a session cannot be told from such a child, and is left as well.
+    """
+    own = os.getsid(0)
+    return [pid for pid in children() if session_of(pid) not in (own, pid, None)]
+
+
 def child_has_ended() -> bool:
     """Return whether a child waits to be reaped. SIGCHLD also says that one stopped or went on."""
     try:

@@ -154,11 +154,11 @@ class Session:
             return
         self._supervisor.reap()
         self._probes.reap()
-        linux.reap(self._orphans())
+        linux.reap(linux.adopted_children())
         self._ledger.sweep()
 
-    def _orphans(self) -> list[int]:
-        """Return the descendants whose parents have ended: they have become our children."""
+    def _others(self) -> list[int]:
+        """Return the children that nobody supervises: orphans, and what functions have started."""
         own = {m.child.pid for m in self._supervisor.members.values() if m.child is not None}
         return [pid for pid in linux.children() if pid not in own | self._probes.pids]
 
@@ -169,11 +169,15 @@ class Session:
         self._end_remaining(signal.SIGKILL, time.monotonic() + ORPHAN_GRACE_S)
 
     def _end_remaining(self, number: signal.Signals, deadline_s: float) -> None:
-        """Send a signal to each remaining child once, and wait until none is left."""
+        """Send a signal to each remaining child once, and wait until none is left.
+
+        All are reaped now: no function is waited for any more that would want an exit code.
+        """
         signalled = set(self._probes.pids) if number is signal.SIGTERM else set[int]()
 
         def none_is_left() -> bool:
-            remaining = {*self._orphans(), *self._probes.pids}
+            linux.reap(self._others())
+            remaining = {*self._others(), *self._probes.pids}
             for pid in remaining - signalled:
                 linux.signal_group(pid, number)
                 linux.signal_process(pid, number)
