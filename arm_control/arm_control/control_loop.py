@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
-from arm_control.errors import LoopStoppedError
+from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.loop_priority import LoopPriority
 from arm_control.outbox import Outbox
 from arm_control.pacer import Pacer
@@ -34,7 +34,7 @@ class ControlLoop:
         tick: Callable[[], None],
         pacer: Pacer,
         *,
-        on_failure: Callable[[Exception], None] | None = None,
+        on_failure: Callable[[BaseException], None] | None = None,
         priority: LoopPriority | None = None,
         outbox: Outbox | None = None,
     ) -> None:
@@ -135,11 +135,12 @@ class ControlLoop:
         return request.future
 
     def _run(self) -> None:
-        self._priority.lower()
-        self.pacer.restart()
         try:
+            self._priority.lower()
+            self.pacer.restart()
             self._loop()
-        except Exception as error:
+        except BaseException as error:
+            # Whatever it is, nobody above this thread would hear of it.
             logger.exception("the control loop ends: a tick failed")
             self._close()
             if self._on_failure is not None:
@@ -247,6 +248,14 @@ class _Call:
         except Exception as error:
             # It is the caller's: whoever waits for the result gets it, and the loop goes on.
             self.future.set_exception(error)
+        except BaseException as error:
+            # SystemExit, say: it is to end neither this thread nor that of whoever waits.
+            logger.exception("a function handed to the control loop failed")
+            self.future.set_exception(
+                ArmControlError(
+                    f"what the control loop was asked to do raised {type(error).__name__}: {error}"
+                )
+            )
         else:
             self.future.set_result(result)
 

@@ -111,8 +111,11 @@ class HardwareComponent:
         began_s = self._now_s()
         try:
             outcome = exchange(time_s, period_s)
-        except Exception as error:
-            # A driver is outside code; as a rule the manager takes it down and goes on.
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            # A driver is outside code, so even SystemExit may come out of it; as a rule the manager
+            # takes it down and goes on.
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
         runs.add(period_s, self._now_s() - began_s)

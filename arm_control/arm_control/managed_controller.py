@@ -123,8 +123,11 @@ class ManagedController:
         began_s = self._now_s()
         try:
             outcome = self.controller.update(time_s, due_s)
-        except Exception as error:
-            # A controller is outside code; as a rule the manager deactivates it and goes on.
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            # A controller is outside code, so even SystemExit may come out of it; as a rule the
+            # manager deactivates it and goes on.
             self._on_exception(f"controller '{self.name}' raised in its update", error)
             return False
         self.runs.add(due_s, self._now_s() - began_s)

@@ -1,6 +1,7 @@
 """The loop thread: calls between ticks, pause, steps, failure, end."""
 
 import os
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
@@ -9,7 +10,7 @@ from typing import Any
 import pytest
 
 from arm_control.control_loop import ControlLoop
-from arm_control.errors import LoopStoppedError
+from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.loop_priority import LoopPriority
 from arm_control.outbox import MOST_TICKS, Outbox
 from arm_control.pacer import Pacer
@@ -117,6 +118,13 @@ def test_what_a_call_raises_is_the_callers(start: Any, ticks: Ticks) -> None:
 
     with pytest.raises(KeyError, match="mine"):
         loop.call(broken).result(TIMEOUT_S)
+    ticks.wait_for(ticks.count + 3)
+
+
+def test_a_call_that_wants_to_end_the_process_ends_nothing(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks)
+    with pytest.raises(ArmControlError, match="raised SystemExit: 3"):
+        loop.call(lambda: sys.exit(3)).result(TIMEOUT_S)
     ticks.wait_for(ticks.count + 3)
 
 
@@ -271,13 +279,14 @@ def test_steps_not_done_at_the_end_are_told(start: Any, ticks: Ticks) -> None:
     assert steps.result(TIMEOUT_S) < 10_000_000
 
 
+@pytest.mark.parametrize("kind", [RuntimeError, SystemExit])
 def test_a_tick_that_raises_ends_the_loop_with_its_reason(
-    start: Any, caplog: pytest.LogCaptureFixture
+    start: Any, caplog: pytest.LogCaptureFixture, kind: type[BaseException]
 ) -> None:
-    failures: list[Exception] = []
+    failures: list[BaseException] = []
 
     def broken() -> None:
-        raise RuntimeError("unstable")
+        raise kind("unstable")
 
     loop = start(broken, on_failure=failures.append)
     assert loop.join(TIMEOUT_S)

@@ -1,6 +1,8 @@
 """How far a fault reaches: to whom it belongs, and no further."""
 
-from typing import Any
+import asyncio
+from collections.abc import Callable
+from typing import Any, NoReturn
 
 import pytest
 
@@ -196,3 +198,59 @@ def test_a_thousand_switches_leave_one_holder(bench: Any) -> None:
         assert bench.manager.resources.claimant("j0/position") == started
         names.reverse()
     assert bench.states() == {"a": "inactive", "b": "active"}
+
+
+# What is no Exception, such as the SystemExit of a vendor's library
+
+
+def raising(error: BaseException) -> Callable[..., NoReturn]:
+    def function(*_: object) -> NoReturn:
+        raise error
+
+    return function
+
+
+@pytest.fixture(params=[SystemExit, asyncio.CancelledError])
+def raised(request: pytest.FixtureRequest) -> BaseException:
+    return request.param(1)
+
+
+@pytest.mark.parametrize("exchange", ["read", "write"])
+def test_hardware_that_wants_to_end_the_process_is_taken_down(
+    cell: Cell, raised: BaseException, exchange: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    setattr(cell.hardware["arm"], exchange, raising(raised))
+    cell.bench.tick(2)
+    assert cell.components["arm"] == "unconfigured"
+    assert cell.active == set(EVERYBODY) - USERS["arm"]
+    assert "hardware component 'arm' failed" in caplog.text
+    assert type(raised).__name__ in caplog.text
+
+
+def test_a_life_cycle_step_that_wants_to_end_the_process_has_failed(
+    cell: Cell, raised: BaseException
+) -> None:
+    cell.hardware["arm"].on_deactivate = raising(raised)
+    reason = f"on_deactivate of hardware component 'arm' raised {type(raised).__name__}"
+    with pytest.raises(ControllerManagerError, match=reason):
+        cell.bench.manager.set_hardware_component_state("arm", LifecycleState.INACTIVE)
+
+
+def test_a_controller_that_wants_to_end_the_process_is_stopped(
+    bench: Any, raised: BaseException, caplog: pytest.LogCaptureFixture
+) -> None:
+    bench.configure("bad", commands=("j0/position",)).update = raising(raised)
+    bench.manager.switch_controller(SwitchRequest(("bad",)))
+    bench.tick()
+    assert bench.states() == {"bad": "inactive"}
+    assert "controller 'bad' raised in its update" in caplog.text
+    assert type(raised).__name__ in caplog.text
+
+
+def test_ctrl_c_is_nobodys_fault(cell: Cell) -> None:
+    for name in ("read", "on_deactivate"):
+        setattr(cell.hardware["arm"], name, raising(KeyboardInterrupt()))
+    with pytest.raises(KeyboardInterrupt):
+        cell.bench.tick()
+    with pytest.raises(KeyboardInterrupt):
+        cell.bench.manager.set_hardware_component_state("arm", LifecycleState.INACTIVE)
