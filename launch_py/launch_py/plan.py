@@ -269,8 +269,8 @@ class PlanBuilder:
         triggers: list[Trigger] = []
         for trigger in step.after:
             names = self._names_of(trigger.process, step)
-            if not names and trigger.kind is TriggerKind.EXITED:
-                return None  # It waits for the end of something that is switched off.
+            if not names and trigger.kind is not TriggerKind.READY:
+                return None  # It waits for the start or end of something that is switched off.
             triggers.extend(Trigger(trigger.kind, name) for name in names)
         if isinstance(step, ListeningStep) and step.processes is not None:
             names = [name for target in step.processes for name in self._names_of(target, step)]

@@ -62,14 +62,28 @@ def test_a_dependency_that_is_switched_off_is_none(expand, by_name):
     assert waits(expand([a, sh("b", depends_on="a" if by_name else a)]), "b") == []
 
 
-def test_what_waits_for_the_end_of_a_switched_off_process_is_left_out(expand):
+def on_start(target, reaction):
+    return RegisterEventHandler(OnProcessStart(target_action=target, on_start=reaction))
+
+
+def on_exit(target, reaction):
+    return RegisterEventHandler(OnProcessExit(target_action=target, on_exit=reaction))
+
+
+@pytest.mark.parametrize("handler", [on_start, on_exit])
+@pytest.mark.parametrize("by_name", [True, False])
+def test_what_waits_for_the_start_or_end_of_a_switched_off_process_is_left_out(
+    expand, handler, by_name
+):
     a = sh("a", condition=IfCondition("false"))
     b = sh("b")
     plan = expand(
         [
             a,
-            RegisterEventHandler(OnProcessExit(target_action=a, on_exit=b)),
-            RegisterEventHandler(OnProcessExit(target_action=b, on_exit=LogInfo(msg="x"))),
+            handler("a" if by_name else a, b),
+            handler(a, lambda _event, _context: LogInfo(msg="x")),
+            on_start(b, LogInfo(msg="x")),
+            on_exit(b, LogInfo(msg="x")),
         ]
     )
     assert plan.steps == ()
