@@ -328,6 +328,29 @@ def test_a_program_that_vanishes_is_named(launch, tmp_path):
     assert "p could not be started: cannot run" in launched.lines[-1]
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("additional_env={'A=B': '1'}", "no environment variable can be named 'A=B'"),
+        ("additional_env={'A': '1\\0'}", "environment variable 'A' holds a null character"),
+        ("shell=True", r"argument 'true Pi\x00' holds a null character"),
+        ("cwd='/\\0'", "embedded null byte"),
+    ],
+)
+def test_what_no_process_can_be_given_is_said_and_the_others_end_in_order(launch, options, said):
+    launched = launch(
+        f"""
+        a = forever("a")
+        word = "Pi\\0" if "shell" in {options!r} else "x"
+        p = ExecuteProcess(cmd=["true", word], name="p", depends_on=a, {options})
+        actions = [a, p]
+        """
+    )
+    assert launched.wait() == 127, launched.output
+    assert "[launch] a stopped" in launched.lines
+    assert re.search(f"p could not be started: cannot run /.*: {re.escape(said)}", launched.output)
+
+
 def test_a_closed_output_stops_everything(write_launch_file, launch_environment, waiting):
     path = write_launch_file(
         """

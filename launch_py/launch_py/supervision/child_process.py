@@ -126,7 +126,7 @@ class ChildProcess:
                 start_new_session=True,
                 preexec_fn=linux.death_pact(),
             )
-        except (OSError, subprocess.SubprocessError) as error:
+        except (OSError, ValueError, subprocess.SubprocessError) as error:
             for _, readable, _ in streams:
                 os.close(readable)
             raise StartError(f"cannot run {spec.command[0]}: {_reason(error, spec)}") from error
@@ -211,4 +211,17 @@ def _reason(error: Exception, spec: ChildSpec) -> str:
     if isinstance(error, OSError):
         missing = spec.cwd is not None and not os.path.isdir(spec.cwd)
         return f"there is no folder {spec.cwd}" if missing else str(error.strerror).lower()
-    return str(error)
+    return (_unfit(spec) if isinstance(error, ValueError) else None) or str(error)
+
+
+def _unfit(spec: ChildSpec) -> str | None:
+    """Return which text no process can be given."""
+    for name, value in spec.environment.items():
+        if "=" in name:
+            return f"no environment variable can be named {name!r}"
+        if "\0" in name + value:
+            return f"environment variable {name!r} holds a null character"
+    for word in spec.command:
+        if "\0" in word:
+            return f"argument {word!r} holds a null character"
+    return None
