@@ -1,8 +1,12 @@
 """Rates, bandwidths and delays, in ros2's lines."""
 
+import pytest
+
+from arm_cli.errors import StoppedError
 from arm_cli.measurements.bandwidth import BandwidthWindow
 from arm_cli.measurements.delay import DelayWindow
 from arm_cli.measurements.rate import RateWindow
+from arm_cli.topic.measuring import report_every_second
 
 MS = 1_000_000
 
@@ -55,3 +59,36 @@ def test_delay():
     assert window.describe() == (
         "average delay: 0.015\n\tmin: 0.010s max: 0.020s std dev: 0.00500s window: 2"
     )
+
+
+class Seconds:
+    """Stands for a session: each second one of some actions happens, and then a signal comes."""
+
+    def __init__(self, *actions):
+        self._actions = iter(actions)
+
+    def wait_until(self, condition, _silence):
+        while not condition():
+            self.spin_for(1.0)
+
+    def spin_for(self, _duration_s):
+        action = next(self._actions, None)
+        if action is None:
+            raise StoppedError
+        action()
+
+
+@pytest.mark.parametrize("window", [RateWindow(10), DelayWindow(10)])
+def test_nothing_is_reported_while_no_message_comes(capsys, window):
+    def message():
+        window.add((window.taken + 1) * MS)
+
+    def silence():
+        pass
+
+    session = Seconds(message, message, silence, silence, message, silence)
+    with pytest.raises(StoppedError):
+        report_every_second(session, window.describe, str, lambda: window.taken)
+    reports = capsys.readouterr().out.splitlines()[1::2]
+    counts = [line.rpartition("window: ")[2] for line in reports]
+    assert counts == (["1", "2"] if isinstance(window, RateWindow) else ["2", "3"])

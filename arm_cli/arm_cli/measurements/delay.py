@@ -5,14 +5,20 @@ from collections import deque
 
 
 class DelayWindow:
-    """Ages of the last messages in ns."""
+    """Ages of the last messages in ns.
+
+    Attributes:
+        taken: messages so far.
+    """
 
     def __init__(self, size: int) -> None:
         """Keep at most `size` messages."""
+        self.taken = 0
         self._delays_ns: deque[int] = deque(maxlen=size)
 
     def add(self, delay_ns: int) -> None:
         """Take a message of some age."""
+        self.taken += 1
         self._delays_ns.append(delay_ns)
 
     def describe(self) -> str | None:

@@ -8,15 +8,20 @@ class RateWindow:
     """Intervals between the last messages.
 
     Times are ns of any clock; a clock that goes back starts anew.
+
+    Attributes:
+        taken: messages so far.
     """
 
     def __init__(self, size: int) -> None:
         """Keep at most `size` intervals."""
+        self.taken = 0
         self._intervals_ns: deque[int] = deque(maxlen=size)
         self._last_ns: int | None = None
 
     def add(self, now_ns: int) -> None:
         """Take a message that came at a time."""
+        self.taken += 1
         if self._last_ns is not None:
             if now_ns < self._last_ns:
                 self._intervals_ns.clear()

@@ -37,4 +37,4 @@ def run(options: argparse.Namespace) -> None:
             window.add(session.clock_ns() - stamp.sec * 1_000_000_000 - stamp.nanosec)
 
         listener.subscribe(message_class, take)
-        report_every_second(session, window.describe, listener.silence)
+        report_every_second(session, window.describe, listener.silence, lambda: window.taken)

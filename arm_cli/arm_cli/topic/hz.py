@@ -45,4 +45,4 @@ def run(options: argparse.Namespace) -> None:
                 window.add(clock())
 
         listener.subscribe(listener.wait_for_class(), take, raw=fits is None)
-        report_every_second(session, window.describe, listener.silence)
+        report_every_second(session, window.describe, listener.silence, lambda: window.taken)

@@ -33,7 +33,10 @@ def add_measuring_arguments(parser: argparse.ArgumentParser, window: int) -> Non
 
 
 def report_every_second(
-    session: "Session", describe: Callable[[], str | None], silence: Callable[[], str]
+    session: "Session",
+    describe: Callable[[], str | None],
+    silence: Callable[[], str],
+    taken: Callable[[], int] | None = None,
 ) -> None:
     """Print what is measured, every second in which there is something, until a signal comes.
 
@@ -41,10 +44,15 @@ def report_every_second(
         session: to wait with.
         describe: returns the report; None while there is nothing to say.
         silence: says what is waited for while nothing has come yet.
+        taken: returns the number of messages so far; there is no report where none came since
+            the last one. None: what is measured changes without messages, too.
     """
+    reported: int | None = None
     session.wait_until(lambda: describe() is not None, silence)
     while True:
         session.spin_for(REPORT_PERIOD_S)
+        count = None if taken is None else taken()
         report = describe()
-        if report is not None:
+        if report is not None and (count is None or count != reported):
             print(report)
+            reported = count
