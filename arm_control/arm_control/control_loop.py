@@ -116,20 +116,16 @@ class ControlLoop:
 
         Returns:
             The number of ticks done: less than `count` where `pause` or `resume` came between.
+            Where it is cancelled, ticks not yet done are dropped.
         """
         request = _StepRequest(count)
 
         def enqueue() -> None:
             if not self._paused:
-                request.future.set_exception(
-                    ValueError("steps are for a paused loop; pause it first")
-                )
-            elif count < 1:
-                request.future.set_exception(
-                    ValueError(f"the number of steps must be positive, not {count}")
-                )
-            else:
-                self._step_requests.append(request)
+                raise ValueError("steps are for a paused loop; pause it first")
+            if count < 1:
+                raise ValueError(f"the number of steps must be positive, not {count}")
+            self._step_requests.append(request)
 
         self.call(enqueue).add_done_callback(request.fail_with)
         return request.future
@@ -169,14 +165,14 @@ class ControlLoop:
         if not self._step_requests:
             self._wait_for_call(None)
             return
-        self._tick()
-        self.outbox.end_tick()
         request = self._step_requests[0]
-        request.done += 1
-        if request.done == request.count:
+        if not request.is_over:
+            self._tick()
+            self.outbox.end_tick()
+            request.done += 1
+        if request.is_over:
             self.outbox.send()
-            self._step_requests.popleft()
-            request.future.set_result(request.done)
+            self._step_requests.popleft().finish()
         self._serve_calls()
 
     def _wait_for_call(self, timeout_s: float | None) -> None:
@@ -218,8 +214,7 @@ class ControlLoop:
 
     def _finish_steps(self) -> None:
         while self._step_requests:
-            request = self._step_requests.popleft()
-            request.future.set_result(request.done)
+            self._step_requests.popleft().finish()
 
     def _refuse_calls(self) -> None:
         error = LoopStoppedError("the control loop has ended")
@@ -274,8 +269,18 @@ class _StepRequest:
         self.done = 0
         self.future: Future[int] = Future()
 
+    @property
+    def is_over(self) -> bool:
+        """Whether there is nothing more to do."""
+        return self.done == self.count or self.future.cancelled()
+
+    def finish(self) -> None:
+        """Tell how many were done, unless nobody wants to know any more."""
+        if self.future.set_running_or_notify_cancel():
+            self.future.set_result(self.done)
+
     def fail_with(self, call: "Future[None]") -> None:
-        """Pass on why the request never reached the loop."""
+        """Pass on why the loop did not take the request."""
         error = call.exception()
-        if error is not None:
+        if error is not None and self.future.set_running_or_notify_cancel():
             self.future.set_exception(error)

@@ -4,7 +4,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, wait
 from typing import Any
 
 import pytest
@@ -213,6 +213,37 @@ def test_a_pause_ends_steps(start: Any, ticks: Ticks) -> None:
     assert 0 <= steps.result(TIMEOUT_S) < 10_000_000
     assert loop.paused
     assert not loop.stepping
+
+
+def test_cancelling_steps_drops_those_not_yet_done(start: Any, ticks: Ticks) -> None:
+    loop = start(ticks, paused=True)
+    steps = loop.step(10_000_000)
+    ticks.wait_for(1)
+    following = loop.step(2)
+    assert steps.cancel()
+    assert following.result(TIMEOUT_S) == 2
+    assert not loop.stepping
+    count = ticks.count
+    loop.resume().result(TIMEOUT_S)
+    ticks.wait_for(count + 3)
+
+
+@pytest.mark.parametrize("end", [ControlLoop.pause, ControlLoop.resume, ControlLoop.stop])
+def test_steps_cancelled_before_they_begin_are_nobodys_any_more(
+    start: Any, ticks: Ticks, caplog: pytest.LogCaptureFixture, end: Callable[[ControlLoop], object]
+) -> None:
+    loop = start(ticks, paused=True)
+    release = threading.Event()
+    loop.call(lambda: release.wait(TIMEOUT_S))
+    steps = loop.step(2), loop.step(0)
+    end(loop)
+    assert all(future.cancel() for future in steps)
+    release.set()
+    done = wait(steps, TIMEOUT_S).done
+    assert done == set(steps)
+    if end is not ControlLoop.stop:
+        assert loop.call(lambda: "alive").result(TIMEOUT_S) == "alive"
+    assert not caplog.records
 
 
 def test_step_requests_follow_one_another(start: Any, ticks: Ticks) -> None:
