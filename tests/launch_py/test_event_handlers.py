@@ -1,5 +1,7 @@
 """Handlers of what processes write, and of the shutdown."""
 
+import sys
+
 import pytest
 
 from launch_py import (
@@ -107,14 +109,20 @@ def test_lines_are_not_heard_any_more_when_everything_stops(trial):
     assert t.finish() == 0
 
 
-def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial):
-    t = trial(
-        fake_process("a"), on_io(target_action="a", on_stdout=lambda event: event.no_such_thing)
-    )
+@pytest.mark.parametrize(
+    ("mistake", "said"),
+    [
+        (lambda event: event.no_such_thing, "an event handler: AttributeError"),
+        (lambda _event: sys.exit(3), "an event handler: SystemExit: 3"),
+    ],
+)
+def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial, mistake, said):
+    t = trial(fake_process("a"), on_io(target_action="a", on_stdout=mistake))
     t["a"].write("x")
+    assert t.asked_to_stop() == {"a"}
     t["a"].end(0)
     assert t.finish() == 1
-    assert "an event handler: AttributeError" in str(t.screen.last_line)
+    assert said in str(t.screen.last_line)
 
 
 def test_lines_of_a_process_that_is_switched_off_are_nobodys(trial):

@@ -22,6 +22,19 @@ Expand = Callable[[], Sequence[Step]]
 Outcome = Sequence[Step] | LaunchError
 
 
+def outcome_of(expand: Expand) -> Outcome:
+    """Return the steps of a function of the launch file, or what it has raised.
+
+    Whatever that is, also by sys.exit(), the loop goes on: the processes are to end in order.
+    """
+    try:
+        return expand()
+    except LaunchError as error:
+        return error
+    except BaseException as error:
+        return LaunchError(f"an event handler: {type(error).__name__}: {error}")
+
+
 class LateCalls:
     """Calls one function after the other in a thread beside the loop.
 
@@ -77,12 +90,7 @@ class LateCalls:
             self._deliver()
 
     def _run(self, expand: Expand) -> None:
-        try:
-            self._outcome = expand()
-        except LaunchError as error:
-            self._outcome = error
-        except BaseException as error:  # sys.exit() is one: it must not leave the loop waiting.
-            self._outcome = LaunchError(f"an event handler: {type(error).__name__}: {error}")
+        self._outcome = outcome_of(expand)
         if self._pipe is not None:
             os.write(self._pipe[1], b"\n")
 

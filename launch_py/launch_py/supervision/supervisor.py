@@ -24,7 +24,7 @@ from launch_py.plan import (
 from launch_py.readiness import ProcessExited
 from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.late_calls import LIMIT_S, LateCalls, Outcome
+from launch_py.supervision.late_calls import LIMIT_S, LateCalls, Outcome, outcome_of
 from launch_py.supervision.member import Member, MemberState, ProcessRunner
 from launch_py.supervision.process_events import exited_event, line_event, started_event
 from launch_py.supervision.reporter import Reporter
@@ -310,11 +310,12 @@ class Supervisor:
         self.stop(reason or "the launch file asks for it")
 
     def _expand(self, expand: Callable[[EventT], Sequence[Step]], event: EventT) -> None:
-        try:
-            self._add(expand(event))
-        except LaunchError as error:
-            self._fail(Failure(str(error), EXIT_NOT_READY))
+        outcome = outcome_of(lambda: expand(event))
+        if isinstance(outcome, LaunchError):
+            self._fail(Failure(str(outcome), EXIT_NOT_READY))
             self.stop("an event handler failed")
+        else:
+            self._add(outcome)
         self._advance()
 
     def _bid_farewell(self, reason: str) -> None:
