@@ -45,6 +45,32 @@ def with_self(masks: CollisionMasks) -> CollisionMasks:
     return CollisionMasks(masks.contype, masks.conaffinity | masks.contype)
 
 
+def leave_out_own_contacts(spec: mujoco.MjSpec, touching: Container[str]) -> None:
+    """Exclude from contact all bodies of one thing with each other.
+
+    Args:
+        spec: has nothing but the thing, its bodies named; gets the exclusions.
+        touching: names of bodies that touch all the others nevertheless.
+    """
+    solid = [
+        (body.name, _carrier(body))
+        for body in spec.bodies[1:]
+        if any(geom.contype or geom.conaffinity for geom in body.geoms)
+        and body.name not in touching
+    ]
+    for (first, carrier), (second, other_carrier) in combinations(solid, 2):
+        # MuJoCo itself leaves out what is fixed to each other.
+        if carrier != other_carrier:
+            spec.add_exclude(bodyname1=first, bodyname2=second)
+
+
+def _carrier(body: mujoco.MjsBody) -> str:
+    """Return the name of the body with joints, or the world, that a body is fixed to."""
+    while not body.joints and body.parent is not None:
+        body = body.parent
+    return str(body.name)
+
+
 def leave_out_neighbours(
     spec: mujoco.MjSpec,
     model: mujoco.MjModel,

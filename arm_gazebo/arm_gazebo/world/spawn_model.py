@@ -1,6 +1,6 @@
 """A thing to be put into a running world: read from URDF, SDF or MJCF, ready to be attached."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +20,8 @@ from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.model.element_names import name_elements
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
-from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.robot.collision_policy import leave_out_neighbours, leave_out_own_contacts
+from arm_gazebo.robot.gazebo_tags import GazeboTags, parse_gazebo_tags
 from arm_gazebo.robot.link_geometry import LinkGeometry
 from arm_gazebo.robot.mimic_joints import add_equalities, followings
 from arm_gazebo.sdf.body import WORLD_MASKS, add_model
@@ -131,11 +132,12 @@ class ModelSource:
         default = mujoco.MjSpec().default
         geometry = LinkGeometry(meshes, default, tags, WORLD_MASKS, True, report)
         free = robot.root != WORLD_LINK and not _is_static(text)
-        BodyTree(
+        bodies = BodyTree(
             spec, robot, geometry, TreeOptions(self.step_s, default, free, Pose()), report
         ).add()
         follow = followings(robot, report)
         add_equalities(spec, robot, follow, self.step_s, report)
+        _leave_out_own_contacts(spec, bodies, tags, report)
         return SpawnModel(spec, _only_body(spec, "URDF"), "urdf", report.findings)
 
     def _read_sdf(self, text: str, path: Path | None, report: BuildReport) -> SpawnModel:
@@ -209,6 +211,23 @@ def _only_body(spec: mujoco.MjSpec, kind: str) -> str:
             f"the {kind} needs one body right below the world, to be moved as one; it has {there}",
         )
     return str(bodies[0].name)
+
+
+def _leave_out_own_contacts(
+    spec: mujoco.MjSpec,
+    bodies: Mapping[str, mujoco.MjsBody],
+    tags: GazeboTags,
+    report: BuildReport,
+) -> None:
+    """Let links touch each other only where the description says so, as those of a robot."""
+    names = {link: body.name for link, body in bodies.items() if body.name != WORLD_LINK}
+    touching = {
+        name for link, name in names.items() if tags.self_collide or tags.link(link).self_collide
+    }
+    leave_out_own_contacts(spec, touching)
+    if touching:
+        model = spec.copy().compile()
+        leave_out_neighbours(spec, model, model.qpos0, list(names.values()), report)
 
 
 def _is_static(urdf: str) -> bool:

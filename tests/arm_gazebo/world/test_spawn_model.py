@@ -41,6 +41,65 @@ def test_joints_of_a_urdf_move(things):
     assert model.joint("hinge").range == pytest.approx([-1.5, 1.5])
 
 
+def link(name: str, size: str, centre: str = "0 0 0") -> str:
+    return (
+        f'<link name="{name}"><inertial><origin xyz="{centre}"/><mass value="1"/>'
+        '<inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>'
+        f'<collision><origin xyz="{centre}"/><geometry><box size="{size}"/></geometry></collision>'
+        "</link>"
+    )
+
+
+def cupboard(more: str = "") -> str:
+    """Return a URDF bolted to the world, whose door reaches 5 mm into it and has a knob."""
+    return (
+        '<robot name="cupboard"><link name="world"/>'
+        + link("case", "0.5 0.5 0.8")
+        + link("door", "0.02 0.5 0.8", "0 -0.25 0")
+        + link("knob", "0.05 0.05 0.05", "0.02 -0.45 0")
+        + '<joint name="bolt" type="fixed"><parent link="world"/><child link="case"/>'
+        '<origin xyz="0 0 1"/></joint>'
+        '<joint name="hinge" type="revolute"><parent link="case"/><child link="door"/>'
+        '<origin xyz="0.255 0.25 0"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1.5" upper="1.5" effort="1" velocity="1"/></joint>'
+        '<joint name="screw" type="fixed"><parent link="door"/><child link="knob"/></joint>'
+        f"{more}</robot>"
+    )
+
+
+def test_the_door_of_a_spawned_cupboard_swings_freely():
+    model = SOURCE.read("", cupboard()).spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 500)
+    assert data.ncon == 0
+    assert data.qpos == pytest.approx([0.0], abs=1e-6)
+    data.qfrc_applied[0] = 0.2
+    mujoco.mj_step(model, data, 500)
+    assert data.qpos[0] > 0.2
+
+
+@pytest.mark.parametrize(
+    ("tag", "touch"),
+    [
+        ("", False),
+        ("<gazebo><self_collide>true</self_collide></gazebo>", True),
+        ("<gazebo reference='stop'><selfCollide>true</selfCollide></gazebo>", True),
+    ],
+)
+def test_links_of_a_spawned_thing_touch_each_other_only_where_it_says_so(tag, touch):
+    """A door against a stop on another joint, neither its neighbour nor overlapping at first."""
+    stop = (
+        link("stop", "0.1 0.1 0.1", "0.35 -0.1 0")
+        + '<joint name="slide" type="prismatic"><parent link="case"/><child link="stop"/>'
+        '<axis xyz="0 0 1"/><limit lower="0" upper="0.001" effort="1" velocity="1"/></joint>'
+    )
+    model = SOURCE.read("", cupboard(stop + tag)).spec.copy().compile()
+    data = mujoco.MjData(model)
+    data.qfrc_applied[0] = 0.2
+    mujoco.mj_step(model, data, 1000)
+    assert bool(data.joint("hinge").qpos[0] < 0.3) is touch
+
+
 def test_a_urdf_with_a_world_link_stands_still():
     text = (
         "<robot name='r'><link name='world'/><link name='post'/><joint name='j' type='fixed'>"
