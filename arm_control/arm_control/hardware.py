@@ -17,7 +17,10 @@ class HardwareReturn(Enum):
     ERROR = "error"
     """The component failed: it is taken down, and the controllers that use it are stopped."""
     DEACTIVATE = "deactivate"
-    """The component asks to be deactivated: controllers that command it are stopped."""
+    """The component asks to be deactivated: controllers that command it are stopped.
+
+    One that is not active is so already; one whose `on_deactivate` fails is taken down.
+    """
 
 
 class Hardware(Protocol):

@@ -119,6 +119,9 @@ class HardwareComponent:
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
         runs.add(period_s, self._now_s() - began_s)
+        if outcome is HardwareReturn.DEACTIVATE and self.state is not LifecycleState.ACTIVE:
+            # What it asks for is so already: a driver may repeat itself in every read.
+            return HardwareReturn.OK
         return outcome
 
     def _step_towards(self, target: LifecycleState) -> Transition:

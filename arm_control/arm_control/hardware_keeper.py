@@ -7,6 +7,7 @@ from arm_control.controller_chain import ControllerChain
 from arm_control.controller_switcher import ControllerSwitcher
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware import HardwareReturn
+from arm_control.hardware_component import HardwareComponent
 from arm_control.lifecycle import LifecycleState
 from arm_control.managed_controller import ManagedController
 from arm_control.manager_policy import ManagerPolicy
@@ -80,10 +81,7 @@ class HardwareKeeper:
         """Take components down that failed, or deactivate those that asked for it."""
         for component, outcome in trouble:
             if outcome is HardwareReturn.DEACTIVATE:
-                logger.error("hardware component '%s' deactivates itself", component.name)
-                if self._policy.stop_with_self_deactivated_hardware:
-                    self._switcher.deactivate(self._users_of(component.name, commanding_only=True))
-                self._resources.set_component_state(component.name, LifecycleState.INACTIVE)
+                self._deactivate(component)
             else:
                 logger.error(
                     "Deactivating following hardware components as their %s cycle resulted in "
@@ -101,6 +99,21 @@ class HardwareKeeper:
                 reason = self._resources.set_component_state(name, LifecycleState.FINALIZED)
                 if reason:
                     logger.error("%s", reason)
+
+    def _deactivate(self, component: HardwareComponent) -> None:
+        logger.error("hardware component '%s' deactivates itself", component.name)
+        if self._policy.stop_with_self_deactivated_hardware:
+            self._switcher.deactivate(self._users_of(component.name, commanding_only=True))
+        reason = self._resources.set_component_state(component.name, LifecycleState.INACTIVE)
+        if reason:
+            # Active it would ask again in every cycle; it failed like one whose exchange fails.
+            logger.error(
+                "hardware component '%s' cannot deactivate itself and is taken down: %s",
+                component.name,
+                reason,
+            )
+            self._switcher.deactivate(self._users_of(component.name))
+            self._resources.take_down(component)
 
     def _bring_up_together(self, targets: Mapping[str, LifecycleState]) -> None:
         """Configure all before the first is activated; where one of several fails, all go back."""

@@ -140,6 +140,42 @@ def test_hardware_that_deactivates_itself_stops_only_who_commands_it(bench: Any)
     assert component.state is LifecycleState.INACTIVE
 
 
+@pytest.mark.parametrize("stops_users", [True, False])
+def test_hardware_that_fails_to_deactivate_itself_is_taken_down_once(
+    bench: Any, caplog: pytest.LogCaptureFixture, stops_users: bool
+) -> None:
+    bench.hardware = fake_hardware()
+    policy = ManagerPolicy(stop_with_self_deactivated_hardware=stops_users)
+    bench.manager = ControllerManager([bench.hardware], 100, policy)
+    bench.manager.bring_up()
+    bench.configure("user", commands=ALL)
+    bench.configure("watcher", states=("j1/velocity",))
+    bench.manager.switch_controller(SwitchRequest(("user", "watcher")))
+    bench.hardware.refused.add("on_deactivate")
+    bench.hardware.write_result = HardwareReturn.DEACTIVATE
+    bench.tick(3)
+    assert bench.states() == {"watcher": "inactive", "user": "inactive"}
+    (component,) = bench.manager.list_hardware_components()
+    assert component.state is LifecycleState.UNCONFIGURED
+    assert bench.hardware.events[2:] == ["on_deactivate", "on_cleanup"]
+    assert caplog.text.count("'FakeSystem' deactivates itself") == 1
+    assert caplog.text.count("on_deactivate of hardware component 'FakeSystem' returned False") == 1
+
+
+def test_inactive_hardware_may_go_on_asking_to_be_deactivated(
+    bench: Any, observer: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    bench.hardware.read_result = HardwareReturn.DEACTIVATE
+    bench.tick()
+    assert caplog.text.count("'FakeSystem' deactivates itself") == 1
+    changes = observer.changes
+    bench.tick(3)
+    assert caplog.text.count("'FakeSystem' deactivates itself") == 1
+    assert observer.changes == changes
+    (component,) = bench.manager.list_hardware_components()
+    assert component.state is LifecycleState.INACTIVE
+
+
 def test_inactive_hardware_is_read_but_not_written(bench: Any) -> None:
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
