@@ -1,23 +1,30 @@
 """An SDF model's bodies and planes in a MuJoCo specification."""
 
+import math
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 
-from arm_description.robot import Pose
+from arm_description.robot import Link, Pose
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.quaternion import wxyz
 from arm_gazebo.robot.body_tree import BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import WORLD_CONTYPE, CollisionMasks
+from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.link_geometry import (
     COLLISION_GROUP,
     DEFAULT_COLOR,
+    DEFAULT_FRICTION,
     VISUAL_GROUP,
     LinkGeometry,
 )
 from arm_gazebo.sdf.model import SdfModel, SdfPlane
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
+PRIORITIES = 1_000_000
+"""How many frictions below 1 are told apart."""
 
 
 def add_model(
@@ -42,7 +49,7 @@ def add_model(
         MeshError: strict, and a mesh cannot be had.
     """
     default = mujoco.MjSpec().default
-    geometry = LinkGeometry(meshes, default, model.tags, WORLD_MASKS, strict, report)
+    geometry = _SdfGeometry(model, meshes, strict, report)
     options = TreeOptions(spec.option.timestep, default, not model.static, pose)
     bodies = BodyTree(spec, model.robot, geometry, options, report).add()
     for plane in model.planes:
@@ -57,10 +64,47 @@ def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:
     if plane.size is None:
         geom.size = [0.0, 0.0, 1.0]
         geom.group = COLLISION_GROUP
-        if plane.friction is not None:
-            geom.friction = [plane.friction, *geom.friction[1:]]
+        _set_friction(geom, plane.friction)
     else:
         geom.size = [*(np.array(plane.size) / 2), 1.0]
         geom.group = VISUAL_GROUP
         geom.contype = geom.conaffinity = 0
         geom.rgba = plane.rgba or DEFAULT_COLOR
+
+
+class _SdfGeometry(LinkGeometry):
+    """Adds the shapes of links, each collision with a friction of its own.
+
+    Args:
+        model: says the frictions.
+        meshes: of the world.
+        strict: whether a mesh that cannot be had is an error.
+        report: gets what is repaired.
+    """
+
+    def __init__(
+        self, model: SdfModel, meshes: MeshLibrary, strict: bool, report: BuildReport
+    ) -> None:
+        default = mujoco.MjSpec().default
+        super().__init__(meshes, default, GazeboTags(), WORLD_MASKS, strict, report)
+        self._frictions = model.frictions
+
+    def add(self, body: mujoco.MjsBody, link: Link) -> None:
+        """Add the visuals and collisions of a link to its body."""
+        super().add(body, replace(link, collisions=()))
+        frictions = self._frictions.get(link.name, ())
+        for collision, friction in zip(link.collisions, frictions, strict=True):
+            before = len(body.geoms)
+            super().add(body, replace(link, visuals=(), collisions=(collision,)))
+            for geom in body.geoms[before:]:
+                _set_friction(geom, friction)
+
+
+def _set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
+    """Give a shape its sliding friction, and the more priority the more slippery it is.
+
+    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo that of the higher
+    priority, and of equal ones the higher coefficient.
+    """
+    geom.friction = [friction, *geom.friction[1:]]
+    geom.priority = math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)

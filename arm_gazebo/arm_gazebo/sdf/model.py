@@ -1,6 +1,6 @@
 """One <model> of an SDF file, as the robot that it is: links, all fixed to the model's frame."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +27,7 @@ from arm_description.robot import (
     Visual,
 )
 from arm_gazebo.robot.gazebo_materials import gazebo_color
-from arm_gazebo.robot.gazebo_tags import GazeboTags, LinkTags
+from arm_gazebo.robot.link_geometry import DEFAULT_FRICTION
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames, pose_of
 
@@ -42,13 +42,13 @@ class SdfPlane:
         pose: in the model's frame; z is the normal.
         size: full sides of what is seen, None for what is touched.
         rgba: colour of what is seen.
-        friction: of what is touched, None where nothing is said.
+        friction: of what is touched, at most 1.
     """
 
     pose: Pose
     size: tuple[float, float] | None = None
     rgba: Color | None = None
-    friction: float | None = None
+    friction: float = DEFAULT_FRICTION
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +57,13 @@ class SdfModel:
 
     Attributes:
         robot: the model's frame as root, named after the model, and `MODEL::LINK` for each link.
-        tags: the frictions of the links.
+        frictions: by link, of each of its collisions, at most 1.
         planes: which no link of a robot can have.
         static: whether it is part of the world.
     """
 
     robot: Robot
-    tags: GazeboTags
+    frictions: Mapping[str, tuple[float, ...]]
     planes: tuple[SdfPlane, ...]
     static: bool
 
@@ -96,9 +96,7 @@ def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfM
         robot = Robot(name, (Link(name), *(reader.link() for reader in read)), joints)
     except DescriptionError as error:
         raise model.error(f"is no model: {error}") from error
-    return SdfModel(
-        robot, GazeboTags({reader.name: reader.tags() for reader in read}), planes, fixed
-    )
+    return SdfModel(robot, {reader.name: reader.frictions() for reader in read}, planes, fixed)
 
 
 class _LinkReader:
@@ -121,10 +119,9 @@ class _LinkReader:
         )
         return Link(self.name, self._inertial(), visuals, collisions, self._link.line)
 
-    def tags(self) -> LinkTags:
-        """Return the friction of the link's first collision that says one."""
-        frictions = [_friction(collision) for collision in self._link.children("collision")]
-        return LinkTags(next((friction for friction in frictions if friction is not None), None))
+    def frictions(self) -> tuple[float, ...]:
+        """Return the frictions of the link's collisions but planes."""
+        return tuple(_friction(collision) for collision, _ in self._solids("collision"))
 
     def planes(self) -> Iterator[SdfPlane]:
         """Yield the link's planes in the model's frame."""
@@ -217,10 +214,16 @@ def _color(visual: SdfElement) -> Color | None:
     return (r, g, b, a * opacity)
 
 
-def _friction(collision: SdfElement) -> float | None:
-    """Return the coefficient of the first direction; MuJoCo has one for both."""
+def _friction(collision: SdfElement) -> float:
+    """Return the coefficient of the first direction, at most 1; MuJoCo has one for both.
+
+    Gazebo takes the lower coefficient of two shapes, so that more than the 1 of all that say
+    nothing counts only where both have more. MuJoCo takes the higher one: a ground of 100, as
+    Gazebo saves it, would hold every wheel and foot.
+    """
     ode = collision.at("surface", "friction", "ode")
-    return None if ode is None or ode.child("mu") is None else max(ode.number("mu"), 0.0)
+    mu = ode.number("mu", DEFAULT_FRICTION) if ode else DEFAULT_FRICTION
+    return min(max(mu, 0.0), DEFAULT_FRICTION)
 
 
 def _turn_to(normal: NDArray[np.float64]) -> NDArray[np.float64]:
