@@ -10,7 +10,8 @@ from std_msgs.msg import Bool, Byte, Float64, Float64MultiArray, Int64, String, 
 from trajectory_msgs.msg import JointTrajectory
 
 from arm_cli.errors import MessageError
-from arm_cli.messages.filling import fill_message, read_yaml
+from arm_cli.messages.filling import fill_message, read_yaml, read_yaml_documents
+from arm_cli.messages.text import to_yaml
 
 
 def filled(class_, text):
@@ -121,3 +122,35 @@ def test_what_is_no_mapping_is_refused(text, part):
 
 def test_no_text_is_no_values():
     assert read_yaml("", "std_msgs/msg/Empty") == {}
+
+
+def test_what_echo_prints_is_a_message_for_each_document():
+    text = "".join(to_yaml(String(data=word)) + "---\n" for word in ("a", "b"))
+    documents = read_yaml_documents("---\n" + text + "---\n{}\n---\n", "std_msgs/msg/String")
+    assert documents == [{"data": "a"}, {"data": "b"}, {}]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            "---\ndata: a\n---\n5\n",
+            "message 2: the values of a std_msgs/msg/String are written 'field: value', "
+            "but 5 is a int",
+        ),
+        (
+            "data: a\n---\ndata: [b\n---\n",
+            "the values are no YAML at character 22: expected ',' or ']', "
+            "but got '<document start>'",
+        ),
+        (
+            "data: \x01",
+            "the values are no YAML: unacceptable character #x0001: special characters are not "
+            'allowed in "<unicode string>", position 6',
+        ),
+    ],
+)
+def test_what_is_no_file_of_messages_is_one_sentence(text, sentence):
+    with pytest.raises(MessageError) as error:
+        read_yaml_documents(text, "std_msgs/msg/String")
+    assert str(error.value) == sentence

@@ -37,6 +37,23 @@ ARRAY = "std_msgs/msg/Float64MultiArray"
     ],
 )
 def test_it_is_one_sentence_and_rclpy_is_not_even_imported(words, sentence):
+    assert_refused(words, sentence)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("data: [1]\n---\ndta: [2]\n---\n", "f.yaml: message 2: no field 'dta'; did you mean"),
+        ("---\n---\n", "f.yaml: there is no message in it"),
+    ],
+)
+def test_every_message_of_a_file_is_checked_before(tmp_path, text, sentence):
+    file = tmp_path / "f.yaml"
+    file.write_text(text)
+    assert_refused(["topic", "pub", "/x", ARRAY, "--yaml-file", str(file)], sentence)
+
+
+def assert_refused(words, sentence):
     done = subprocess.run(
         [sys.executable, "-c", CODE, *words],
         capture_output=True,

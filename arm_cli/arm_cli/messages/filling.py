@@ -4,6 +4,7 @@ As ros2 does, a number with a fraction in an integer field is truncated; here it
 for a header and `now` for a stamp stand for the time at which the message is sent.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,22 +52,50 @@ def read_yaml(text: str, type_: str) -> Any:
     """
     import yaml
 
+    values = _loaded(lambda: yaml.safe_load(text))
+    if values is None:
+        return {}
+    if not isinstance(values, dict):
+        raise MessageError(f"{_no_mapping(type_, text, values)}; is it quoted for the shell?")
+    return values
+
+
+def read_yaml_documents(text: str, type_: str) -> list[dict[str, Any]]:
+    """Return the values that each of a YAML text's documents holds, but for the empty ones.
+
+    Such is what `arm topic echo` prints: `---` follows each message.
+
+    Raises:
+        MessageError: it is no YAML, or a document is no mapping from fields to values.
+    """
+    import yaml
+
+    loaded = _loaded(lambda: list(yaml.safe_load_all(text)))
+    documents = [document for document in loaded if document is not None]
+    for number, document in enumerate(documents, start=1):
+        if not isinstance(document, dict):
+            raise MessageError(f"message {number}: {_no_mapping(type_, document, document)}")
+    return documents
+
+
+def _loaded(load: Callable[[], Any]) -> Any:
+    import yaml
+
     try:
-        values = yaml.safe_load(text)
+        return load()
     # PyYAML's constructors raise a ValueError: the 45th of a month is no date.
     except (yaml.YAMLError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         where = f" at character {mark.index + 1}" if mark else ""
-        problem = getattr(error, "problem", None) or str(error)
+        problem = getattr(error, "problem", None) or " ".join(str(error).split())
         raise MessageError(f"the values are no YAML{where}: {problem}") from error
-    if values is None:
-        return {}
-    if not isinstance(values, dict):
-        raise MessageError(
-            f"the values of a {type_} are written 'field: value', but {text!r} is a "
-            f"{type(values).__name__}; is it quoted for the shell?"
-        )
-    return values
+
+
+def _no_mapping(type_: str, shown: Any, values: Any) -> str:
+    return (
+        f"the values of a {type_} are written 'field: value', but {shown!r} is a "
+        f"{type(values).__name__}"
+    )
 
 
 def fill_message(message: Any, values: dict[str, Any]) -> FilledMessage:

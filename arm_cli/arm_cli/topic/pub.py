@@ -1,7 +1,9 @@
 """`arm topic pub`: publish a message, at a rate or some times."""
 
 import argparse
+import itertools
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,8 +15,8 @@ from arm_cli.command_parser import (
     positive_whole_number,
     whole_number,
 )
-from arm_cli.errors import NotFoundError, UnansweredError, UsageError
-from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.errors import MessageError, NotFoundError, UnansweredError, UsageError
+from arm_cli.interfaces.index import InterfaceIndex, InterfaceType, load_class
 from arm_cli.qos_options import add_qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -44,7 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "values", nargs="?", default="", help="fields as YAML, such as 'data: [0.0, 0.5]'"
     )
     parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
-    parser.add_argument("--yaml-file", metavar="FILE", help="read the values from a file")
+    parser.add_argument(
+        "--yaml-file",
+        metavar="FILE",
+        help="publish the messages of a file, as `arm topic echo` prints them, one after another",
+    )
     parser.add_argument(
         "-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"
     )
@@ -92,46 +98,75 @@ def run(options: argparse.Namespace) -> None:
 
     Raises:
         NotFoundError: there is no such type.
-        MessageError: the values do not fit it.
+        MessageError: the values do not fit it, or a file holds none.
         UnansweredError: no subscription within `--max-wait-time-secs`.
     """
     type_ = InterfaceIndex().find(options.message_type, ("msg",))
-    from arm_cli.messages.filling import fill_message, read_yaml
-
-    filled = fill_message(load_class(type_)(), read_yaml(_values(options), type_.full_name))
-    for note in filled.notes:
-        print(f"arm topic pub: {note}", file=sys.stderr)
+    messages = _messages(options, type_)
     times = 1 if options.once else options.times
     wanted = options.wait_matching_subscriptions
+    if wanted is None:
+        wanted = 0 if times is None else 1
+    if options.yaml_file is not None:
+        times = min(times or len(messages), len(messages))
     with connect(options.node_name, options.use_sim_time) as session:
         publication = _Publication(
             session,
             session.full_name(options.topic_name),
             type_.full_name,
-            filled,
+            messages,
             options.print,
         )
         publication.open(options)
-        publication.wait_for(
-            (0 if times is None else 1) if wanted is None else wanted, options.max_wait_time_secs
-        )
+        publication.wait_for(wanted, options.max_wait_time_secs)
         print("publisher: beginning loop")
         publication.repeat(times, 1.0 / options.rate)
         session.let_arrive([publication.publisher], options.keep_alive)
 
 
-def _values(options: argparse.Namespace) -> str:
+def _messages(options: argparse.Namespace, type_: InterfaceType) -> list["FilledMessage"]:
+    """Return what is published: one message, or those of a file."""
+    from arm_cli.messages.filling import fill_message, read_yaml
+
     given = [bool(options.values), options.stdin, options.yaml_file is not None]
     if sum(given) > 1:
         raise UsageError("the values: as a word, by --stdin or by --yaml-file, not twice")
-    if options.stdin:
-        return sys.stdin.read()
-    if options.yaml_file is None:
-        return options.values
+    class_ = load_class(type_)
+    if options.yaml_file is not None:
+        return _messages_of_file(options.yaml_file, class_, type_.full_name)
+    text = sys.stdin.read() if options.stdin else options.values
+    filled = fill_message(class_(), read_yaml(text, type_.full_name))
+    _say_notes(filled, "")
+    return [filled]
+
+
+def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMessage"]:
+    from arm_cli.messages.filling import fill_message, read_yaml_documents
+
     try:
-        return Path(options.yaml_file).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise NotFoundError(f"--yaml-file {options.yaml_file}: {error}") from error
+        raise NotFoundError(f"--yaml-file {path}: {error}") from error
+    try:
+        documents = read_yaml_documents(text, type_name)
+    except MessageError as error:
+        raise MessageError(f"--yaml-file {path}: {error}") from error
+    if not documents:
+        raise MessageError(f"--yaml-file {path}: there is no message in it")
+    messages: list[FilledMessage] = []
+    for number, values in enumerate(documents, start=1):
+        place = f"--yaml-file {path}: message {number}: "
+        try:
+            messages.append(fill_message(class_(), values))
+        except MessageError as error:
+            raise MessageError(f"{place}{error}") from error
+        _say_notes(messages[-1], place)
+    return messages
+
+
+def _say_notes(filled: "FilledMessage", place: str) -> None:
+    for note in filled.notes:
+        print(f"arm topic pub: {place}{note}", file=sys.stderr)
 
 
 @dataclass(slots=True)
@@ -139,7 +174,7 @@ class _Publication:
     session: "Session"
     topic: str
     type_name: str
-    filled: "FilledMessage"
+    messages: Sequence["FilledMessage"]
     print_every: int
     publisher: Any = None
 
@@ -147,7 +182,7 @@ class _Publication:
         from arm_cli.ros.qos import qos_profile
 
         profile = qos_profile(qos_choice(options), "default")
-        message_class = type(self.filled.message)
+        message_class = type(self.messages[0].message)
         self.publisher = self.session.node.create_publisher(message_class, self.topic, profile)
 
     def wait_for(self, subscriptions: int, timeout_s: float | None) -> None:
@@ -182,17 +217,20 @@ class _Publication:
             )
 
     def repeat(self, times: int | None, period_s: float) -> None:
+        """Publish the messages one after another, and again from the first, some times in all."""
         count = 0
+        following = itertools.cycle(self.messages)
 
         def publish() -> None:
             nonlocal count
             if count == times:
                 return
             count += 1
-            self.filled.stamp(self.session.node.get_clock().now().to_msg())
+            filled = next(following)
+            filled.stamp(self.session.node.get_clock().now().to_msg())
             if self.print_every and count % self.print_every == 0:
-                print(f"publishing #{count}: {self.filled.message!r}\n")
-            self.publisher.publish(self.filled.message)
+                print(f"publishing #{count}: {filled.message!r}\n")
+            self.publisher.publish(filled.message)
 
         publish()
         timer = self.session.node.create_timer(period_s, publish)
