@@ -99,12 +99,16 @@ class SdfElement:
     def children(self, tag: str) -> "list[SdfElement]":
         """Return the children with this tag."""
         if tag not in self._children:
-            self._children[tag] = [
-                SdfElement(child, self.source, self.label if self.name else self._owner)
-                for child in self._element.iterchildren("*")
-                if written_name(child) == tag
-            ]
+            self._children[tag] = self.aside(tag)
         return self._children[tag]
+
+    def aside(self, tag: str) -> "list[SdfElement]":
+        """Return the children with this tag, which remain unread whatever is asked of them."""
+        return [
+            SdfElement(child, self.source, self.label if self.name else self._owner)
+            for child in self._element.iterchildren("*")
+            if written_name(child) == tag
+        ]
 
     def child(self, tag: str) -> "SdfElement | None":
         """Return the first child with this tag, or None."""

@@ -41,7 +41,7 @@ class SdfFrames:
     def _resolved(self, element: SdfElement, pose: SdfPose) -> NDArray[np.float64]:
         """Follow a pose from frame to frame up to the scope's own."""
         matrix, passed = pose.matrix, set[str]()
-        while (name := pose.relative_to or element.attribute("attached_to")) not in ROOTS:
+        while (name := pose.relative_to or _usual_frame(element)) not in ROOTS:
             if name not in self._elements:
                 known = listing(sorted(self._elements))
                 raise element.error(f"is relative to '{name}', not one of {known}")
@@ -52,6 +52,11 @@ class SdfFrames:
             pose = element.pose()
             matrix = pose.matrix @ matrix
         return matrix
+
+
+def _usual_frame(element: SdfElement) -> str:
+    """Return what an element's pose is relative to where it does not say it itself."""
+    return element.text("child") if element.tag == "joint" else element.attribute("attached_to")
 
 
 def pose_of(matrix: NDArray[np.float64]) -> Pose:

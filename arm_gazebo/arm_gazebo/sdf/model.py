@@ -80,7 +80,9 @@ def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfM
         WorldError: a value is not what it must be.
     """
     links = model.children("link")
-    frames = SdfFrames({part.name: part for part in (*links, *model.children("frame"))})
+    # Joints are frames too, though nothing else of them is simulated.
+    parts = (*model.aside("joint"), *links, *model.children("frame"))
+    frames = SdfFrames({part.name: part for part in parts})
     said = model.flag("static")
     fixed = said if static is None else static
     read = [_LinkReader(link, f"{name}::{link.name}", frames) for link in links]

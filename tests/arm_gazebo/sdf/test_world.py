@@ -149,6 +149,38 @@ def test_links_of_a_model_keep_their_frames(world):
     assert data.body("lamp::head").xpos == pytest.approx([0, 0, 2])
 
 
+LAMP = """<model name="lamp"><static>true</static><link name="foot"/>
+  <joint name="hinge" type="revolute">{hinge}<parent>foot</parent><child>head</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+  <link name="head">{head}</link><link name="bulb">{bulb}</link></model>"""
+
+
+def test_poses_may_be_relative_to_joints(world):
+    """As `gz sdf -p` prints a URDF."""
+    _, data, report = world(
+        LAMP.format(
+            hinge='<pose relative_to="foot">0 0 0.5 0 0 0</pose>',
+            head='<pose relative_to="hinge"/>',
+            bulb='<pose relative_to="hinge">0.1 0 0 0 0 0</pose>',
+        )
+    )
+    assert data.body("lamp::head").xpos == pytest.approx([0, 0, 0.5])
+    assert data.body("lamp::bulb").xpos == pytest.approx([0.1, 0, 0.5])
+    listed = [str(f) for f in report.findings if "hinge" in f.element]
+    assert listed == ["joint 'hinge' in lab.sdf (line 5): the links of a model are one rigid body"]
+
+
+def test_a_joint_is_where_its_child_is(world):
+    _, data, _ = world(
+        LAMP.format(
+            hinge="<pose>0 0 -0.1 0 0 0</pose>",
+            head="<pose>0 0 2 0 0 0</pose>",
+            bulb='<pose relative_to="hinge">0.1 0 0 0 0 0</pose>',
+        )
+    )
+    assert data.body("lamp::bulb").xpos == pytest.approx([0.1, 0, 1.9])
+
+
 def test_included_model_is_found_on_the_resource_path(world, write, tmp_path, monkeypatch):
     write(model("can", link=INERTIAL + CYLINDER, head=STATIC), "models/can/model.sdf")
     monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
@@ -219,6 +251,10 @@ def test_what_is_not_simulated_is_listed_and_not_fatal(world):
         (model("a", link=shape("<sphere><radius>-1</radius></sphere>")), "-1; it must be above 0"),
         (model("a", attributes='relative_to="b"'), "relative to 'b', not one of a"),
         (model("a", attributes='relative_to="a"'), "in a circle to itself"),
+        (
+            LAMP.format(hinge="", head='<pose relative_to="hinge"/>', bulb="").replace("\n", ""),
+            "in a circle to itself",
+        ),
         (model("a") + model("a"), "second one called 'a'"),
         ("<include><uri>model://nowhere</uri></include>", "cannot be had: no file"),
         ("<include/>", "needs a <uri>"),
