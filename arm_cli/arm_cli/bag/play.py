@@ -152,7 +152,9 @@ def _play_once(
     found = reader.messages(topics, start_ns)
     with ReadAhead(found, options.read_ahead_queue_size) as messages:
         schedule = PlaySchedule(start_ns, time.monotonic(), options.rate)
-        player.play(messages, schedule, end_ns)
+        # The rest of the bag matters to who goes by its clock, and to the period of a loop only.
+        to_the_end = options.loop or options.clock is not None
+        player.play(messages, schedule, end_ns, to_the_end=to_the_end)
 
 
 def _extent(reader: "BagReader", options: argparse.Namespace) -> tuple[int, int]:

@@ -119,8 +119,21 @@ class BagPlayer:
         if shared:
             _say(f"published by others, too: {', '.join(shared)}")
 
-    def play(self, messages: Iterable[BagMessage], schedule: PlaySchedule, end_ns: int) -> None:
+    def play(
+        self,
+        messages: Iterable[BagMessage],
+        schedule: PlaySchedule,
+        end_ns: int,
+        *,
+        to_the_end: bool,
+    ) -> None:
         """Publish messages at their times, up to a time of the bag.
+
+        Args:
+            messages: in the order of their time.
+            schedule: when they are due.
+            end_ns: time of the bag after which none is published.
+            to_the_end: whether that time is waited for after the last message.
 
         Raises:
             StoppedError: a signal ends it.
@@ -130,7 +143,8 @@ class BagPlayer:
                 break
             self._wait(schedule, message.log_time_ns)
             self._publishers[message.topic].publish(message.data)
-        self._wait(schedule, end_ns)
+        if to_the_end:
+            self._wait(schedule, end_ns)
 
     def finish(self) -> None:
         """Let the last messages arrive."""
