@@ -97,14 +97,14 @@ class EntityServices:
             motions = self._keeper.motions()
             chosen = filter_of(request.filters).choose(self._keeper.entities, motions)
             response.entities = [entity.name for entity in chosen]
-            response.states = [state_message(motions.motion(e.roots[0])) for e in chosen]
+            response.states = [state_message(motions.of(e)) for e in chosen]
 
         return answer(response, {}, find)
 
     def _state(self, request: Any, response: Any) -> Any:
         def look() -> None:
             entity = self._keeper.entities.find(request.entity)
-            response.state = state_message(self._keeper.motions().motion(entity.roots[0]))
+            response.state = state_message(self._keeper.motions().of(entity))
 
         return answer(response, {}, look)
 
@@ -136,6 +136,6 @@ class EntityServices:
         def look() -> None:
             entity = self._keeper.entities.find(request.entity)
             motions = self._keeper.motions()
-            response.bounds = bounds_message(motions.bounds(entity, motions.pose(entity.roots[0])))
+            response.bounds = bounds_message(motions.bounds(entity, motions.of(entity).pose))
 
         return answer(response, {}, look)

@@ -24,7 +24,7 @@ class Spawned:
     Attributes:
         name: before "::" in the names of all that is in it.
         model: what it is made of.
-        pose: (4, 4) of its root body in the world.
+        pose: (4, 4) of its frame in the world, in which its root body is at `model.origin`.
     """
 
     name: str
@@ -125,7 +125,7 @@ def _attach(spec: mujoco.MjSpec, spawned: Spawned) -> None:
     model = spawned.model.spec.copy()
     frame = spec.worldbody.add_frame()
     body = frame.attach_body(model.body(spawned.model.root), spawned.prefix, "")
-    _place(body, spawned.pose)
+    _place(body, spawned.pose @ spawned.model.origin)
 
 
 def _place(body: mujoco.MjsBody, pose: Matrix) -> None:

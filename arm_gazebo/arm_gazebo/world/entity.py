@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from arm_description.names import listing
 from arm_gazebo.free_name import free_name
@@ -50,15 +51,17 @@ class Entity:
 
     Attributes:
         name: what clients call it.
-        roots: names of its bodies right below the world; the first one's frame is the entity's.
+        roots: names of its bodies right below the world.
         note: what is known about it.
         free_joint: joint by which the first root moves, "" where it cannot.
+        origin: pose (4, 4) of the first root in the entity's frame, mostly the same.
     """
 
     name: str
     roots: tuple[str, ...]
     note: EntityNote
     free_joint: str = ""
+    origin: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
 
     @property
     def is_robot(self) -> bool:
@@ -79,8 +82,7 @@ class Entities:
         self, built: BuiltModel, changes: WorldChanges, notes: Mapping[str, EntityNote]
     ) -> None:
         model, robots = built.model, built.robot_roots
-        names = {spawned.root: spawned.name for spawned in changes.spawned}
-        formats = {spawned.root: spawned.model.format for spawned in changes.spawned}
+        things = {spawned.root: spawned for spawned in changes.spawned}
         found: dict[str, Entity] = {}
         for name, roots in built.robots.items():
             if not roots:
@@ -91,9 +93,11 @@ class Entities:
             root = model.body(body).name
             if body == 0 or root in robots:
                 continue
-            name = names.get(root) or free_name(root, found)
-            note = _note(model, body, formats.get(root, ""))
-            found[name] = Entity(name, (root,), notes.get(name, note), _free_joint(model, (root,)))
+            thing = things.get(root)
+            name = thing.name if thing else free_name(root, found)
+            note = notes.get(name, _note(model, body, thing.model.format if thing else ""))
+            origin = thing.model.origin if thing else np.eye(4)
+            found[name] = Entity(name, (root,), note, _free_joint(model, (root,)), origin)
         self._found = found
 
     def __iter__(self) -> Iterator[Entity]:

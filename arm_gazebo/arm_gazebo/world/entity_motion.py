@@ -59,6 +59,13 @@ class EntityMotions:
         """Positions (ngeom, 3) and rotations (ngeom, 9) of all shapes in the world."""
         return self._data.geom_xpos, self._data.geom_xmat
 
+    def of(self, entity: Entity) -> Motion:
+        """Return the motion of an entity's frame; of its first root, where they are the same."""
+        root = self.motion(entity.roots[0])
+        pose = root.pose @ np.linalg.inv(entity.origin)
+        linear = root.linear + np.cross(root.angular, pose[:3, 3] - root.pose[:3, 3])
+        return Motion(root.time_s, pose, linear, root.angular)
+
     def motion(self, body: str) -> Motion:
         """Return the motion of a body's frame."""
         index = self._model.body(body).id

@@ -172,7 +172,7 @@ class WorldKeeper:
             raise RefusedError(Refusal.FAILED, f"'{name}' is no free body and takes no velocity")
         elif pose is not None:
             world_pose = self.in_world(pose, frame)
-            self._change(self._changes.with_moved(entity.roots[0], world_pose))
+            self._change(self._changes.with_moved(entity.roots[0], world_pose @ entity.origin))
 
     def describe(self, name: str, note: EntityNote) -> None:
         """Keep what a client says about an entity."""
@@ -213,27 +213,30 @@ class WorldKeeper:
         if frame in ("", WORLD_FRAME):
             return np.eye(4)
         entity = next((entity for entity in self._entities if entity.name == frame), None)
-        body = entity.roots[0] if entity and entity.roots else frame
-        if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, body) < 0:
+        if entity is not None:
+            return self.motions().of(entity).pose
+        if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, frame) < 0:
             raise RefusedError(
                 Refusal.INVALID_POSE,
                 f"no frame '{frame}'; there are {WORLD_FRAME}, the entities and their links",
             )
-        return self.motions().pose(body)
+        return self.motions().pose(frame)
 
     def _place_free(
         self, entity: Entity, pose: Matrix | None, frame: str, twist: np.ndarray | None
     ) -> None:
         frame_pose = self._frame_pose(frame)
-        motion = self.motions().motion(entity.roots[0])
+        motion = self.motions().of(entity)
         at = motion.pose if pose is None else frame_pose @ pose
         linear, angular = np.zeros(3), np.zeros(3)
         if twist is not None:
             linear, angular = frame_pose[:3, :3] @ twist[:3], frame_pose[:3, :3] @ twist[3:]
         elif pose is None:
             linear, angular = motion.linear, motion.angular
-        position = np.concatenate((at[:3, 3], quaternion_of(at)))
-        velocity = np.concatenate((linear, at[:3, :3].T @ angular))
+        root = at @ entity.origin
+        position = np.concatenate((root[:3, 3], quaternion_of(root)))
+        linear = linear + np.cross(angular, root[:3, 3] - at[:3, 3])
+        velocity = np.concatenate((linear, root[:3, :3].T @ angular))
         self._on_loop(lambda: self._simulation.place(entity.free_joint, position, velocity))
 
     def _change(self, changes: WorldChanges) -> None:

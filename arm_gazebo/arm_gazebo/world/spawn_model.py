@@ -1,16 +1,17 @@
 """A thing to be put into a running world: read from URDF, SDF or MJCF, ready to be attached."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.names import listing
 from arm_description.resources import folders_of, resolve_uri
-from arm_description.robot import Pose
+from arm_description.robot import Pose, Robot
 from arm_description.urdf import parse_urdf
 from arm_description.xacro_expansion import expand_xacro_file
 from arm_description.xml_document import parse_xml
@@ -47,12 +48,15 @@ class SpawnModel:
         root: the body that is attached, with all below it.
         format: one of FORMATS.
         findings: what of it was repaired or left out.
+        origin: pose (4, 4) of the root body in the thing's frame, which is another where a URDF
+            begins with a `world` link.
     """
 
     spec: mujoco.MjSpec
     root: str
     format: str
     findings: tuple[Finding, ...] = ()
+    origin: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +142,8 @@ class ModelSource:
         follow = followings(robot, report)
         add_equalities(spec, robot, follow, self.step_s, report)
         _leave_out_own_contacts(spec, bodies, tags, report)
-        return SpawnModel(spec, _only_body(spec, "URDF"), "urdf", report.findings)
+        root = _only_body(spec, "URDF")
+        return SpawnModel(spec, root, "urdf", report.findings, _origin(robot, root, bodies))
 
     def _read_sdf(self, text: str, path: Path | None, report: BuildReport) -> SpawnModel:
         root = SdfElement.parse(text, path or Path("resource_string"))
@@ -228,6 +233,12 @@ def _leave_out_own_contacts(
     if touching:
         model = spec.copy().compile()
         leave_out_neighbours(spec, model, model.qpos0, list(names.values()), report)
+
+
+def _origin(robot: Robot, root: str, bodies: Mapping[str, mujoco.MjsBody]) -> NDArray[np.float64]:
+    """Return where the first joint puts the root body; a root link is where the thing is."""
+    first = next((j for j in robot.joints if bodies[j.child].name == root), None)
+    return np.eye(4) if first is None else first.origin.matrix()
 
 
 def _is_static(urdf: str) -> bool:

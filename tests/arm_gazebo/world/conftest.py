@@ -19,6 +19,10 @@ LID = """<link name="lid"><inertial><mass value="0.1"/>
   <limit lower="-1.5" upper="1.5" effort="1" velocity="1"/></joint>"""
 CRATE = URDF.format(more="")
 CHEST = URDF.format(more=LID)
+LAMP = URDF.format(
+    more="<link name='world'/><joint name='j' type='{joint}'><parent link='world'/>"
+    "<child link='base'/><origin xyz='0 0.5 1' rpy='0 0 1.5707963267948966'/></joint>"
+)
 POST = URDF.format(more="<gazebo><static>true</static></gazebo>")
 BALL = """<sdf version="1.9"><model name="ball"><link name="body"><collision name="c"><geometry>
   <sphere><radius>0.05</radius></sphere></geometry></collision><visual name="v"><geometry><sphere>
@@ -40,6 +44,7 @@ class Things:
     crate = CRATE
     chest = CHEST
     post = POST
+    lamp = LAMP
     ball = BALL
     puck = PUCK
     at = staticmethod(at)
@@ -66,8 +71,7 @@ class KeptWorld:
 
     def where(self, entity: str) -> np.ndarray:
         """Return where an entity is now, shape (3,)."""
-        root = self.keeper.entities.find(entity).roots[0]
-        return self.keeper.motions().motion(root).pose[:3, 3]
+        return self.keeper.motions().of(self.keeper.entities.find(entity)).pose[:3, 3]
 
 
 @pytest.fixture

@@ -43,6 +43,36 @@ def test_a_static_thing_stays_where_it_was_put(world, things):
     assert world.keeper.entities.find("post").note.category is Category.STATIC_OBJECT
 
 
+def turned(x: float, y: float, z: float) -> np.ndarray:
+    """Return a pose (4, 4) with a quarter turn about z."""
+    return np.array([[0, -1, 0, x], [1, 0, 0, y], [0, 0, 1, z], [0, 0, 0, 1.0]])
+
+
+def test_a_thing_whose_root_is_the_world_keeps_the_origin_of_its_first_joint(world, things):
+    world.spawn("lamp", things.lamp.format(joint="fixed"), turned(2, 1, 0))
+    for pose in (turned(2, 1, 0), turned(3, 2, 1)):
+        world.keeper.place("lamp", pose, "", None)
+        motions = world.keeper.motions()
+        assert motions.of(world.keeper.entities.find("lamp")).pose == pytest.approx(pose)
+        assert motions.pose("lamp::base")[:3, 3] == pytest.approx(pose[:3, 3] + [-0.5, 0, 1])
+        assert motions.pose("lamp::base")[:3, 0] == pytest.approx([-1, 0, 0])
+    world.spawn("post", things.post, things.at(), frame="lamp")
+    assert world.where("post") == pytest.approx([3, 2, 1])
+
+
+def test_a_thing_that_floats_in_its_world_link_is_moved_and_pushed_by_its_own_frame(world, things):
+    world.spawn("kite", things.lamp.format(joint="floating"), turned(2, 1, 0))
+    entity = world.keeper.entities.find("kite")
+    world.keeper.place("kite", turned(3, 2, 1), "", np.array([1.0, 0, 0, 0, 0, 2.0]))
+    motion = world.keeper.motions().of(entity)
+    assert motion.pose == pytest.approx(turned(3, 2, 1))
+    assert motion.linear == pytest.approx([1, 0, 0])
+    assert motion.angular == pytest.approx([0, 0, 2])
+    base = world.keeper.motions().motion("kite::base")
+    assert base.pose[:3, 3] == pytest.approx([2.5, 2, 2])
+    assert base.linear == pytest.approx([1, -1, 0])
+
+
 def test_poses_may_be_told_in_the_frame_of_an_entity_or_of_a_link(world, things):
     can = world.where("coke_can")
     world.spawn("a", things.post, things.at(z=0.5), frame="coke_can")
