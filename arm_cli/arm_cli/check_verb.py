@@ -47,17 +47,18 @@ def run(options: argparse.Namespace) -> int:
 
     from arm_description.errors import DescriptionError
     from arm_description.resources import folders_of
+    from arm_description.xacro_arguments import arguments_of_words
     from arm_description.xacro_expansion import expand_xacro_file
     from arm_gazebo.check.description import check_description
     from arm_gazebo.errors import SettingsError
-    from arm_gazebo.launching.robot_setup import folders, model_arguments, path_of
+    from arm_gazebo.launching.robot_setup import folders, path_of
     from arm_gazebo.mesh.cache import cache_folder
     from arm_gazebo.robot.build_options import BuildOptions
 
     try:
         given = folders(options.package_path)
         file = path_of(options.file, given)
-        urdf = expand_xacro_file(file, model_arguments(options.arguments), given).text
+        urdf = expand_xacro_file(file, arguments_of_words(options.arguments), given).text
     except (DescriptionError, SettingsError) as error:
         raise ArmCliError(str(error)) from error
     if options.urdf:

@@ -13,12 +13,17 @@ from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
+FRONT = "front"
 
-def describe(model: str, camera: str) -> str:
+
+def describe(model: str, model_args: str, camera: str) -> str:
     """Return the URDF text of the model."""
+    from arm_description.xacro_arguments import arguments_of_text
     from arm_description.xacro_expansion import expand_xacro
 
-    return expand_xacro(model, {"camera": camera})
+    # The default is left to the model: another one may take other values of that name.
+    cameras = {} if camera == FRONT else {"camera": camera}
+    return expand_xacro(model, cameras | arguments_of_text(model_args))
 
 
 def own_folders(model: str) -> str:
@@ -44,10 +49,15 @@ def generate_launch_description() -> LaunchDescription:
                 description="URDF or xacro file",
             ),
             DeclareLaunchArgument(
+                "model_args",
+                default_value="",
+                description='arguments of a xacro model: "a:=1 b:=2"',
+            ),
+            DeclareLaunchArgument(
                 "camera",
-                default_value="front",
+                default_value=FRONT,
                 description="the arm's camera",
-                choices=["front", "side", "none"],
+                choices=[FRONT, "side", "none"],
             ),
             DeclareLaunchArgument(
                 "viewer",
@@ -64,7 +74,8 @@ def generate_launch_description() -> LaunchDescription:
                 ),
                 launch_arguments={
                     "robot_description": Call(
-                        describe, LaunchConfiguration("model"), LaunchConfiguration("camera")
+                        describe,
+                        *map(LaunchConfiguration, ("model", "model_args", "camera")),
                     ),
                     "sliders": Call(sliders, LaunchConfiguration("viewer")),
                 },

@@ -45,8 +45,15 @@ DESCRIPTION_ARGUMENTS = {
 
 
 def assignments(**arguments: str) -> str:
-    """Return arguments as words NAME:=VALUE."""
-    return shlex.join(f"{name}:={value}" for name, value in arguments.items())
+    """Return what differs from the arm's own defaults as words NAME:=VALUE.
+
+    Another model by `model:=` may have arguments of these names and other defaults.
+    """
+    return shlex.join(
+        f"{name}:={value}"
+        for name, value in arguments.items()
+        if value != DESCRIPTION_ARGUMENTS[name][0]
+    )
 
 
 def generate_launch_description() -> LaunchDescription:

@@ -1,8 +1,11 @@
 """display.launch.py: which processes its arguments come to, without starting any."""
 
+import runpy
+
 import pytest
 
 from arm_cli.main import main
+from arm_description.resources import find_package
 
 NODES = {"robot_state_publisher", "joint_state_publisher", "arm_viewer_node"}
 
@@ -33,3 +36,49 @@ def test_the_page_looks_for_meshes_where_the_model_is(capsys, tmp_path):
     page = capsys.readouterr().out.partition("\narm_viewer_node\n")[2]
     (folders,) = (line for line in page.splitlines() if "GZ_SIM_RESOURCE_PATH=" in line)
     assert str(tmp_path) in folders.partition("=")[2].split(":")
+
+
+@pytest.fixture
+def describe():
+    return runpy.run_path(str(find_package("arm_description") / "launch" / "display.launch.py"))[
+        "describe"
+    ]
+
+
+@pytest.fixture
+def other_model(tmp_path):
+    """A model whose `camera` is a switch, and that has an argument of its own."""
+    model = tmp_path / "other.urdf.xacro"
+    model.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:arg name="camera" default="false"/><xacro:arg name="side" default="no"/>'
+        '<link name="$(arg side)_hand"/>'
+        '<xacro:if value="$(arg camera)"><link name="lens"/></xacro:if></robot>'
+    )
+    return str(model)
+
+
+def test_another_model_keeps_its_own_default_of_an_argument_that_the_arm_has_too(
+    describe, other_model
+):
+    text = describe(other_model, "", "front")
+    assert "no_hand" in text
+    assert "lens" not in text
+
+
+def test_another_models_arguments_are_passed_on(describe, other_model):
+    text = describe(other_model, "side:=left camera:=true", "front")
+    assert "left_hand" in text
+    assert "lens" in text
+
+
+def test_the_arm_gets_the_camera_asked_for(describe):
+    model = str(find_package("arm_description") / "urdf" / "arm.urdf.xacro")
+    assert "camera_link" in describe(model, "", "front")
+    assert "camera_link" not in describe(model, "", "none")
+
+
+def test_an_argument_without_a_value_is_refused(capsys):
+    line = ["launch", "arm_description", "display.launch.py", "--print", "model_args:=side=left"]
+    assert main(line) == 2
+    assert "'side=left' is not NAME:=VALUE" in capsys.readouterr().err

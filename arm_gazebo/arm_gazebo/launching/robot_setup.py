@@ -1,15 +1,14 @@
 """What a launch file needs to simulate a robot: its description, its controllers, its folders."""
 
 import os
-import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from arm_description.resources import folders_of, resolve_uri
+from arm_description.xacro_arguments import arguments_of_text
 from arm_description.xacro_expansion import expand_xacro_file
 from arm_description.xml_document import parse_xml
-from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.controllers_file import Controllers, fill_in, startable_controllers
 from arm_gazebo.launching.default_control import (
     COMMANDER,
@@ -24,7 +23,6 @@ from arm_gazebo.launching.default_control import (
 
 SPAWN_AUTO = "auto"
 """Start every controller whose joints are free."""
-ASSIGNMENT = ":="
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +79,7 @@ def set_up_robot(
     """
     given = folders(package_path)
     file = path_of(model, given)
-    expansion = expand_xacro_file(file, model_arguments(_words(model_args)), given)
+    expansion = expand_xacro_file(file, arguments_of_text(model_args), given)
     description = expansion.text
     remarks: list[str] = []
     joints = HardwareJoints()
@@ -118,28 +116,6 @@ def path_of(file: str, package_path: Sequence[Path] = ()) -> Path:
         ResourceNotFoundError: there is nothing under the URI.
     """
     return resolve_uri(file, package_path) if "://" in file else Path(file).expanduser()
-
-
-def model_arguments(words: Iterable[str]) -> dict[str, str]:
-    """Return the xacro arguments of words NAME:=VALUE.
-
-    Raises:
-        SettingsError: a word that is none.
-    """
-    arguments: dict[str, str] = {}
-    for word in words:
-        name, assignment, value = word.partition(ASSIGNMENT)
-        if not (name and assignment):
-            raise SettingsError(f"the xacro argument {word!r} is not NAME:=VALUE")
-        arguments[name] = value
-    return arguments
-
-
-def _words(text: str) -> list[str]:
-    try:
-        return shlex.split(text)
-    except ValueError as error:
-        raise SettingsError(f"model_args {text!r}: {error}") from error
 
 
 def folders(path: str) -> tuple[Path, ...]:

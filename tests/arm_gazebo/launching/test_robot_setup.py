@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from arm_description.errors import ResourceNotFoundError, XacroError
-from arm_gazebo.errors import SettingsError
 from arm_gazebo.launching.default_control import has_hardware
-from arm_gazebo.launching.robot_setup import folders, model_arguments, set_up_robot
+from arm_gazebo.launching.robot_setup import folders, set_up_robot
 
 
 @pytest.fixture
@@ -195,16 +194,6 @@ def test_xacro_arguments_are_passed_on(tmp_path):
         'default="left"/><link name="$(arg side)_hand"/></robot>'
     )
     assert "a hand" in set_up_robot(str(file), "side:='a hand'").description.replace("_", " ")
-
-
-def test_arguments_are_words_of_name_and_value():
-    assert model_arguments(["a:=1", "b:=two words", "c:="]) == {"a": "1", "b": "two words", "c": ""}
-
-
-@pytest.mark.parametrize("words", ["a", "a=1", ":=1", "a:='1"])
-def test_what_is_no_argument_is_refused(bare, words):
-    with pytest.raises(SettingsError, match=r"NAME:=VALUE|No closing quotation"):
-        set_up_robot(str(bare), words)
 
 
 def test_a_missing_model_is_named():
