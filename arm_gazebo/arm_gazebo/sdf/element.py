@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import XmlError
+from arm_description.mesh_data import Color
 from arm_description.transforms import rotation_from_rpy, transform
 from arm_description.urdf_element import written_name
 from arm_description.xml_document import parse_xml
@@ -163,6 +164,16 @@ class SdfElement:
             return default
         return self.needed(tag)._numbers(count)
 
+    def color(self, tag: str, default: Color | None = None) -> Color:
+        """Return the colour of a child, whose alpha is 1 where it is left out.
+
+        Without a default it must be there.
+        """
+        if self.child(tag) is None and default is not None:
+            return default
+        r, g, b, a = (*self.needed(tag)._numbers(3, 4), 1.0)[:4]
+        return r, g, b, a
+
     def pose(self) -> SdfPose:
         """Return the pose in this element's <pose>, or no displacement."""
         pose = self.child("pose")
@@ -199,10 +210,11 @@ class SdfElement:
     def _text(self) -> str:
         return str(self._element.text or "").strip()
 
-    def _numbers(self, count: int) -> tuple[float, ...]:
+    def _numbers(self, *counts: int) -> tuple[float, ...]:
         words = self._text().split()
-        if len(words) != count:
-            raise self.error(f"has '{' '.join(words)}': {len(words)} values, not {count}")
+        if len(words) not in counts:
+            wanted = " or ".join(map(str, counts))
+            raise self.error(f"has '{' '.join(words)}': {len(words)} values, not {wanted}")
         for word in words:
             if not (_NUMBER.fullmatch(word) and math.isfinite(float(word))):
                 raise self.error(f"has '{word}', which is not a finite number")

@@ -24,7 +24,7 @@ def add_sky(spec: mujoco.MjSpec, world: SdfElement) -> None:
     """Give a world the background and the light from everywhere that its <scene> tells."""
     scene = world.child("scene")
     grey = (0.4, 0.4, 0.4, 1.0)
-    ambient = scene.numbers("ambient", 4, grey) if scene else grey
+    ambient = scene.color("ambient", grey) if scene else grey
     spec.visual.headlight.ambient = ambient[:3]
     spec.visual.headlight.diffuse = [0.1] * 3
     spec.visual.headlight.specular = [0.0] * 3
@@ -33,7 +33,7 @@ def add_sky(spec: mujoco.MjSpec, world: SdfElement) -> None:
         name="sky",
         type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
         builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
-        rgb1=(scene.numbers("background", 4, background) if scene else background)[:3],
+        rgb1=(scene.color("background", background) if scene else background)[:3],
         width=8,
         height=48,
     )
@@ -54,8 +54,8 @@ def add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
         raise light.error("has a direction of no length")
     added = spec.worldbody.add_light(name=light.name, type=KINDS[kind], pos=pose.xyz)
     added.dir = rotation_from_rpy(pose.rpy) @ (x, y, z)
-    added.diffuse = light.numbers("diffuse", 4, (1.0, 1.0, 1.0, 1.0))[:3]
-    added.specular = light.numbers("specular", 4, (0.1, 0.1, 0.1, 1.0))[:3]
+    added.diffuse = light.color("diffuse", (1.0, 1.0, 1.0, 1.0))[:3]
+    added.specular = light.color("specular", (0.1, 0.1, 0.1, 1.0))[:3]
     added.castshadow = light.flag("cast_shadows")
     attenuation = light.child("attenuation")
     if attenuation and kind != "directional":

@@ -212,7 +212,7 @@ def _color(visual: SdfElement) -> Color | None:
         script = material.child("script")
         named = gazebo_color(script.text("name")) if script else None
         return named and (*named[:3], named[3] * opacity)
-    r, g, b, a = np.clip(material.numbers(color.tag, 4), 0.0, 1.0).tolist()
+    r, g, b, a = np.clip(material.color(color.tag), 0.0, 1.0).tolist()
     return (r, g, b, a * opacity)
 
 

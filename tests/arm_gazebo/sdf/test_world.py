@@ -130,6 +130,22 @@ def test_colours_of_gazebo_are_known_by_name_and_transparency_counts(world):
     assert compiled.geom_rgba[0] == pytest.approx([0, 0, 1, 0.75])
 
 
+def test_a_colour_of_three_numbers_hides_nothing(world):
+    link = BOX.replace("1 0 0 1", "0 1 0")
+    light = '<light name="lamp" type="point"><diffuse>.1 .2 .3</diffuse>{}</light>'
+    compiled, _, _ = world(
+        "<scene><ambient>0.1 0.2 0.3</ambient><background>0 0 1</background></scene>",
+        light.format("<specular>.4 .5 .6</specular>"),
+        model("thing", link=link, head=STATIC),
+    )
+    [seen] = np.flatnonzero(compiled.geom_contype == 0)
+    assert compiled.geom_rgba[seen] == pytest.approx([0, 1, 0, 1])
+    assert compiled.light("lamp").diffuse == pytest.approx([0.1, 0.2, 0.3])
+    assert compiled.light("lamp").specular == pytest.approx([0.4, 0.5, 0.6])
+    assert compiled.vis.headlight.ambient == pytest.approx([0.1, 0.2, 0.3])
+    assert list(compiled.tex_data[:3]) == [0, 0, 255]
+
+
 def test_poses_are_relative_to_models_and_frames(world):
     _, data, _ = world(
         '<frame name="table"><pose relative_to="desk">0 0 1 0 0 0</pose></frame>',
@@ -249,6 +265,7 @@ def test_what_is_not_simulated_is_listed_and_not_fatal(world):
         (model("a", link=shape("<box/>")), "<box> of .* needs a <size>"),
         (model("a", link=shape("<box><size>0 1 1</size></box>")), "they must be above 0"),
         (model("a", link=shape("<sphere><radius>-1</radius></sphere>")), "-1; it must be above 0"),
+        (model("a", link=BOX.replace("1 0 0 1", "1 0")), "'1 0': 2 values, not 3 or 4"),
         (model("a", attributes='relative_to="b"'), "relative to 'b', not one of a"),
         (model("a", attributes='relative_to="a"'), "in a circle to itself"),
         (
