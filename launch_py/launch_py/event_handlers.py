@@ -146,8 +146,9 @@ class OnShutdown(EventHandler):
     """What is said and called when everything is to stop, before the first process is asked to.
 
     The actions, also those of a function `function(event, context)`, are expanded only then. No
-    process can be among them. Where everything has ended by itself the event's reason is "idle";
-    an end by SIGQUIT, or without the launcher, leaves them out.
+    process can be among them, and functions are called as by `OnProcessExit`, each for at most 5 s.
+    Where everything has ended by itself the event's reason is "idle"; an end by SIGQUIT, or without
+    the launcher, leaves them out, and a second Ctrl-C waits for none of them.
     """
 
     def __init__(self, *, on_shutdown: Reaction) -> None:

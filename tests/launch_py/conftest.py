@@ -171,6 +171,8 @@ class Trial:
 
     def finish(self) -> int:
         assert self.supervisor.done
+        self.supervisor.rest()
+        self.settle()
         return self.supervisor.finish()
 
 

@@ -1,4 +1,4 @@
-"""What follows the end of a process while everything stops."""
+"""What follows the end of a process, and what is said at the shutdown, while everything stops."""
 
 import signal
 import threading
@@ -9,10 +9,11 @@ from launch_py import (
     LogInfo,
     OpaqueFunction,
     RegisterEventHandler,
+    RestartPolicy,
     Shutdown,
     TimerAction,
 )
-from launch_py.event_handlers import OnProcessExit
+from launch_py.event_handlers import OnProcessExit, OnShutdown
 from launch_py.supervision.late_calls import LIMIT_S
 from launch_py.testing import fake_process
 
@@ -116,6 +117,80 @@ def test_a_forced_stop_waits_for_no_function(trial):
     never.set()
 
 
+# Farewells
+
+
+def on_shutdown(reaction):
+    return RegisterEventHandler(OnShutdown(on_shutdown=reaction))
+
+
+def test_processes_are_asked_to_stop_when_all_farewells_are_said_and_not_restarted_before(trial):
+    may_go_on = threading.Event()
+    again = RestartPolicy("always", first_delay_s=1.0)
+    t = trial(
+        fake_process("a"),
+        fake_process("b", restart=again),
+        fake_process("c", restart=again),
+        on_shutdown(lambda *_: may_go_on.wait() and None),
+        on_shutdown(LogInfo(msg="bye")),
+    )
+    t["b"].end(0)
+    t.supervisor.stop("test")
+    t["c"].end(0)
+    t.advance(2.0)
+    assert t.asked_to_stop() == set()
+    assert "bye" not in t.screen.lines
+    may_go_on.set()
+    t.loop.run(until=t.asked_to_stop)
+    assert "bye" in t.screen.lines
+    assert t.asked_to_stop() == {"a"}
+    t["a"].end(0)
+    assert t.started == ["a", "b", "c"]
+    assert t.finish() == 0
+
+
+def test_a_farewell_that_does_not_return_is_left_after_a_while(trial):
+    never = threading.Event()
+    t = trial(
+        fake_process("a"), on_shutdown(lambda *_: never.wait()), on_shutdown(LogInfo(msg="bye"))
+    )
+    t.supervisor.stop("test")
+    t.advance(LIMIT_S)
+    assert t.asked_to_stop() == {"a"}
+    assert "an event handler has not returned after 5 s" in t.screen.problems[-1]
+    t["a"].end(0)
+    assert "bye" not in t.screen.lines
+    assert t.finish() == 0
+    never.set()
+
+
+@pytest.mark.parametrize("by_itself", [True, False])
+def test_a_forced_stop_waits_for_no_farewell(trial, by_itself):
+    never = threading.Event()
+    t = trial(fake_process("a"), on_shutdown(lambda *_: never.wait()))
+    if by_itself:
+        t["a"].end(0)
+        t.supervisor.rest()
+    else:
+        t.supervisor.stop("first")
+    assert not t.supervisor.done
+    t.supervisor.kill("second")
+    assert t.finish() == 130
+    never.set()
+
+
+@pytest.mark.parametrize("mistake", [lambda: {}["missing"], lambda: exit(7)])
+@pytest.mark.parametrize("by_itself", [True, False])
+def test_a_mistake_in_a_farewell_is_said_in_the_last_line(trial, by_itself, mistake):
+    t = trial(fake_process("a"), on_shutdown(lambda *_: mistake()), on_shutdown(LogInfo(msg="bye")))
+    if not by_itself:
+        t.supervisor.stop("test")
+    t["a"].end(0)
+    assert t.finish() == 1
+    assert "bye" in t.screen.lines
+    assert "an event handler: " in str(t.screen.last_line)
+
+
 # Real processes
 
 
@@ -137,16 +212,23 @@ def test_real_ends_in_a_shutdown(launch):
     assert "b FN" in launched.lines
 
 
-def test_a_second_ctrl_c_stops_now_also_where_a_function_hangs(launch):
+@pytest.mark.parametrize(
+    "actions",
+    [
+        'forever("a", on_exit=hang)',
+        'forever("a"), RegisterEventHandler(OnShutdown(on_shutdown=hang))',
+    ],
+)
+def test_a_second_ctrl_c_stops_now_also_where_a_function_hangs(launch, actions):
     launched = launch(
-        """
+        f"""
         import time
 
         def hang(event, context):
             print("HANGING", flush=True)
             time.sleep(1000)
 
-        actions = [forever("a", on_exit=hang)]
+        actions = [{actions}]
         """
     )
     launched.wait_for("^ready ")

@@ -1,4 +1,4 @@
-"""Calls functions of the launch file while everything stops, without holding up the stop."""
+"""Calls functions of the launch file while everything stops, beside the loop and not for long."""
 
 from __future__ import annotations
 

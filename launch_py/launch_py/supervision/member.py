@@ -143,6 +143,7 @@ class Member:
         self._restart_timer: Timer | None = None
         self._started_s = 0.0
         self._killed = False
+        self._last_run = False
 
     @property
     def name(self) -> str:
@@ -175,6 +176,12 @@ class Member:
         self._listener.member_started(self)
         if not self.ready and not self.stopping:
             self._await_readiness()
+
+    def restart_no_more(self) -> None:
+        """Let this run be the last: a restart that is due does not happen."""
+        self._last_run = True
+        if self.state is MemberState.BACKING_OFF:
+            self.stop()
 
     def stop(self, delays: StopDelays | None = None) -> None:
         """Ask it to end, first politely; a restart that is due does not happen."""
@@ -274,7 +281,7 @@ class Member:
                 self._met(condition)
         ending = f"{describe_exit(exit_code)} after {self._loop.clock() - self._started_s:.2f} s"
         decision = self._history.ended(exit_code)
-        if decision.delay_s is None:
+        if decision.delay_s is None or self._last_run:
             why = f"; giving up: {decision.gave_up}" if decision.gave_up else ""
             self._end_for_good(ending + why)
             return

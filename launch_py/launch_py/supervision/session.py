@@ -115,6 +115,8 @@ class Session:
             if self._live:
                 self._refresh()
             self._loop.run(until=self._is_over)
+            self._supervisor.rest()
+            self._loop.run(until=self._is_over)
             self._end_orphans()
         self._ledger.sweep()
         code = self._supervisor.finish()

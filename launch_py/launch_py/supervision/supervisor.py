@@ -86,6 +86,7 @@ class Supervisor:
         self._pending: list[Step] = []
         self._listening: list[ListeningStep] = []
         self._farewells: list[FarewellStep] = []
+        self._farewells_left = 0
         self._delayed = 0
         self._late_calls = LateCalls(loop, self._too_late)
         self._add(plan.steps)
@@ -109,11 +110,16 @@ class Supervisor:
     def stop(self, reason: str) -> None:
         """End everything, whatever depends on another process before that process."""
         if not self.stopping:
-            self.stopping = True
-            self._pending = [step for step in self._pending if _follows_an_end(step)]
             self._reporter.note(f"stopping: {reason}")
-            self._bid_farewell(reason)
-            self._stop_next()
+            self._begin_to_end(reason)
+
+    def rest(self) -> None:
+        """Say farewell where everything has ended by itself; `done` is true again afterwards."""
+        if not self.stopping:
+            failed = [m for m in self.members.values() if m.exit_code]
+            if failed:
+                self._fail(Failure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code))
+            self._begin_to_end(REASON_IDLE)
 
     def stop_hastily(self, reason: str) -> None:
         """End everything at once, with short delays before SIGKILL."""
@@ -203,11 +209,6 @@ class Supervisor:
 
     def finish(self) -> int:
         """Return the exit code, after everything has ended; the last line names what failed."""
-        if not self.stopping:
-            failed = [m for m in self.members.values() if m.exit_code]
-            if failed:
-                self._fail(Failure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code))
-            self._bid_farewell(REASON_IDLE)
         elapsed_s = self._loop.clock() - self._started_s
         if self.failure is None:
             self._reporter.end(f"stopped after {elapsed_s:.2f} s", failed=False)
@@ -300,6 +301,8 @@ class Supervisor:
             f"an event handler has not returned after {LIMIT_S:g} s: it is not waited for, and no "
             "other is called"
         )
+        self._farewells_left = 0
+        self._stop_next()
 
     def _shut_down(self, step: ShutdownStep) -> None:
         ended = [self.members[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
@@ -318,19 +321,25 @@ class Supervisor:
             self._add(outcome)
         self._advance()
 
-    def _bid_farewell(self, reason: str) -> None:
-        """Say what there is to say at the end; nothing is started any more."""
-        steps: list[Step] = []
+    def _begin_to_end(self, reason: str) -> None:
+        """Say farewell, then stop every process; from now on nothing is started."""
+        self.stopping = True
+        self._pending = [step for step in self._pending if _follows_an_end(step)]
+        self._farewells_left = len(self._farewells)
+        for member in self._active():
+            member.restart_no_more()
+        event = Shutdown(reason)
         for farewell in self._farewells:
-            try:
-                steps += farewell.expand(Shutdown(reason))
-            except LaunchError as error:
-                self._fail(Failure(str(error), EXIT_NOT_READY))
-        for step in steps:
-            if isinstance(step, MessageStep):
-                self._reporter.note(step.text)
-            elif isinstance(step, ProcessStep):
-                self._reporter.problem(f"{step.name} is not started: everything stops")
+            self._late_calls.call(lambda f=farewell: f.expand(event), self._take_farewell)
+        self._stop_next()
+
+    def _take_farewell(self, outcome: Outcome) -> None:
+        if isinstance(outcome, LaunchError):
+            self._fail(Failure(str(outcome), EXIT_NOT_READY))
+        else:
+            self._take_outcome(outcome)
+        self._farewells_left -= 1
+        self._stop_next()
 
     def _event(self, step: DeferredStep) -> ProcessEvent | None:
         """Return the event that the step's function is told of: the last one it waited for."""
@@ -364,7 +373,9 @@ class Supervisor:
             self._reporter.detail(f"failure: {failure.text}")
 
     def _stop_next(self) -> None:
-        """Stop every process that no running one depends on."""
+        """Stop every process that no running one depends on, once all farewells are said."""
+        if self._farewells_left:
+            return
         active = self._active()
         needed = {str(t.process) for m in active for t in m.step.after}
         for member in active:
