@@ -29,6 +29,7 @@ from arm_control.joint_trajectory.results import (
     PATH_TOLERANCE_VIOLATED,
     PREEMPTED,
     REPLACED,
+    ErrorCode,
     GoalResult,
     Refusal,
     too_late,
@@ -43,6 +44,7 @@ from arm_control.joint_trajectory.state import (
 )
 from arm_control.joint_trajectory.tolerances import Bounds, ToleranceError, Tolerances
 from arm_control.joint_trajectory.trajectory import Trajectory
+from arm_control.joint_trajectory.validation import describe_lateness
 from arm_control.loaned_interfaces import LoanedInterfaces
 
 
@@ -235,12 +237,33 @@ class Follower:
         self._next = begin
 
     def _follow(self, trajectory: Trajectory, goal: GoalRequest | None = None) -> Execution:
+        refusal = self._check_late(trajectory) if trajectory.is_provisional else None
+        if refusal is not None:
+            return self._refuse(refusal, goal)
         return Execution(
             self._plan(trajectory),
             self._tolerances(goal),
             serves_goal=goal is not None,
             lead_s=trajectory.offset_s(self.time_s or 0.0),
         )
+
+    def _check_late(self, trajectory: Trajectory) -> Refusal | None:
+        """Return what is wrong with a trajectory that was taken before the time was known."""
+        lateness = describe_lateness(
+            trajectory.stamp_s, float(trajectory.times_s[-1]), self.time_s or 0.0
+        )
+        if lateness:
+            return Refusal(ErrorCode.INVALID_GOAL, lateness)
+        return self.find_excess(trajectory)
+
+    def _refuse(self, refusal: Refusal, goal: GoalRequest | None) -> Execution:
+        """Do not follow a trajectory after all: hold on, or stop where something else moved."""
+        if goal is None:
+            self._logger.error("%s", refusal.message)
+        else:
+            self._goals.end(refusal.as_result())
+        is_known = bool(np.isfinite(self._commanded[POSITION]).all())
+        return self._execution if self._execution.is_stop and is_known else self._stop()
 
     def _tolerances(self, goal: GoalRequest | None) -> Tolerances:
         tolerances = self._configuration.tolerances

@@ -220,16 +220,26 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         return self._configuration, self._speed_scaling
 
     def _prepare(self, request: TrajectoryRequest) -> Trajectory | Refusal:
-        """Return the trajectory of a request, or why it cannot be followed."""
+        """Return the trajectory of a request, or why it cannot be followed.
+
+        Before the first update nobody knows the time; then what depends on it, which is only so
+        with a stamp, is left to that update.
+        """
         follower, configuration = self._follower, self._configuration
         if follower is None or configuration is None:
             return NOT_RUNNING
-        now_s = -inf if follower.time_s is None else follower.time_s
-        fault = find_fault(request, configuration.rules, now_s)
+        now_s = follower.time_s
+        fault = find_fault(request, configuration.rules, -inf if now_s is None else now_s)
         if fault is not None:
             return fault
-        trajectory = Trajectory(request, configuration.rules.joints, configuration.interpolation)
-        return follower.find_excess(trajectory) or trajectory
+        trajectory = Trajectory(
+            request,
+            configuration.rules.joints,
+            configuration.interpolation,
+            is_provisional=now_s is None and request.stamp_s != 0.0,
+        )
+        excess = None if trajectory.is_provisional else follower.find_excess(trajectory)
+        return excess or trajectory
 
 
 def _read_robot(robot_description: str) -> Robot | None:

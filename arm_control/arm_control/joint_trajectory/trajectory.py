@@ -31,15 +31,26 @@ class Trajectory:
         times_s: when each point is due after that, shape (m,).
         motions: the points, shape (m, 4, n); NaN where they leave something open.
         missing: joints that it does not name, shape (n,).
+        is_provisional: whether what depends on the time has yet to be checked.
     """
 
-    __slots__ = ("_interpolation", "_spline", "missing", "motions", "stamp_s", "times_s")
+    __slots__ = (
+        "_interpolation",
+        "_spline",
+        "is_provisional",
+        "missing",
+        "motions",
+        "stamp_s",
+        "times_s",
+    )
 
     def __init__(
         self,
         request: TrajectoryRequest,
         joints: Sequence[str],
         interpolation: Interpolation = Interpolation.SPLINES,
+        *,
+        is_provisional: bool = False,
     ) -> None:
         """Take over a request.
 
@@ -47,9 +58,11 @@ class Trajectory:
             request: without fault, see `find_fault`.
             joints: the controller's joints.
             interpolation: what happens between the points.
+            is_provisional: whether what depends on the time has yet to be checked.
         """
         columns = [joints.index(name) for name in request.joint_names]
         self.stamp_s = request.stamp_s
+        self.is_provisional = is_provisional
         self.times_s = np.array([point.time_from_start_s for point in request.points])
         self.motions = np.full((len(request.points), ROWS, len(joints)), np.nan)
         for row, field in enumerate(FIELDS):

@@ -42,7 +42,7 @@ def find_fault(
     Args:
         request: the trajectory.
         rules: what the controller takes.
-        now_s: the controller's time, for trajectories with a stamp.
+        now_s: the controller's time, for trajectories with a stamp; -inf where it is not known.
     """
     for code, faults in (
         (ErrorCode.INVALID_JOINTS, _count_faults(request, rules)),
@@ -57,6 +57,17 @@ def find_fault(
         if message is not None:
             return Refusal(code, message)
     return None
+
+
+def describe_lateness(stamp_s: float, duration_s: float, now_s: float) -> str:
+    """Say that a trajectory with a stamp ends in the past; nothing where it does not."""
+    end_s = stamp_s + duration_s
+    if stamp_s == 0.0 or not end_s < now_s:
+        return ""
+    return (
+        f"Received trajectory with non-zero start time ({stamp_s:f}) "
+        f"that ends in the past ({end_s:f})"
+    )
 
 
 def _count_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator[str]:
@@ -90,13 +101,9 @@ def _end_faults(request: TrajectoryRequest, rules: TrajectoryRules, now_s: float
                     f"Velocity of last trajectory point of joint {name} is not zero: "
                     f"{velocity:.15f}"
                 )
-    if request.stamp_s != 0.0:
-        end_s = request.stamp_s + last.time_from_start_s
-        if end_s < now_s:
-            yield (
-                f"Received trajectory with non-zero start time ({request.stamp_s:f}) "
-                f"that ends in the past ({end_s:f})"
-            )
+    lateness = describe_lateness(request.stamp_s, last.time_from_start_s, now_s)
+    if lateness:
+        yield lateness
 
 
 def _time_faults(request: TrajectoryRequest) -> Iterator[str]:

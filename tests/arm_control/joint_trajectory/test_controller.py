@@ -9,6 +9,7 @@ import pytest
 from arm_control.controller import ControllerContext
 from arm_control.errors import ControllerError
 from arm_control.joint_trajectory import JointTrajectoryController
+from arm_control.joint_trajectory.results import ErrorCode, Outcome
 
 MakeRig = Callable[..., Any]
 Interfaces = tuple[tuple[str, ...], tuple[str, ...]]
@@ -218,6 +219,58 @@ class TestFollowing:
 
         assert "ends in the past" in refusal.message
         assert rig.measured().tolist() == [4.0, 5.0, 6.0]
+
+    @pytest.mark.parametrize("reactivated", [False, True])
+    def test_an_old_trajectory_before_the_first_update_is_ignored_by_it(
+        self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture, reactivated: bool
+    ):
+        rig = make_rig(positions=START)
+        if reactivated:
+            rig.tick()
+            rig.deactivate()
+            rig.activate()
+        rig.trajectory([(0.5, [-1.0, -2.0, -3.0])], stamp_s=rig.time_s - 0.6)
+        # Somebody pauses the simulation, and clients are served all the same.
+        rig.controller.serve_requests()
+        rig.run(0.6)
+
+        assert caplog.text.count("that ends in the past") == 1
+        assert rig.commanded().tolist() == list(START)
+
+    def test_it_does_not_end_the_hold_of_the_last_command(self, make_rig: MakeRig):
+        rig = make_rig(positions=START, activate=False)
+        rig.command_before([1.2, 2.2, 3.2])
+        rig.activate()
+        rig.trajectory([(0.5, [-1.0, -2.0, -3.0])], stamp_s=rig.time_s - 0.6)
+        rig.tick()
+
+        assert rig.commanded().tolist() == [1.2, 2.2, 3.2]
+
+    def test_a_goal_that_is_old_at_the_first_update_is_aborted_with_the_reason(
+        self, make_rig: MakeRig
+    ):
+        rig = make_rig(positions=START)
+        rig.goal([(0.5, [-1.0, -2.0, -3.0])], stamp_s=rig.time_s - 0.6)
+        assert rig.result is None
+        rig.tick()
+
+        assert rig.result.outcome is Outcome.ABORTED
+        assert rig.result.code is ErrorCode.INVALID_GOAL
+        assert rig.result.message == (
+            "Received trajectory with non-zero start time (9.400000) that ends in the past "
+            "(9.900000)"
+        )
+        assert rig.commanded().tolist() == list(START)
+
+    def test_before_the_first_update_one_that_has_not_ended_yet_is_followed(
+        self, make_rig: MakeRig
+    ):
+        rig = make_rig()
+        rig.goal([(0.5, [1.0, 2.0, 3.0]), (1.0, [2.0, 4.0, 6.0])], stamp_s=rig.time_s - 0.6)
+        rig.run(0.5)
+
+        assert rig.measured().tolist() == [2.0, 4.0, 6.0]
+        assert rig.result.outcome is Outcome.SUCCEEDED
 
     def test_test_ignore_partial_old_trajectory(self, make_rig: MakeRig):
         rig = make_rig()

@@ -63,6 +63,19 @@ def test_a_first_point_too_far_for_its_time(fault: Callable[..., str]):
     assert message.startswith("The trajectory moves joint j2 with 1.600000, above its velocity")
 
 
+def test_a_stamp_before_the_first_update_is_judged_by_it(
+    make_rig: MakeRig, robot_description: Callable[..., str]
+):
+    rig = make_rig(
+        robot_description=robot_description("revolute", LIMIT), check_velocity_limits=True
+    )
+    rig.goal([(1.0, [0.0, 0.0, 1.6])], stamp_s=rig.time_s)
+    rig.tick()
+
+    assert rig.result.message.startswith("The trajectory moves joint j2 with 1.616162, above its")
+    assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
+
+
 def test_a_velocity_above_the_limit(fault: Callable[..., str]):
     points = [(5.0, [0.0, 0.0, 0.0], [1.6, 0.0, 0.0]), (10.0, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0])]
 
