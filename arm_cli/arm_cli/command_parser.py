@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 EXIT_USAGE = 2
+LEAST_NUMBER, LARGEST_NUMBER = 1e-9, 2e9
+"""Seconds, and times a second: ROS has a ns as the least time, and 32 bits for whole seconds."""
+LARGEST_WHOLE_NUMBER = 2**63 - 1
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -41,13 +44,15 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def positive_number(text: str) -> float:
-    """Convert an option's value to a float above 0, for argparse."""
+    """Convert an option's value to a float above 0, a time or a rate in ROS, for argparse."""
     try:
         value = float(text)
     except ValueError:
         value = 0.0
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text!r} is no number above 0")
+    if not LEAST_NUMBER <= value <= LARGEST_NUMBER:
+        raise argparse.ArgumentTypeError(f"{text!r} is not between 1e-9 and 2e9")
     return value
 
 
@@ -56,11 +61,15 @@ def positive_number_or_zero(text: str) -> float:
     return 0.0 if text in ("0", "0.0") else positive_number(text)
 
 
-def whole_number(text: str) -> int:
-    """Convert an option's value to an int of at least 0, for argparse."""
+def whole_number(text: str, largest: int = LARGEST_WHOLE_NUMBER) -> int:
+    """Convert an option's value to an int of at least 0 and at most `largest`, for argparse."""
     if not text.isascii() or not text.isdigit():
         raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
-    return int(text)
+    # Python converts no text of thousands of digits.
+    digits = text.lstrip("0") or "0"
+    if len(digits) > len(str(largest)) or int(digits) > largest:
+        raise argparse.ArgumentTypeError(f"{text} is too large: at most {largest}")
+    return int(digits)
 
 
 def node_name(text: str) -> str:

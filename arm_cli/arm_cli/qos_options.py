@@ -15,10 +15,12 @@ PROFILES = (
     "action_status_default",
     "best_available",
 )
-HISTORIES = ("system_default", "keep_last", "keep_all", "unknown")
-RELIABILITIES = ("system_default", "reliable", "best_effort", "unknown", "best_available")
-DURABILITIES = ("system_default", "transient_local", "volatile", "unknown", "best_available")
-LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
+HISTORIES = ("system_default", "keep_last", "keep_all")
+RELIABILITIES = ("system_default", "reliable", "best_effort", "best_available")
+DURABILITIES = ("system_default", "transient_local", "volatile", "best_available")
+LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "best_available")
+LARGEST_DEPTH = 2**31 - 1
+"""What rclpy takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,7 @@ def add_qos_arguments(parser: argparse.ArgumentParser, default: str) -> None:
     """
     group = parser.add_argument_group("quality of service", f"By default: {default}.")
     group.add_argument("--qos-profile", choices=PROFILES, help="preset to start from")
-    group.add_argument("--qos-depth", type=whole_number, metavar="N", help="length of the queue")
+    group.add_argument("--qos-depth", type=_depth, metavar="N", help="length of the queue")
     group.add_argument("--qos-history", choices=HISTORIES)
     group.add_argument("--qos-reliability", choices=RELIABILITIES)
     group.add_argument("--qos-durability", choices=DURABILITIES)
@@ -66,6 +68,10 @@ def add_qos_arguments(parser: argparse.ArgumentParser, default: str) -> None:
     group.add_argument(
         "--qos-liveliness-lease-duration-seconds", type=positive_number, metavar="SECONDS"
     )
+
+
+def _depth(text: str) -> int:
+    return whole_number(text, LARGEST_DEPTH)
 
 
 def qos_choice(options: argparse.Namespace) -> QosChoice:

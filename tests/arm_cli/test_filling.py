@@ -92,6 +92,8 @@ def test_auto_and_now_get_the_time_of_sending():
         (UInt8, "data: .nan", "data: nan is no whole number (uint8)"),
         (Bool, "data: maybe", "data: 'maybe' is neither true nor false (bool)"),
         (String, "data: {a: 1}", "data: {'a': 1} is no text (string)"),
+        (String, r'data: "a\ud800"', r"data: '\ud800' at character 2 is no character of UTF-8"),
+        (Image, r'data: "\ud800"', r"data: '\ud800' at character 1 is no character of UTF-8"),
         (CameraInfo, "k: [1.0]", "k: 1 values, float64[9] holds 9"),
         (
             JointState,

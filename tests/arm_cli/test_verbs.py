@@ -130,6 +130,17 @@ def test_ros2_s_flags_are_known(line):
             ["topic", "pub", "/x", "a/B", "--rate", "0"],
             "argument -r/--rate: '0' is no number above",
         ),
+        (["topic", "pub", "/x", "a/B", "-r", "1e-300"], "'1e-300' is not between 1e-9 and 2e9"),
+        (
+            ["topic", "echo", "/x", "--qos-liveliness-lease-duration-seconds", "1e300"],
+            "'1e300' is not between 1e-9 and 2e9",
+        ),
+        (
+            ["topic", "echo", "/x", "--qos-depth", "99999999999999999999"],
+            "99999999999999999999 is too large: at most 2147483647",
+        ),
+        (["topic", "pub", "/x", "a/B", "--qos-depth", "2147483648"], "at most 2147483647"),
+        (["topic", "hz", "/x", "-w", "9" * 5000], "is too large: at most 9223372036854775807"),
         (["topic", "pub", "-n", "a b", "/x", "a/B"], "'a b' is no name of a node"),
         (["topic", "pub", "-n", "1a", "/x", "a/B"], "'1a' is no name of a node"),
         (["param", "list", "--filter", "*"], "argument --filter: '*' is no regular expression"),
@@ -145,3 +156,11 @@ def test_wrong_words_are_one_sentence_and_exit_code_2(capsys, words, sentence):
     assert code == 2
     assert sentence in captured.err
     assert captured.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("option", ["history", "reliability", "durability", "liveliness"])
+def test_a_policy_that_nobody_can_ask_for_is_no_choice(capsys, option):
+    with pytest.raises(SystemExit) as exit_:
+        main(["topic", "pub", "/x", "a/B", f"--qos-{option}", "unknown"])
+    assert exit_.value.code == 2
+    assert "invalid choice: 'unknown'" in capsys.readouterr().err

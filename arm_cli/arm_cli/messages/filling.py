@@ -147,7 +147,7 @@ class _Filler:
 
     def _list(self, type_: AbstractNestedType, value: Any, path: str) -> Any:
         if isinstance(value, str) and type_name(type_.value_type) in ("byte", "uint8", "char"):
-            value = list(value.encode())
+            value = list(_encoded(value, path))
         if not isinstance(value, list):
             raise MessageError(f"{path}: {value!r} is no list ({type_name(type_)})")
         if isinstance(type_, Array) and len(value) != type_.size:
@@ -203,11 +203,21 @@ def _string(type_: AbstractGenericString, value: Any, path: str) -> str:
     if isinstance(value, (dict, list)):
         raise MessageError(f"{path}: {value!r} is no text ({type_name(type_)})")
     text = "" if value is None else str(value)
+    _encoded(text, path)
     if type_.has_maximum_size() and len(text) > type_.maximum_size:  # pyright: ignore[reportAttributeAccessIssue]
         raise MessageError(
             f"{path}: {len(text)} characters, {type_name(type_)} holds {type_.maximum_size}"  # pyright: ignore[reportAttributeAccessIssue]
         )
     return text
+
+
+def _encoded(text: str, path: str) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        raise MessageError(
+            f"{path}: {text[error.start]!r} at character {error.start + 1} is no character of UTF-8"
+        ) from error
 
 
 def _unknown_field(name: str, path: str, known: list[str]) -> str:
