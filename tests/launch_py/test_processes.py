@@ -328,6 +328,24 @@ def test_a_program_that_vanishes_is_named(launch, tmp_path):
     assert "p could not be started: cannot run" in launched.lines[-1]
 
 
+def test_a_relative_program_is_that_of_the_folder_it_runs_in(run_launch_py, tmp_path):
+    folder = tmp_path / "sub"
+    folder.mkdir()
+    program = folder / "program"
+    program.write_text("#!/bin/sh\necho runs in $PWD\n")
+    program.chmod(0o755)
+    path = tmp_path / "cwd.launch.py"
+    path.write_text(
+        "from launch_py import *\n"
+        "def generate_launch_description():\n"
+        "    p = ExecuteProcess(cmd=['./program'], prefix='./program', cwd='sub')\n"
+        "    return LaunchDescription([p])\n"
+    )
+    done = run_launch_py(str(path))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"[program] runs in {folder}\n" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [

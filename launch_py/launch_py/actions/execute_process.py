@@ -221,7 +221,8 @@ class ExecuteProcess(Action):
         """Return the path of a program; see `find_program`."""
         path = context.environment_variable("PATH") or ""
         if os.sep in program and self.cwd is not None:
-            program = os.path.join(perform_text(context, self.cwd), program)
+            # Absolute: the process looks for it when it is in that folder already.
+            program = os.path.join(os.path.abspath(perform_text(context, self.cwd)), program)
         return find_program(program, path)
 
     def _environment(self, context: LaunchContext) -> dict[str, str | None]:
