@@ -49,3 +49,33 @@ class UnlessCondition(IfCondition):
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether it holds; see `IfCondition.evaluate`."""
         return not super().evaluate(context)
+
+
+class LaunchConfigurationEquals(Condition):
+    """Holds where a launch configuration is this text, or for None, where there is none.
+
+    ROS calls it deprecated: `IfCondition(EqualsSubstitution(LaunchConfiguration(name), text))` says
+    it as well, but compares numbers and true words by value, and needs the configuration.
+    """
+
+    def __init__(self, launch_configuration_name: str, expected_value: Text | None) -> None:
+        self.launch_configuration_name = launch_configuration_name
+        self.expected_value = expected_value
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds.
+
+        Raises:
+            LaunchError: the expected text has no value.
+        """
+        expected = self.expected_value
+        text = None if expected is None else perform_text(context, expected)
+        return context.launch_configurations.get(self.launch_configuration_name) == text
+
+
+class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
+    """Holds where a launch configuration is not this text, or for None, where there is one."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds; see `LaunchConfigurationEquals.evaluate`."""
+        return not super().evaluate(context)

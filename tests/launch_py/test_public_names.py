@@ -14,7 +14,9 @@ ROS_NAMES = {
         "SetEnvironmentVariable SetLaunchConfiguration Shutdown TimerAction "
         "UnsetEnvironmentVariable"
     ),
-    "launch_py.conditions": "IfCondition UnlessCondition",
+    "launch_py.conditions": (
+        "IfCondition LaunchConfigurationEquals LaunchConfigurationNotEquals UnlessCondition"
+    ),
     "launch_py.event_handlers": "OnProcessExit OnProcessIO OnProcessStart OnShutdown",
     "launch_py.events": "Shutdown",
     "launch_py.launch_description_sources": (
