@@ -85,7 +85,10 @@ def changed_model(base: BuiltModel, changes: WorldChanges) -> BuiltModel:
     for spawned in changes.spawned:
         _attach(spec, spawned)
     for name, pose in changes.moved.items():
-        _place(spec.body(name), pose)
+        body = spec.body(name)
+        # Frames of an MJCF around it would move it once more.
+        body.set_frame(spec.worldbody.add_frame())
+        _place(body, pose)
     for body in spec.bodies:
         if body.sleep == ASLEEP_AT_FIRST:
             # It may have lost what it lay on, or be under way by now.

@@ -176,6 +176,22 @@ def test_what_stands_still_can_be_put_elsewhere(world, things):
     assert world.where("mustard") == pytest.approx([3, 2, 1])
 
 
+def test_what_stands_in_frames_of_an_mjcf_can_be_put_elsewhere(kept, parts, things, tmp_path):
+    file = tmp_path / "world.xml"
+    file.write_text(
+        "<mujoco><worldbody><frame pos='1 0 0' euler='0 0 90'><frame pos='0 1 0'>"
+        "<body name='wall' pos='0 0 1'><geom size='0.1'/></body></frame></frame>"
+        "</worldbody></mujoco>"
+    )
+    world = kept(str(file), robot=parts.pendulum())
+    start = world.where("wall")
+    for x in (3, 4):
+        world.keeper.place("wall", things.at(x, 2, 1), "", None)
+        assert world.keeper.motions().pose("wall") == pytest.approx(things.at(x, 2, 1))
+    world.keeper.reset(spawned=False, state=True)
+    assert world.where("wall") == pytest.approx(start)
+
+
 def test_a_mocap_body_can_be_put_elsewhere(kept, parts, things, tmp_path):
     file = tmp_path / "world.xml"
     file.write_text(
