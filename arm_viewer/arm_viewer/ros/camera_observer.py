@@ -10,12 +10,11 @@ from sensor_msgs.msg import CameraInfo
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.frame_name import frame_name
 from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.topic_family import type_name
 from arm_viewer.ros.topic_reader import TopicReader
+from arm_viewer.ros.topic_types import topics_of
 from arm_viewer.snapshot import CameraView
 
 _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-_TYPE = type_name(CameraInfo)
 
 
 class CameraObserver:
@@ -30,7 +29,7 @@ class CameraObserver:
 
     def discover(self, topics: TopicTypes) -> None:
         """Subscribe to new cameras, and forget those that are gone."""
-        named = {topic for topic, types in topics.items() if _TYPE in types}
+        named = topics_of(CameraInfo, topics, self._node)
         found = {topic for topic in named if self._node.count_publishers(topic)}
         for topic in self._readers.keys() - found:
             self._readers.pop(topic).close()

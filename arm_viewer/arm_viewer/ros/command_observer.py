@@ -12,11 +12,10 @@ from std_msgs.msg import Float64MultiArray
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_reader import TopicReader
+from arm_viewer.ros.topic_types import topics_of
 from arm_viewer.snapshot import Controller
 
 _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-_ARRAY_TYPE = "std_msgs/msg/Float64MultiArray"
-_TRAJECTORY_TYPE = "control_msgs/msg/JointTrajectoryControllerState"
 
 
 class CommandObserver:
@@ -46,13 +45,13 @@ class CommandObserver:
         prefixes = [_prefix(controller) for controller in active]
         _follow(
             self._arrays,
-            {t for t in (f"{p}/commands" for p in prefixes) if _ARRAY_TYPE in topics.get(t, ())},
+            {f"{p}/commands" for p in prefixes} & topics_of(Float64MultiArray, topics, self._node),
             lambda topic: self._reader(Float64MultiArray, topic),
         )
-        states = (f"{p}/controller_state" for p in prefixes)
+        states = {f"{p}/controller_state" for p in prefixes}
         _follow(
             self._trajectories,
-            {t for t in states if _TRAJECTORY_TYPE in topics.get(t, ())},
+            states & topics_of(JointTrajectoryControllerState, topics, self._node),
             lambda topic: self._reader(JointTrajectoryControllerState, topic),
         )
 

@@ -10,8 +10,8 @@ from sensor_msgs.msg import Image
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.requests import ShowPictures
 from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.topic_family import type_name
 from arm_viewer.ros.topic_reader import TopicReader
+from arm_viewer.ros.topic_types import topics_of, type_name, used_types
 from arm_viewer.snapshot import Picture
 
 _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -33,14 +33,17 @@ class ImageObserver:
         """Subscribe to what is wanted, and end the other subscriptions."""
         for topic in self._readers.keys() - request.topics:
             self._readers.pop(topic).close()
+        used = used_types(self._node)
         for topic in request.topics - self._readers.keys():
-            self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, _QOS)
+            # Since the page has heard of it something else of this node may have taken it.
+            if used.get(topic, _TYPE) == _TYPE:
+                self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, _QOS)
         kept = {t: picture for t, picture in self.pictures.items() if t in request.topics}
         self.pictures = MappingProxyType(kept)
 
     def discover(self, topics: TopicTypes) -> None:
         """Note the topics that somebody publishes."""
-        named = (topic for topic, types in topics.items() if _TYPE in types)
+        named = topics_of(Image, topics, self._node)
         self.topics = tuple(sorted(t for t in named if self._node.count_publishers(t)))
 
     def collect(self, now_s: float) -> None:

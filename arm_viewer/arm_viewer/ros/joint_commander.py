@@ -7,9 +7,10 @@ from rclpy.node import Node
 from arm_viewer.joint_drive import DriveKind, JointDrive, joint_drives
 from arm_viewer.joint_move import plan_moves
 from arm_viewer.requests import MoveJoints
-from arm_viewer.ros.command_topic import CommandTopic
+from arm_viewer.ros.command_topic import MESSAGES, CommandTopic
 from arm_viewer.ros.gripper_goals import ACTIONS, GripperGoals
 from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.topic_types import type_name, used_types
 from arm_viewer.snapshot import Snapshot
 
 
@@ -37,8 +38,11 @@ class JointCommander:
         }
         for key in self._ways.keys() - drives.keys():
             self._ways.pop(key).close()
+        used = used_types(self._node)
         for key in drives.keys() - self._ways.keys():
-            self._ways[key] = _way(self._node, drives[key])
+            name, kind = key
+            if kind in ACTIONS or used.get(name) in (None, type_name(MESSAGES[kind])):
+                self._ways[key] = _way(self._node, drives[key])
 
     def collect(self, now_s: float) -> None:
         """Take nothing: this one only sends."""

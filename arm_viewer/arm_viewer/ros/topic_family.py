@@ -9,6 +9,7 @@ from rclpy.qos import QoSProfile
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_reader import TopicReader
+from arm_viewer.ros.topic_types import topics_of
 
 Message = TypeVar("Message")
 
@@ -33,16 +34,14 @@ class TopicFamily(Generic[Message]):
         self._polled = polled
         self._message_class = message_class
         self._suffix = f"/{word}"
-        self._type = type_name(message_class)
         self._profile = profile
         self._readers: dict[str, TopicReader[Message]] = {}
         self._subscribe(self._suffix)
 
     def discover(self, topics: TopicTypes) -> None:
         """Subscribe to those that are new."""
-        for topic, types in topics.items():
-            is_one = topic.endswith(self._suffix) and self._type in types
-            if is_one and topic not in self._readers:
+        for topic in topics_of(self._message_class, topics, self._node) - self._readers.keys():
+            if topic.endswith(self._suffix):
                 self._subscribe(topic)
 
     def readers(self) -> Iterator[TopicReader[Message]]:
@@ -53,9 +52,3 @@ class TopicFamily(Generic[Message]):
         self._readers[topic] = TopicReader(
             self._node, self._polled, self._message_class, topic, self._profile
         )
-
-
-def type_name(message_class: type) -> str:
-    """Return the name that ROS's graph has for a message class: "std_msgs/msg/String"."""
-    package, kind = message_class.__module__.split(".")[:2]
-    return f"{package}/{kind}/{message_class.__name__}"

@@ -11,6 +11,7 @@ from rclpy.subscription import Subscription
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.topic_types import used_types
 from arm_viewer.snapshot import Topic
 
 WINDOW_S = 3.0
@@ -58,13 +59,21 @@ class TopicObserver:
             meter.count(now_s)
 
     def _keep_meters(self, topics: Sequence[Topic]) -> None:
-        for name in self._meters.keys() - {topic.name for topic in topics}:
+        used = used_types(self._node, [meter.subscription for meter in self._meters.values()])
+        # Of several types the one that this node has anyway; else none, lest the meter's keep the
+        # other observers from theirs.
+        types = {
+            topic.name: used.get(topic.name, topic.types[0])
+            for topic in topics
+            if topic.name in used or len(topic.types) == 1
+        }
+        for name in self._meters.keys() - types.keys():
             self._node.destroy_subscription(self._meters.pop(name).subscription)
-        for topic in topics:
-            message_class = _message_class(topic.types)
-            if topic.name not in self._meters and message_class is not None:
-                subscription = self._polled.subscribe(message_class, topic.name, _QOS)
-                self._meters[topic.name] = _RateMeter(self._polled, subscription)
+        for name in types.keys() - self._meters.keys():
+            message_class = _message_class(types[name])
+            if message_class is not None:
+                subscription = self._polled.subscribe(message_class, name, _QOS)
+                self._meters[name] = _RateMeter(self._polled, subscription)
 
 
 class _RateMeter:
@@ -90,9 +99,9 @@ class _RateMeter:
         return total / (self._counts[-1][0] - self._counts[0][0])
 
 
-def _message_class(types: Sequence[str]) -> type | None:
-    """Return the class of the first type; None where its package is not installed here."""
-    package, _, name = types[0].partition("/msg/")
+def _message_class(message_type: str) -> type | None:
+    """Return the class of a type; None where its package is not installed here."""
+    package, _, name = message_type.partition("/msg/")
     try:
         return getattr(import_module(f"{package}.msg"), name)
     except (ImportError, AttributeError):

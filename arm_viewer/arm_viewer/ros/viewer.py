@@ -1,5 +1,6 @@
 """The node arm_viewer: looks at topics and services for the page, and does what it asks."""
 
+import logging
 import time
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -8,6 +9,7 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.context import Context
 from rclpy.node import Node
 
+from arm_description.names import listing
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.requests import (
     Configure,
@@ -78,6 +80,7 @@ class Viewer(Node):
             self._topics,
             self._nodes,
         )
+        self._said: set[str] = set()
         self._latest = Snapshot()
         self._requests: SimpleQueue[Request] = SimpleQueue()
         self._request_waits = self.create_guard_condition(self._serve)
@@ -101,7 +104,23 @@ class Viewer(Node):
     def _discover(self) -> None:
         topics = dict(self.get_topic_names_and_types())
         for observer in self._observers:
-            observer.discover(topics)
+            try:
+                observer.discover(topics)
+            except Exception as error:
+                # The discovery's last frame: one observer that fails must not stop the others.
+                failed = f"{type(observer).__name__} failed: {error}"
+                if self._is_new(failed):
+                    logging.getLogger(__name__).exception(failed)
+        for topic, types in topics.items():
+            clash = f"{topic} has several types ({listing(types)}): the page takes one at most"
+            if len(types) > 1 and self._is_new(clash):
+                self.get_logger().warning(clash)
+
+    def _is_new(self, message: str) -> bool:
+        """Return whether a message has not been said yet; from now on it has."""
+        is_new = message not in self._said
+        self._said.add(message)
+        return is_new
 
     def _collect(self) -> None:
         now_s = time.monotonic()

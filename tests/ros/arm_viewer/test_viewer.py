@@ -1,81 +1,16 @@
-"""What the page's node makes of topics, and what it publishes; without a page.
-
-The node is spun by the test itself, so that nothing happens behind its back.
-"""
-
-import time
-from collections.abc import Callable
+"""What the page's node makes of topics, and what it publishes; without a page."""
 
 import numpy as np
 import pytest
 
 pytestmark = pytest.mark.ros
 
-TIMEOUT_S = 60.0
 URDF = """<robot name='r'><link name='base'/><link name='arm'/><link name='finger'/>
   <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
     <limit lower='-1' upper='1' effort='1' velocity='1'/></joint>
   <joint name='grip' type='revolute'><parent link='arm'/><child link='finger'/>
     <limit lower='-3' upper='3' effort='1' velocity='1'/><mimic joint='turn' multiplier='2'/>
   </joint></robot>"""
-
-
-class SpunViewer:
-    """The node, and the ways to wait with it."""
-
-    def __init__(self) -> None:
-        import rclpy
-        from rclpy.context import Context
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.signals import SignalHandlerOptions
-
-        from arm_viewer.ros.viewer import Viewer
-
-        self.context = Context()
-        rclpy.init(
-            args=["--ros-args", "-p", "publish_joint_states:=true"],
-            context=self.context,
-            signal_handler_options=SignalHandlerOptions.NO,
-        )
-        self.node = Viewer(self.context)
-        self._executor = SingleThreadedExecutor(context=self.context)
-        self._executor.add_node(self.node)
-
-    def seen(self, find: Callable, meanwhile: Callable[[], None] = lambda: None):
-        """Spin until `find(snapshot)` finds something, and return it."""
-        return self.until(lambda: find(self.node.latest()), meanwhile)
-
-    def until(self, find: Callable, meanwhile: Callable[[], None] = lambda: None):
-        """Spin until `find()` finds something, and return it; publish `meanwhile`, again and again.
-
-        A message that is sent right after the match may be lost.
-        """
-        deadline = time.monotonic() + TIMEOUT_S
-        while not (found := find()):
-            if time.monotonic() > deadline:
-                pytest.fail(f"not within {TIMEOUT_S} s; the snapshot is {self.node.latest()}")
-            meanwhile()
-            self._executor.spin_once(timeout_sec=0.05)
-        return found
-
-    def close(self) -> None:
-        self._executor.shutdown()
-        self.node.destroy_node()
-        self.context.try_shutdown()
-
-
-@pytest.fixture(scope="module")
-def viewer():
-    spun = SpunViewer()
-    yield spun
-    spun.close()
-
-
-@pytest.fixture
-def latched():
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def test_robots_are_found_in_every_namespace(client, viewer, latched):
