@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from arm_node.signs_of_life import show_life_often
+
 
 @contextmanager
 def answers_held_back() -> Iterator[None]:
@@ -21,17 +23,17 @@ def answers_held_back() -> Iterator[None]:
     listens. SCHED_RR, where the process may, keeps other processes from coming between;
     SCHED_BATCH needs no privilege. Not SCHED_FIFO: one of Fast DDS's threads may wait in a busy
     loop for this one, and would never let go of the processor. Afterwards all threads of the
-    process run as before.
+    process run as before, and whoever sends to it finds it alive; see `signs_of_life`.
     """
     allowed = os.sched_getaffinity(0)
-    if os.sched_getscheduler(0) != os.SCHED_OTHER or not _confine():
-        yield
-        return
+    confined = os.sched_getscheduler(0) == os.SCHED_OTHER and _confine()
     try:
         yield
     finally:
-        for thread in _threads():
-            _release(thread, allowed)
+        if confined:
+            for thread in _threads():
+                _release(thread, allowed)
+        show_life_often()
 
 
 def _confine() -> bool:
