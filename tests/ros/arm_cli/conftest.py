@@ -84,7 +84,10 @@ class CommandLine:
 
     def wait(self) -> int:
         """Block until the end; return the exit code."""
-        code = self.process.wait(TIMEOUT_S)
+        try:
+            code = self.process.wait(TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            pytest.fail(f"it did not end within {TIMEOUT_S} s:\n{self.out}\n{self.err}")
         for reader in self._readers:
             reader.join(TIMEOUT_S)
         return code
