@@ -6,7 +6,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from arm_description.robot import Link, Pose
+from arm_description.robot import Link, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.quaternion import wxyz
@@ -20,7 +20,8 @@ from arm_gazebo.robot.link_geometry import (
     VISUAL_GROUP,
     LinkGeometry,
 )
-from arm_gazebo.sdf.model import SdfModel, SdfPlane
+from arm_gazebo.sdf.auto_inertia import auto_inertial
+from arm_gazebo.sdf.model import DEFAULT_INERTIAL, SdfModel, SdfPlane
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
 PRIORITIES = 1_000_000
@@ -51,9 +52,28 @@ def add_model(
     default = mujoco.MjSpec().default
     geometry = _SdfGeometry(model, meshes, strict, report)
     options = TreeOptions(spec.option.timestep, default, not model.static, pose)
-    bodies = BodyTree(spec, model.robot, geometry, options, report).add()
+    robot = model.robot if model.static else _with_inertia(model, meshes, report)
+    bodies = BodyTree(spec, robot, geometry, options, report).add()
     for plane in model.planes:
         add_plane(bodies[model.robot.name], plane)
+
+
+def _with_inertia(model: SdfModel, meshes: MeshLibrary, report: BuildReport) -> Robot:
+    """Return a model's robot with the inertias that are to be computed."""
+    links: list[Link] = []
+    for link in model.robot.links:
+        auto = model.automatic.get(link.name)
+        inertial = auto_inertial(link, auto, meshes) if auto else link.inertial
+        if auto and inertial is None:
+            inertial = DEFAULT_INERTIAL
+            report.repair(
+                f"link '{link.name}'",
+                "its inertia is to be computed, and it has no collision with a volume; 1 kg and "
+                "1 kg m2 are used",
+                link.line,
+            )
+        links.append(replace(link, inertial=inertial))
+    return replace(model.robot, links=tuple(links))
 
 
 def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:

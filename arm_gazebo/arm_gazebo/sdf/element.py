@@ -93,6 +93,13 @@ class SdfElement:
         """Return an attribute without blanks around it, "" where there is none."""
         return str(self._element.get(key, "")).strip()
 
+    def truth(self, key: str) -> bool:
+        """Return the truth that an attribute tells, False where there is none."""
+        text = self.attribute(key).lower() or "false"
+        if text not in _TRUTH:
+            raise self.error(f"has {key}='{text}', which is neither true nor false")
+        return _TRUTH[text]
+
     def error(self, problem: str) -> WorldError:
         """Return an error that says where."""
         return WorldError(f"{self.source}, line {self.line}: {self.label} {problem}")
@@ -182,7 +189,7 @@ class SdfElement:
         if pose.attribute("rotation_format") not in ("", "euler_rpy"):
             raise pose.error("has a rotation_format other than euler_rpy")
         x, y, z, *rpy = pose._numbers(6) if pose._text() else (0.0,) * 6
-        if _TRUTH.get(pose.attribute("degrees").lower(), False):
+        if pose.truth("degrees"):
             rpy = [math.radians(angle) for angle in rpy]
         matrix = transform(rotation_from_rpy(rpy), (x, y, z))
         return SdfPose(matrix, pose.attribute("relative_to"))

@@ -28,10 +28,14 @@ from arm_description.robot import (
 )
 from arm_gazebo.robot.gazebo_materials import gazebo_color
 from arm_gazebo.robot.link_geometry import DEFAULT_FRICTION
+from arm_gazebo.sdf.auto_inertia import DEFAULT_DENSITY, AutoInertia
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames, pose_of
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "plane")
+
+DEFAULT_INERTIAL = Inertial(1.0, Pose(), (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+"""SDF's own, whatever the shape: 1 kg, and 1 kg m2 about every axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +62,14 @@ class SdfModel:
     Attributes:
         robot: the model's frame as root, named after the model, and `MODEL::LINK` for each link.
         frictions: by link, of each of its collisions, at most 1.
+        automatic: the links whose inertia is to be computed; they have none in `robot`.
         planes: which no link of a robot can have.
         static: whether it is part of the world.
     """
 
     robot: Robot
     frictions: Mapping[str, tuple[float, ...]]
+    automatic: Mapping[str, AutoInertia]
     planes: tuple[SdfPlane, ...]
     static: bool
 
@@ -98,7 +104,9 @@ def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfM
         robot = Robot(name, (Link(name), *(reader.link() for reader in read)), joints)
     except DescriptionError as error:
         raise model.error(f"is no model: {error}") from error
-    return SdfModel(robot, {reader.name: reader.frictions() for reader in read}, planes, fixed)
+    frictions = {reader.name: reader.frictions() for reader in read}
+    automatic = {reader.name: auto for reader in read if (auto := reader.auto_inertia())}
+    return SdfModel(robot, frictions, automatic, planes, fixed)
 
 
 class _LinkReader:
@@ -124,6 +132,18 @@ class _LinkReader:
     def frictions(self) -> tuple[float, ...]:
         """Return the frictions of the link's collisions but planes."""
         return tuple(_friction(collision) for collision, _ in self._solids("collision"))
+
+    def auto_inertia(self) -> AutoInertia | None:
+        """Return what the link's inertia is to be computed from, None where it is given."""
+        inertial = self._link.child("inertial")
+        if inertial is None or not inertial.truth("auto"):
+            return None
+        usual = inertial.size("density") if inertial.child("density") else DEFAULT_DENSITY
+        densities = tuple(
+            collision.size("density") if collision.child("density") else usual
+            for collision, _ in self._solids("collision")
+        )
+        return AutoInertia(densities, inertial.size("mass") if inertial.child("mass") else None)
 
     def planes(self) -> Iterator[SdfPlane]:
         """Yield the link's planes in the model's frame."""
@@ -154,11 +174,12 @@ class _LinkReader:
     def _pose(self, part: SdfElement) -> Pose:
         return pose_of(self._frames.within(self._link, part))
 
-    def _inertial(self) -> Inertial:
+    def _inertial(self) -> Inertial | None:
         inertial = self._link.child("inertial")
         if inertial is None:
-            # SDF's own, whatever the shape: 1 kg, and 1 kg m2 about every axis.
-            return Inertial(1.0, Pose(), (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+            return DEFAULT_INERTIAL
+        if inertial.truth("auto"):
+            return None
         moments = inertial.child("inertia")
         keys = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}
         ixx, ixy, ixz, iyy, iyz, izz = (

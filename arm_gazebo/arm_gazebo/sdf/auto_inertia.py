@@ -1,0 +1,121 @@
+"""What `<inertial auto="true">` means: mass and inertia go by a link's collisions."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.robot import Box, Capsule, Collision, Cylinder, Inertial, Link, Mesh, Sphere
+from arm_description.transforms import transform
+from arm_gazebo.errors import MeshError
+from arm_gazebo.mesh.library import MeshLibrary
+from arm_gazebo.quaternion import wxyz
+from arm_gazebo.sdf.frames import pose_of
+
+DEFAULT_DENSITY = 1000.0
+"""SDF's own, in kg/m3: water's."""
+
+
+@dataclass(frozen=True, slots=True)
+class AutoInertia:
+    """What one link says about an inertia that is to be computed.
+
+    Attributes:
+        densities: of its collisions, kg/m3.
+        mass: kg, to which all is scaled; None for what the densities make.
+    """
+
+    densities: tuple[float, ...]
+    mass: float | None = None
+
+
+def auto_inertial(link: Link, auto: AutoInertia, meshes: MeshLibrary) -> Inertial | None:
+    """Return the inertia of a link whose collisions are solid, None where they have no volume.
+
+    A mesh that does not close around a volume counts as its convex hull, and one that cannot be
+    had not at all.
+    """
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body()
+    try:
+        for collision, density in zip(link.collisions, auto.densities, strict=True):
+            _add_solid(spec, body, collision, density, meshes)
+        model = spec.compile()
+    except ValueError:
+        # MuJoCo's, about a flat mesh or a sum that no float holds.
+        return None
+    mass = float(model.body_mass[1])
+    if mass <= 0:
+        return None
+    scale = 1.0 if auto.mass is None else auto.mass / mass
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, model.body_iquat[1])
+    pose = pose_of(transform(rotation.reshape(3, 3), model.body_ipos[1]))
+    ixx, iyy, izz = (model.body_inertia[1] * scale).tolist()
+    return Inertial(mass * scale, pose, (ixx, 0.0, 0.0, iyy, 0.0, izz))
+
+
+def _add_solid(
+    spec: mujoco.MjSpec,
+    body: mujoco.MjsBody,
+    collision: Collision,
+    density: float,
+    meshes: MeshLibrary,
+) -> None:
+    kinds = mujoco.mjtGeom
+    match collision.geometry:
+        case Mesh() as mesh:
+            try:
+                name = _add_mesh(spec, meshes, mesh)
+            except MeshError:
+                return
+            geom = body.add_geom(type=kinds.mjGEOM_MESH, meshname=name)
+        case Box((x, y, z)):
+            geom = body.add_geom(type=kinds.mjGEOM_BOX, size=[x / 2, y / 2, z / 2])
+        case Sphere(radius):
+            geom = body.add_geom(type=kinds.mjGEOM_SPHERE, size=[radius, 0.0, 0.0])
+        case Cylinder(radius, length):
+            geom = body.add_geom(type=kinds.mjGEOM_CYLINDER, size=[radius, length / 2, 0.0])
+        case Capsule(radius, length):
+            geom = body.add_geom(type=kinds.mjGEOM_CAPSULE, size=[radius, length / 2, 0.0])
+    geom.pos = collision.origin.xyz
+    geom.quat = wxyz(collision.origin.rpy)
+    geom.density = density
+
+
+def _add_mesh(spec: mujoco.MjSpec, meshes: MeshLibrary, mesh: Mesh) -> str:
+    """Add all parts of a mesh as one, for only together may they enclose a volume."""
+    parts = [part.drawn for part in meshes.parts(mesh)]
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    vertices = np.concatenate([part.vertices for part in parts])
+    faces = np.concatenate([part.faces + at for part, at in zip(parts, starts, strict=False)])
+    kinds = mujoco.mjtMeshInertia
+    name = f"mesh_{len(spec.meshes)}"
+    spec.add_mesh(
+        name=name,
+        uservert=vertices.ravel(),
+        userface=faces.ravel(),
+        inertia=kinds.mjMESH_INERTIA_EXACT
+        if _encloses(vertices, faces)
+        else kinds.mjMESH_INERTIA_CONVEX,
+    )
+    return name
+
+
+def _encloses(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
+    """Return whether triangles close around a volume, with their outsides outside.
+
+    Args:
+        vertices: shape (v, 3).
+        faces: shape (f, 3), indices of vertices.
+    """
+    a, b, c = vertices[faces].transpose(1, 0, 2)
+    if np.einsum("ij,ij->", a, np.cross(b, c)) <= 0:
+        return False
+    _, same = np.unique(vertices, axis=0, return_inverse=True)
+    start = same.reshape(-1).astype(np.int64)[faces]
+    end = np.roll(start, -1, axis=1)
+    # Each side of a triangle is that of another one, which passes it the other way.
+    there, back = start * len(vertices) + end, end * len(vertices) + start
+    return np.array_equal(np.sort(there, axis=None), np.sort(back, axis=None))
