@@ -246,8 +246,11 @@ class PidController(ChainableController[PidControllerParameters]):
         self, names: Sequence[str], values: Sequence[float], derivatives: Sequence[float]
     ) -> tuple[Array, str]:
         """Return a message's numbers as rows of interfaces, and why they cannot be used."""
-        rows = np.full(self._shape, np.nan)
-        own = self.parameters.state_dof_names
+        parameters = self._parameters  # which the loop thread may take away between two looks
+        if parameters is None:
+            return np.empty((0, 0)), "the controller is not configured"
+        own = parameters.state_dof_names
+        rows = np.full((len(parameters.reference_and_state_interfaces), len(own)), np.nan)
         named = list(names) or list(own)
         if sorted(named) != sorted(own):
             return rows, f"it names {', '.join(named)}; the controller has {', '.join(own)}"

@@ -140,6 +140,15 @@ def test_references_that_make_no_sense_are_refused(
     assert np.isnan(running.tick()).all()
 
 
+def test_references_and_states_are_refused_while_it_is_not_configured(bench: PidBench) -> None:
+    # Its topics begin after the core and end after it.
+    assert bench.pid.offer(DOFS, [0.0, 0.0]) == "the controller is not configured"
+    bench.configure()
+    bench.manager.cleanup_controller("pid")
+    assert bench.pid.offer(DOFS, [0.0, 0.0]) == "the controller is not configured"
+    assert bench.pid.offer_measured(DOFS, [0.0, 0.0]) == "the controller is not configured"
+
+
 def test_it_holds_what_it_finds_at_its_activation(bench: PidBench) -> None:
     bench.configure()
     bench.measure([0.5, -0.5])
