@@ -1,6 +1,7 @@
 """Takes one controller through its life cycle, with the claims and loans that go with it."""
 
 import logging
+from collections import Counter
 from collections.abc import Callable
 
 from arm_control.guarded import failure_of
@@ -123,5 +124,5 @@ class ControllerLifecycle:
 
 
 def _repetition(kind: str, names: tuple[str, ...]) -> str:
-    repeated = sorted({name for name in names if names.count(name) > 1})
+    repeated = sorted(name for name, count in Counter(names).items() if count > 1)
     return f"it asks more than once for {kind} interface {', '.join(repeated)}" if repeated else ""

@@ -1,5 +1,6 @@
 """The interfaces that chainable controllers lend to other controllers."""
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any, Protocol
 
@@ -52,7 +53,7 @@ class ExportedInterfaces:
         if not references and not states:
             raise ControllerManagerError("it is chainable, but exports no reference and no state")
         for kind, names in (("reference", references), ("state", states)):
-            repeated = sorted({name for name in names if names.count(name) > 1})
+            repeated = sorted(name for name, count in Counter(names).items() if count > 1)
             if repeated:
                 raise ControllerManagerError(
                     f"it exports {kind} interface {', '.join(repeated)} more than once"

@@ -7,6 +7,7 @@ import pytest
 
 from arm_control import (
     Controller,
+    ControllerManager,
     ControllerManagerError,
     InterfaceConfiguration,
     LifecycleState,
@@ -17,6 +18,7 @@ from arm_control.forward_command_controller import (
     JointGroupPositionController,
     PositionGroupParameters,
 )
+from arm_control.testing import fake_hardware
 
 ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 
@@ -237,6 +239,30 @@ def test_one_activity_per_change_of_controllers(bench: Any, observer: Any) -> No
     before = observer.changes
     bench.manager.switch_controller(SwitchRequest(("a",)))
     assert observer.changes == before + 1
+
+
+class CountedName(str):
+    """A name that counts how often it is compared with another one."""
+
+    comparisons = 0
+    __hash__ = str.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        CountedName.comparisons += 1
+        return str.__eq__(self, other)
+
+
+def test_a_switch_does_not_compare_each_interface_with_each_other(bench: Any) -> None:
+    joints = [f"joint{i}" for i in range(300)]
+    manager = ControllerManager([fake_hardware(joints)], 100)
+    manager.bring_up()
+    bench.manager = manager
+    states = tuple(CountedName(f"{joint}/position") for joint in joints)
+    bench.configure("many", states=states)
+    bench.configure("one", states=states[:1])
+    CountedName.comparisons = 0
+    assert manager.switch_controller(SwitchRequest(("one",))).ok
+    assert CountedName.comparisons < 10 * len(states)
 
 
 def test_a_tick_without_changes_reports_nothing(bench: Any, observer: Any) -> None:
