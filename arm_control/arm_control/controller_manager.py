@@ -1,7 +1,8 @@
 """Loads, configures, switches and updates controllers on top of hardware components."""
 
 import logging
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -109,6 +110,7 @@ class ControllerManager:
             self._controllers, self.resources, self._chain, self._switcher, policy
         )
         self._observers: list[ManagerObserver] = []
+        self._changes = 0
 
     def add_observer(self, observer: ManagerObserver) -> None:
         """Tell this observer of every change from now on."""
@@ -166,10 +168,8 @@ class ControllerManager:
 
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
         """Walk a component to a state; controllers stop where their interfaces vanish."""
-        try:
+        with self._following():
             self._keeper.set_state(name, target)
-        finally:
-            self._select_active()
 
     def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
         """Return every component."""
@@ -265,9 +265,8 @@ class ControllerManager:
 
     def switch_controller(self, request: SwitchRequest) -> SwitchResult:
         """Deactivate and activate controllers in one go; never raises, the result says it all."""
-        result = self._switcher.switch(request)
-        self._select_active()
-        return result
+        with self._following():
+            return self._switcher.switch(request)
 
     def shutdown(self) -> None:
         """Deactivate and finalize every controller, then every component."""
@@ -312,6 +311,19 @@ class ControllerManager:
             if controller.state is LifecycleState.INACTIVE:
                 self._lifecycle.resolve(controller)
 
+    @contextmanager
+    def _following(self) -> Iterator[None]:
+        """Go by what has changed in the end; nothing has where a request was refused."""
+        before = self._changes, self._component_states()
+        try:
+            yield
+        finally:
+            if before != (self._changes, self._component_states()):
+                self._select_active()
+
+    def _component_states(self) -> list[LifecycleState]:
+        return [component.state for component in self.resources.components.values()]
+
     def _select_active(self) -> None:
         active = [c for c in self._chain.in_order() if c.is_active]
         self._commanding = self._chain.with_read(c for c in active if c.commands)
@@ -324,6 +336,7 @@ class ControllerManager:
     def _controller_transitioned(
         self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
     ) -> None:
+        self._changes += end is not start
         for observer in self._observers:
             observer.controller_transitioned(name, transition, start, end)
 

@@ -14,6 +14,7 @@ from arm_control import (
     ReturnType,
     SwitchRequest,
 )
+from arm_control.controller_switch import Strictness
 from arm_control.forward_command_controller import (
     JointGroupPositionController,
     PositionGroupParameters,
@@ -239,6 +240,44 @@ def test_one_activity_per_change_of_controllers(bench: Any, observer: Any) -> No
     before = observer.changes
     bench.manager.switch_controller(SwitchRequest(("a",)))
     assert observer.changes == before + 1
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        SwitchRequest(("nobody",), (), Strictness.STRICT),
+        SwitchRequest(("broken",), (), Strictness.STRICT),
+        SwitchRequest((), ("a",)),
+        SwitchRequest(),
+    ],
+    ids=["unknown", "refuses", "inactive", "nothing"],
+)
+def test_a_switch_that_changes_nothing_reports_nothing(
+    bench: Any, observer: Any, request_: SwitchRequest
+) -> None:
+    bench.configure("a")
+    bench.configure("broken").refuses.add("activate")
+    before = observer.changes
+    bench.manager.switch_controller(request_)
+    assert observer.changes == before
+
+
+def test_a_restart_is_reported(bench: Any, observer: Any) -> None:
+    bench.configure("a")
+    bench.manager.switch_controller(SwitchRequest(("a",)))
+    before = observer.changes
+    assert bench.manager.switch_controller(SwitchRequest(("a",), ("a",))).ok
+    assert observer.changes == before + 1
+
+
+def test_hardware_that_stays_as_it_is_reports_nothing(bench: Any, observer: Any) -> None:
+    (component,) = bench.manager.list_hardware_components()
+    bench.manager.set_hardware_component_state(component.name, component.state)
+    with pytest.raises(ControllerManagerError):
+        bench.manager.set_hardware_component_state("nothing", LifecycleState.INACTIVE)
+    assert observer.changes == 0
+    bench.manager.set_hardware_component_state(component.name, LifecycleState.INACTIVE)
+    assert observer.changes == 1
 
 
 class CountedName(str):
