@@ -109,12 +109,14 @@ class ControlPlane:
             node = self._find(name, "configure")
             with _parameters_of(name):
                 parameters, rate_hz = node.read_controller_parameters()
-            if self._state_of(name) is LifecycleState.INACTIVE:
+            if self._state_of(name) in (LifecycleState.UNCONFIGURED, LifecycleState.INACTIVE):
+                # One that could not stop is unconfigured, but its end points are still there.
                 self.cleanup_controller(name)
             self.on_loop(lambda: self._manager.configure_controller(name, parameters, rate_hz))
             reason = failure_of(
                 lambda: node.on_configure(parameters), f"making the topics of controller '{name}'"
             )
+            reason = reason or node.take_late_changes(self._executor)
             if reason:
                 self.cleanup_controller(name)
                 raise ControllerManagerError(f"controller '{name}' was not configured: {reason}")

@@ -1,12 +1,13 @@
 """The node of one controller: its parameters, its adapter, its transition events."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Any
 
 from lifecycle_msgs.msg import TransitionEvent
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 
@@ -19,6 +20,7 @@ from arm_control.parameters import ParameterSpec, specs_of
 from arm_control.registry import load_object
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_control.ros.convert import transition_events
+from arm_control.ros.executor_bridge import run_on_executor
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.parameter_node import ParameterNode
 
@@ -30,7 +32,8 @@ class ControllerNode(ParameterNode):
     """A plain node named after its controller, in the manager's namespace.
 
     It has no life-cycle services, as a real controller has none. Made and destroyed on a
-    control-plane thread; only `publish_transition` is for the loop thread.
+    control-plane thread; only `publish_transition` is for the loop thread, and must hear of every
+    transition: parameters go to the controller while it is configured.
     """
 
     def __init__(
@@ -63,6 +66,7 @@ class ControllerNode(ParameterNode):
         self.controller = controller
         self._loop = loop
         self._is_configured = False
+        self._values_read: dict[str, Any] = {}
         self._specs = controller.parameter_specs(self.given_parameters())
         general = _general_specs(controller.context.update_rate_hz)
         self.declare_specs((*self._specs, *general))
@@ -84,7 +88,8 @@ class ControllerNode(ParameterNode):
         Raises:
             ParameterError: a value does not fit.
         """
-        parameters = self.controller.build_parameters(self.values_of(self._specs))
+        self._values_read = self.values_of(self._specs)
+        parameters = self.controller.build_parameters(self._values_read)
         rate_hz = self.get_parameter("update_rate").value
         if not isinstance(rate_hz, int) or rate_hz < 0:
             raise ParameterError(f"parameter 'update_rate' must not be negative, but is {rate_hz}")
@@ -98,18 +103,32 @@ class ControllerNode(ParameterNode):
         """Create the controller's end points."""
         if self._adapter is not None:
             self._adapter.on_configure(parameters)
-        self._is_configured = True
+
+    def take_late_changes(self, executor: Executor) -> str:
+        """Hand over what clients set since the parameters were read; return why that fails.
+
+        A change before the controller was configured is only noted, and one of them may still be
+        under way on the thread of `executor`: it is looked at there, between two changes.
+        """
+        reasons = [""]
+
+        def look() -> None:
+            values = self.values_of(self._specs)
+            reasons.append(self._take(values) if values != self._values_read else "")
+
+        run_on_executor(executor, look)
+        return reasons[-1]
 
     def on_cleanup(self) -> None:
         """Destroy the controller's end points."""
-        self._is_configured = False
         if self._adapter is not None:
             self._adapter.on_cleanup()
 
     def publish_transition(
         self, transition: Transition, start: LifecycleState, end: LifecycleState
     ) -> None:
-        """Publish what a transition did, in two events: on its way, and where it arrived."""
+        """Go by what a transition did, and publish it: on its way, and where it arrived."""
+        self._is_configured = end in (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
         for event in transition_events(transition, start, end):
             self._events.publish(event)
 
@@ -124,22 +143,30 @@ class ControllerNode(ParameterNode):
         """
         values = self.values_of(self._specs)
         changes = {item.name: item.value for item in changed if item.name in values}
-        try:
-            parameters = self.controller.build_parameters({**values, **changes})
-        except ParameterError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        reason = self._update_parameters(parameters) if changes and self._is_configured else ""
+        reason = self._take({**values, **changes}) if changes else ""
         return SetParametersResult(successful=not reason, reason=reason)
 
+    def _take(self, values: Mapping[str, Any]) -> str:
+        """Hand values to the controller if it is configured; return why it does not take them."""
+        try:
+            parameters = self.controller.build_parameters(values)
+        except ParameterError as error:
+            return str(error)
+        return self._update_parameters(parameters) if self._is_configured else ""
+
     def _update_parameters(self, parameters: Any) -> str:
-        """Hand parameters to the controller; return why it does not take them."""
+        # On the loop thread, where the controller's state changes, too.
         controller = self.controller
-        future = self._loop.call(
-            lambda: failure_of(
+
+        def update() -> str:
+            if not self._is_configured:
+                return ""  # any more: the next configuration reads them
+            return failure_of(
                 lambda: controller.update_parameters(parameters),
                 f"update_parameters of controller '{controller.name}'",
             )
-        )
+
+        future = self._loop.call(update)
         try:
             return future.result(LOOP_TIMEOUT_S)
         except FutureTimeoutError:
