@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from controller_manager_msgs.msg import ControllerManagerActivity
 from rclpy.executors import Executor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from arm_control.control_loop import ControlLoop
 from arm_control.controller_manager import ControllerManager
@@ -73,6 +74,8 @@ class ControllerManagerServer:
             self._make_component_node(component.name)
             for component in self._plane.on_loop(manager.list_hardware_components)
         ]
+        self._loop = loop
+        node.add_post_set_parameters_callback(self._parameters_changed)
         self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED_QOS)
         self._snapshot = self._plane.on_loop(lambda: ManagerSnapshot(manager))
         self._plane.on_loop(self._observe)
@@ -130,6 +133,12 @@ class ControllerManagerServer:
         )
         message.header.stamp = self._node.stamp()
         self._activity.publish(message)
+
+    def _parameters_changed(self, changed: Sequence[Parameter]) -> None:
+        """Bring those into force that the loop was told when it was made."""
+        for parameter in changed:
+            if parameter.name == "overruns.print_warnings":
+                self._loop.pacer.print_warnings = bool(parameter.value)
 
     def _observe(self) -> None:
         """Follow the manager's changes; loop thread."""

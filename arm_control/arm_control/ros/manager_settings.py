@@ -74,7 +74,7 @@ class DiagnosticUpdater:
 class ManagerSettings:
     """Parameters of the node /controller_manager."""
 
-    update_rate: int = parameter(100, "Control cycles per second", above=0)
+    update_rate: int = parameter(100, "Control cycles per second", read_only=True, above=0)
     thread_priority: int = parameter(
         50,
         "SCHED_FIFO priority of the control loop where the process may; 0 for the ordinary one",

@@ -218,3 +218,18 @@ def test_one_that_could_not_stop_takes_parameters_when_it_is_configured(
     assert loaded.set_gain(3.0)
     loaded.plane.configure_controller("it")
     assert loaded.probe.parameters.gain == 3.0
+
+
+def test_warnings_of_overruns_can_be_switched_off_at_any_time(
+    ros_bench: RosBench, ending: ExitStack
+) -> None:
+    from arm_control.ros.controller_manager_server import ControllerManagerServer
+
+    server = ControllerManagerServer(
+        ros_bench.node, ros_bench.manager, ros_bench.loop, ros_bench.executor
+    )
+    ending.callback(server.destroy_nodes)
+    ending.callback(server.shutdown)
+    for value in (False, True):
+        assert ros_bench.set(ros_bench.node, "overruns.print_warnings", value).successful
+        assert ros_bench.loop.pacer.print_warnings is value

@@ -50,6 +50,7 @@ READ_ONLY = {
     "enforce_command_limits": False,
     "handle_exceptions": True,
     "hardware_components_initial_state.shutdown_on_initial_state_failure": True,
+    "update_rate": 100,
 }
 
 
@@ -70,7 +71,6 @@ def test_the_managers_parameters(control: Any, parameters_of: Any, client: Any) 
     control.load("position_controller")
     parameters = parameters_of("/controller_manager")
     expected = {
-        "update_rate": 100,
         "defaults.switch_controller.strictness": "best_effort",
         "hardware_components_initial_state.inactive": [],
         "hardware_components_initial_state.unconfigured": [],
