@@ -1,6 +1,7 @@
 """Where the frames of one SDF scope are: the models of a world, or the links of a model."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,17 @@ class SdfFrames:
 
     Args:
         elements: what has a pose, by name.
+        offsets: of those whose pose places not their own frame but another one: their frame in
+            that one, (4, 4).
     """
 
-    def __init__(self, elements: Mapping[str, SdfElement]) -> None:
+    def __init__(
+        self,
+        elements: Mapping[str, SdfElement],
+        offsets: Mapping[SdfElement, NDArray[np.float64]] | None = None,
+    ) -> None:
         self._elements = elements
+        self._offsets = offsets or {}
 
     def matrix(self, element: SdfElement) -> NDArray[np.float64]:
         """Return the pose (4, 4) of an element in the scope's frame.
@@ -29,7 +37,17 @@ class SdfFrames:
         Raises:
             WorldError: it is relative to nothing that is there, or in a circle.
         """
-        return self._resolved(element, element.pose())
+        return self._resolved(element, self._pose(element))
+
+    def named(self, name: str, owner: SdfElement) -> NDArray[np.float64]:
+        """Return the pose (4, 4) of the frame that the scope's owner calls so.
+
+        Raises:
+            WorldError: there is none.
+        """
+        if name in ROOTS:
+            return np.eye(4)
+        return self.matrix(self._element(name, owner, "is placed by"))
 
     def within(self, owner: SdfElement, part: SdfElement) -> NDArray[np.float64]:
         """Return the pose (4, 4) of a part of one of the elements in that element's frame."""
@@ -42,16 +60,23 @@ class SdfFrames:
         """Follow a pose from frame to frame up to the scope's own."""
         matrix, passed = pose.matrix, set[str]()
         while (name := pose.relative_to or _usual_frame(element)) not in ROOTS:
-            if name not in self._elements:
-                known = listing(sorted(self._elements))
-                raise element.error(f"is relative to '{name}', not one of {known}")
             if name in passed:
                 raise element.error(f"is relative to '{name}', and that in a circle to itself")
             passed.add(name)
-            element = self._elements[name]
-            pose = element.pose()
+            element = self._element(name, element, "is relative to")
+            pose = self._pose(element)
             matrix = pose.matrix @ matrix
         return matrix
+
+    def _pose(self, element: SdfElement) -> SdfPose:
+        pose = element.pose()
+        return replace(pose, matrix=pose.matrix @ self._offsets.get(element, np.eye(4)))
+
+    def _element(self, name: str, asking: SdfElement, relation: str) -> SdfElement:
+        if name not in self._elements:
+            known = listing(sorted(self._elements))
+            raise asking.error(f"{relation} '{name}', not one of {known}")
+        return self._elements[name]
 
 
 def _usual_frame(element: SdfElement) -> str:

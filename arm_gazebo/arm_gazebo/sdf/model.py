@@ -86,9 +86,7 @@ def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfM
         WorldError: a value is not what it must be.
     """
     links = model.children("link")
-    # Joints are frames too, though nothing else of them is simulated.
-    parts = (*model.aside("joint"), *links, *model.children("frame"))
-    frames = SdfFrames({part.name: part for part in parts})
+    frames = _frames_in(model)
     said = model.flag("static")
     fixed = said if static is None else static
     read = [_LinkReader(link, f"{name}::{link.name}", frames) for link in links]
@@ -107,6 +105,25 @@ def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfM
     frictions = {reader.name: reader.frictions() for reader in read}
     automatic = {reader.name: auto for reader in read if (auto := reader.auto_inertia())}
     return SdfModel(robot, frictions, automatic, planes, fixed)
+
+
+def placement_offset(model: SdfElement, frame: str) -> NDArray[np.float64]:
+    """Return a model's frame (4, 4) in the one of its frames that its pose places.
+
+    Args:
+        model: the element.
+        frame: name of the placed one, "" for the model's own.
+
+    Raises:
+        WorldError: the model has no such frame.
+    """
+    return np.linalg.inv(_frames_in(model).named(frame, model))
+
+
+def _frames_in(model: SdfElement) -> SdfFrames:
+    # Joints are frames too, though nothing else of them is simulated.
+    parts = (*model.aside("joint"), *model.children("link"), *model.children("frame"))
+    return SdfFrames({part.name: part for part in parts})
 
 
 class _LinkReader:

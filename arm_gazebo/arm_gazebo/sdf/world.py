@@ -14,11 +14,13 @@ from arm_gazebo.sdf.body import add_model, add_plane
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames, pose_of
 from arm_gazebo.sdf.light import add_light, add_sky, add_sun
-from arm_gazebo.sdf.model import SdfModel, SdfPlane, read_model
+from arm_gazebo.sdf.model import SdfModel, SdfPlane, placement_offset, read_model
 
 GROUND = ("ground_plane", "ground plane")
 SUN = ("sun",)
 """Models of Gazebo's own that worlds include by name, or from its web site."""
+PLACED = "placement_frame"
+"""What says which of a model's frames its pose places, where it is not the model's own."""
 GROUND_SIZE_M = 100.0
 GROUND_COLOR = (0.8, 0.8, 0.8, 1.0)
 
@@ -61,7 +63,9 @@ class _WorldReader:
         add_sky(self._spec, world)
         for light in world.children("light"):
             add_light(self._spec, light)
-        placed = {part.name: part for part in (*world.children("model"), *world.children("frame"))}
+        models = world.children("model")
+        placed = {part.name: part for part in (*models, *world.children("frame"))}
+        offsets = {model: placement_offset(model, model.attribute(PLACED)) for model in models}
         included: list[tuple[SdfElement, SdfElement]] = []
         for include in world.children("include"):
             model = self._model_of(include)
@@ -71,8 +75,10 @@ class _WorldReader:
             included.append((include, model))
             name = include.text("name") or model.name
             placed[name] = include if include.child("pose") else model
-        frames = SdfFrames(placed)
-        for model in world.children("model"):
+            frame = include.text(PLACED) or model.attribute(PLACED)
+            offsets[placed[name]] = placement_offset(model, frame)
+        frames = SdfFrames(placed, offsets)
+        for model in models:
             self._add(read_model(model, model.name), pose_of(frames.matrix(model)), model)
         for include, model in included:
             self._add_include(include, model, frames)

@@ -197,6 +197,44 @@ def test_a_joint_is_where_its_child_is(world):
     assert data.body("lamp::bulb").xpos == pytest.approx([0.1, 0, 1.9])
 
 
+PUTTING = """<model name="table" placement_frame="{frame}"><static>true</static>
+  <pose>5 0 0 0 0 1.5707963</pose>
+  <link name="top"><pose>1 0 0.8 0 0 0</pose></link>
+  <frame name="edge" attached_to="top"><pose>0.5 0 0 0 0 0</pose></frame></model>"""
+CUP = model("cup", head=STATIC, attributes='relative_to="table"')
+
+
+@pytest.mark.parametrize(
+    ("frame", "table", "top"),
+    [
+        ("", [5, 0, 0], [5, 1, 0.8]),
+        ("__model__", [5, 0, 0], [5, 1, 0.8]),
+        ("top", [5, -1, -0.8], [5, 0, 0]),
+        ("edge", [5, -1.5, -0.8], [5, -0.5, 0]),
+    ],
+)
+def test_a_pose_places_the_frame_that_a_model_names(world, frame, table, top):
+    _, data, _ = world(PUTTING.format(frame=frame), CUP)
+    assert data.body("table").xpos == pytest.approx(table, abs=1e-6)
+    assert data.body("table::top").xpos == pytest.approx(top, abs=1e-6)
+    assert data.body("cup").xpos == pytest.approx(table, abs=1e-6)
+
+
+def test_an_include_may_name_another_frame_to_be_placed(world, write, tmp_path, monkeypatch):
+    write(PUTTING.format(frame="top"), "models/table/model.sdf")
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
+    include = "<include><uri>model://table</uri><name>{}</name>{}</include>"
+    edge = "<pose>0 0 0 0 0 0</pose><placement_frame>edge</placement_frame>"
+    _, data, _ = world(
+        include.format("as_it_says", ""),
+        include.format("elsewhere", "<pose>0 0 0 0 0 0</pose>"),
+        include.format("by_its_edge", edge),
+    )
+    assert data.body("as_it_says::top").xpos == pytest.approx([5, 0, 0], abs=1e-6)
+    assert data.body("elsewhere::top").xpos == pytest.approx([0, 0, 0], abs=1e-6)
+    assert data.body("by_its_edge").xpos == pytest.approx([-1.5, 0, -0.8], abs=1e-6)
+
+
 def test_included_model_is_found_on_the_resource_path(world, write, tmp_path, monkeypatch):
     write(model("can", link=INERTIAL + CYLINDER, head=STATIC), "models/can/model.sdf")
     monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
@@ -272,6 +310,7 @@ def test_what_is_not_simulated_is_listed_and_not_fatal(world):
             LAMP.format(hinge="", head='<pose relative_to="hinge"/>', bulb="").replace("\n", ""),
             "in a circle to itself",
         ),
+        (PUTTING.format(frame="leg"), "placed by 'leg', not one of edge, top"),
         (model("a") + model("a"), "second one called 'a'"),
         ("<include><uri>model://nowhere</uri></include>", "cannot be had: no file"),
         ("<include/>", "needs a <uri>"),
