@@ -21,6 +21,8 @@ from arm_gazebo.errors import WorldError
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 REASONS = {"joint": "the links of a model are one rigid body"}
 """Why an element is not read, where more can be said than that it is not."""
+NEEDLESS_ATTRIBUTES = frozenset({"name", "attached_to", "canonical_link"})
+"""Those that change nothing where nobody asks for them: a model is one rigid body."""
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -43,6 +45,7 @@ class SdfElement:
         self._element = element
         self._owner = owner
         self._children: dict[str, list[SdfElement]] = {}
+        self._asked: set[str] = set()
         self.source = source
 
     @classmethod
@@ -91,6 +94,7 @@ class SdfElement:
 
     def attribute(self, key: str) -> str:
         """Return an attribute without blanks around it, "" where there is none."""
+        self._asked.add(key)
         return str(self._element.get(key, "")).strip()
 
     def truth(self, key: str) -> bool:
@@ -195,21 +199,30 @@ class SdfElement:
         return SdfPose(matrix, pose.attribute("relative_to"))
 
     def unread(self) -> Iterator[Finding]:
-        """Yield the elements in this one that nobody has asked for, each kind once."""
-        left: dict[str, list[SdfElement]] = {}
-        for element in self._unread():
-            left.setdefault(element.tag, []).append(element)
-        for tag, elements in left.items():
+        """Yield the elements and attributes that nobody has asked for, each kind once."""
+        left: dict[tuple[str, str], list[SdfElement]] = {}
+        for element, key in self._unread():
+            left.setdefault((element.tag, key), []).append(element)
+        for (tag, key), elements in left.items():
             first, others = elements[0], len(elements) - 1
             more = f" and {others} more" if others else ""
-            reason = REASONS.get(tag, "it is not simulated")
-            element = f"{first.label} in {self.source.name}{more}"
-            yield Finding(Outcome.DROPPED, element, reason, first.line)
+            what = f"{key}='{first.attribute(key)}' of {first.label}" if key else first.label
+            reason = "it is not simulated" if key else REASONS.get(tag, "it is not simulated")
+            yield Finding(
+                Outcome.DROPPED, f"{what} in {self.source.name}{more}", reason, first.line
+            )
 
-    def _unread(self) -> "Iterator[SdfElement]":
+    def _unread(self) -> "Iterator[tuple[SdfElement, str]]":
+        """Yield each element with the attribute that is left, "" where it is left itself."""
+        # Old versions write attributes without a value; "{...}" is a namespace.
+        for key, value in self._element.attrib.items():
+            name = str(key)
+            if value.strip() and name[0] != "{" and name not in self._asked | NEEDLESS_ATTRIBUTES:
+                yield self, name
         for child in self._element.iterchildren("*"):
             if written_name(child) not in self._children:
-                yield SdfElement(child, self.source, self.label if self.name else self._owner)
+                owner = self.label if self.name else self._owner
+                yield SdfElement(child, self.source, owner), ""
         for children in self._children.values():
             for child in children:
                 yield from child._unread()

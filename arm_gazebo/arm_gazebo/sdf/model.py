@@ -117,7 +117,7 @@ def placement_offset(model: SdfElement, frame: str) -> NDArray[np.float64]:
     Raises:
         WorldError: the model has no such frame.
     """
-    return np.linalg.inv(_frames_in(model).named(frame, model))
+    return np.asarray(np.linalg.inv(_frames_in(model).named(frame, model)), np.float64)
 
 
 def _frames_in(model: SdfElement) -> SdfFrames:

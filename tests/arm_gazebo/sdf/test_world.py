@@ -295,6 +295,18 @@ def test_what_is_not_simulated_is_listed_and_not_fatal(world):
     ]
 
 
+def test_attributes_without_effect_are_listed_too(world):
+    _, _, report = world(
+        '<frame name="desk"/><frame name="loose" attached_to="desk"/>',
+        '<model name="a" canonical_link="l" colour="red"><static>1</static><pose frame="">0 0 0 0 '
+        '0 0</pose><link name="l" sort="x"/><link name="m" sort="y"/></model>',
+    )
+    assert [str(finding) for finding in report.findings] == [
+        "colour='red' of model 'a' in lab.sdf (line 5): it is not simulated",
+        "sort='x' of link 'l' in lab.sdf and 1 more (line 5): it is not simulated",
+    ]
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [
