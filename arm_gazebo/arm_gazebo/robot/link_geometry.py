@@ -1,5 +1,6 @@
 """The shapes of links: visuals to be seen, collisions to be touched, and their bounds."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -24,6 +25,8 @@ DEFAULT_COLOR: Color = (0.7, 0.7, 0.7, 1.0)
 STAND_IN_COLOR: Color = (0.9, 0.2, 0.7, 1.0)
 DEFAULT_FRICTION = 1.0
 """MuJoCo's, and Gazebo's."""
+PRIORITIES = 1_000_000
+"""How many frictions below 1 are told apart."""
 STAND_IN_SIDE_M = 0.05
 """Side of the box that stands for a mesh that cannot be had: small, and of no usual colour."""
 THINNEST_M = 1e-4
@@ -94,7 +97,7 @@ class LinkGeometry:
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = masks.contype, masks.conaffinity
                 if tags.friction is not None:
-                    _set_friction(geom, tags.friction)
+                    set_friction(geom, tags.friction)
 
     def bounds(self, link: Link) -> NDArray[np.float64] | None:
         """Return lowest and highest corner of the link's shapes in its frame, shape (2, 3).
@@ -201,15 +204,14 @@ class LinkGeometry:
         return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=STAND_IN_COLOR)
 
 
-def _set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
-    """Give a shape its sliding friction; a slippery one slides on whatever it touches.
+def set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
+    """Give a shape its sliding friction, and the more priority the more slippery it is.
 
-    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo the higher one, unless
-    one of them has priority.
+    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo that of the higher
+    priority, and of equal ones the higher coefficient.
     """
     geom.friction = [friction, *geom.friction[1:]]
-    if friction < DEFAULT_FRICTION:
-        geom.priority = 1
+    geom.priority = math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)
 
 
 def _shapes_of(link: Link) -> Iterator[tuple[Pose, Geometry]]:

@@ -1,6 +1,5 @@
 """An SDF model's bodies and planes in a MuJoCo specification."""
 
-import math
 from dataclasses import replace
 
 import mujoco
@@ -16,16 +15,14 @@ from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.link_geometry import (
     COLLISION_GROUP,
     DEFAULT_COLOR,
-    DEFAULT_FRICTION,
     VISUAL_GROUP,
     LinkGeometry,
+    set_friction,
 )
 from arm_gazebo.sdf.auto_inertia import auto_inertial
 from arm_gazebo.sdf.model import DEFAULT_INERTIAL, SdfModel, SdfPlane
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
-PRIORITIES = 1_000_000
-"""How many frictions below 1 are told apart."""
 
 
 def add_model(
@@ -84,7 +81,7 @@ def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:
     if plane.size is None:
         geom.size = [0.0, 0.0, 1.0]
         geom.group = COLLISION_GROUP
-        _set_friction(geom, plane.friction)
+        set_friction(geom, plane.friction)
     else:
         geom.size = [*(np.array(plane.size) / 2), 1.0]
         geom.group = VISUAL_GROUP
@@ -117,14 +114,4 @@ class _SdfGeometry(LinkGeometry):
             before = len(body.geoms)
             super().add(body, replace(link, visuals=(), collisions=(collision,)))
             for geom in body.geoms[before:]:
-                _set_friction(geom, friction)
-
-
-def _set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
-    """Give a shape its sliding friction, and the more priority the more slippery it is.
-
-    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo that of the higher
-    priority, and of equal ones the higher coefficient.
-    """
-    geom.friction = [friction, *geom.friction[1:]]
-    geom.priority = math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)
+                set_friction(geom, friction)

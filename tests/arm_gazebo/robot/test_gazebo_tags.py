@@ -94,7 +94,21 @@ def test_the_model_has_the_friction_and_a_slippery_link_slides_on_anything():
     )
     geom = geom_of(built, built.bodies["a"])
     assert built.model.geom_friction[geom, 0] == 0.1
-    assert built.model.geom_priority[geom] == 1
+    assert built.model.geom_priority[geom] > 0
+
+
+def test_of_two_slippery_links_the_more_slippery_one_decides():
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    built = build(
+        f'<robot name="r"><link name="a">{SOLID}</link><link name="b">{SOLID}</link>{joint}'
+        '<gazebo reference="a"><mu1>0.1</mu1></gazebo>'
+        '<gazebo reference="b"><mu1>0.5</mu1></gazebo></robot>',
+        base="free",
+    )
+    a, b = (
+        built.model.geom_priority[geom_of(built, built.bodies[link])].item() for link in ("a", "b")
+    )
+    assert a > b > 0
 
 
 def test_the_model_has_the_colour_of_the_tag_rather_than_the_visuals():
