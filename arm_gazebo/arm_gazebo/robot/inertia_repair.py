@@ -23,6 +23,8 @@ LARGEST_MOMENT = 1e300
 """Larger ones, in kg m2, are nonsense whose sums no float can hold."""
 ROUNDING = 1e-3
 """How far decimals in a URDF may break the triangle inequality without a word."""
+NUMERICALLY_NONE = 1e-12
+"""A moment of less than this share of the largest is 0 but for the arithmetic."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,17 +127,21 @@ def _physical(moments: Array, remarks: list[str]) -> Array:
         remarks.append(f"it has no inertia; {DEFAULT_INERTIA:g} kg m2 is used")
         return np.full(3, DEFAULT_INERTIA)
     largest = moments.max()
-    floor = max(ROUNDING * largest, SMALLEST_INERTIA)
-    if moments.min() < -floor:
+    if moments.min() < -ROUNDING * largest:
         remarks.append(f"its inertia has a principal moment below 0 ({moments.min():.3g} kg m2)")
-    moments = np.maximum(moments, floor)
+    # A rod has very little about its axis, and rolls accordingly; only what is missing is made up.
+    there = np.where(moments > NUMERICALLY_NONE * largest, moments, ROUNDING * largest)
+    moments = np.maximum(there, SMALLEST_INERTIA)
+    largest = moments.max()
+    others = moments.sum() - largest
     # The margin keeps rounding from failing MuJoCo's own check.
-    missing = (2 + 1e-9) * largest - moments.sum()
+    missing = (1 + 1e-9) * largest - others
     if missing > ROUNDING * largest:
         remarks.append(
             f"its inertia is impossible: {largest:.4g} kg m2 about one principal axis is more "
             "than about the other two together; those were raised"
         )
     if missing > 0:
-        moments = np.where(moments == largest, moments, moments + missing / 2)
+        # In proportion: rounding on a rod's length is many times what it has about its axis.
+        moments = np.where(moments == largest, moments, moments * (1 + missing / others))
     return moments

@@ -31,6 +31,7 @@ class Arm:
     speeds: tuple[float, ...]
     dynamics: str = ""
     thickness: float = 0.15
+    thinnest: float = 0.005
     bodies: tuple[str, ...] = field(default=())
     kinds: tuple[str, ...] = field(default=())
 
@@ -39,7 +40,7 @@ class Arm:
         parts, parent, height = ['<link name="base"/>'], "base", 0.5
         for index, axis in enumerate(self.axes):
             length, mass = self.lengths[index], self.masses[index]
-            radius = self.thickness * length + 0.005
+            radius = self.thickness * length + self.thinnest
             across = mass * (3 * radius**2 + length**2) / 12
             body = self.bodies[index] if self.bodies else ""
             kind = self.kinds[index] if self.kinds else "revolute"
@@ -62,6 +63,7 @@ UR = {
     "lengths": (0.09, 0.42, 0.39, 0.1, 0.09, 0.08),
     "masses": (3.7, 8.4, 2.3, 1.2, 1.2, 0.25),
 }
+UR_EFFORTS = (150, 150, 150, 28, 28, 28)
 LIGHT_SEVEN = {
     "lengths": (0.33, 0.02, 0.32, 0.08, 0.38, 0.09, 0.11),
     "masses": (5.0, 0.65, 3.2, 3.6, 1.2, 1.7, 0.75),
@@ -198,6 +200,13 @@ def test_random_arms_settle(bench, seed):
 def test_they_settle_at_other_control_rates(bench, rate_hz):
     urdf = complete(ARMS["seven joints, weak wrist"].urdf())
     check_step(bench, urdf, (0.5,), rate_hz=rate_hz)
+
+
+@pytest.mark.parametrize("rate_hz", [30, 100, 1000])
+@pytest.mark.parametrize("efforts", [UR_EFFORTS, (0,) * 6])
+def test_arms_of_wires_settle(bench, rate_hz, efforts):
+    arm = Arm(SPHERICAL, **UR, efforts=efforts, speeds=(3.1,) * 6, thickness=0, thinnest=1e-4)
+    check_step(bench, complete(arm.urdf()), (0.0, 1.2), rate_hz=rate_hz)
 
 
 def test_an_arm_of_meshes_alone_settles(bench, tmp_path):

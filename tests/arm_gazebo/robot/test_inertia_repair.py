@@ -50,6 +50,26 @@ def test_rounded_decimals_are_no_remark():
     assert inertia.moments[0] + inertia.moments[1] >= inertia.moments[2]
 
 
+@pytest.mark.parametrize("radius", [5e-3, 1e-3, 2e-5])
+def test_what_a_rod_has_about_its_axis_is_kept(radius):
+    across, along = 1.0 / 12, radius**2 / 2
+    inertia = repair_inertia(inertial(across, across, along))
+    assert sorted(inertia.moments) == pytest.approx([along, across, across], rel=1e-9, abs=0.0)
+    assert inertia.remarks == ()
+
+
+def test_decimals_of_a_rods_length_do_not_thicken_it():
+    inertia = repair_inertia(inertial(0.3333, 0.3332, 1.25e-5))
+    assert min(inertia.moments) == pytest.approx(1.25e-5, rel=1e-3)
+    assert inertia.remarks == ()
+
+
+def test_a_moment_that_is_missing_is_made_up():
+    """The second one turned, where 0 comes out of the arithmetic as any tiny number."""
+    for missing in (inertial(0.1, 0.1, 0.0), inertial(0.05, 0.05, 0.1, ixy=0.05)):
+        assert min(repair_inertia(missing).moments) == pytest.approx(1e-4, rel=0.01)
+
+
 def test_negative_moment_is_repaired_and_said():
     inertia = repair_inertia(inertial(-0.01, 0.01, 0.01))
     assert inertia.moments.min() > 0
