@@ -31,15 +31,17 @@ class ExecutorThread:
     waits for. So the thread goes first, and only then the executor is shut down.
     """
 
-    def __init__(self, name: str, executor: Executor) -> None:
+    def __init__(self, name: str, executor: Executor, longest_wait_s: float | None = None) -> None:
         """Prepare the thread.
 
         Args:
             name: of the thread.
             executor: to spin; one with several threads serves on while a callback blocks, what is
                 in other callback groups.
+            longest_wait_s: how long to wait for work at a time; None: until there is some.
         """
         self.executor = executor
+        self._longest_wait_s = longest_wait_s
         self._stopping = threading.Event()
         self._failures: dict[tuple[type[Exception], str, int | None], float] = {}
         self._thread = _SpinningThread(target=self._spin, name=name, daemon=True)
@@ -72,7 +74,7 @@ class ExecutorThread:
         executor = self.executor
         while not self._stopping.is_set() and executor.context.ok():
             try:
-                executor.spin_once()
+                executor.spin_once(self._longest_wait_s)
             except ExternalShutdownException:
                 return
             except Exception as error:

@@ -5,6 +5,7 @@ import threading
 import pytest
 
 from arm_description.ros.event_loop import spinning
+from arm_node import executor_thread
 
 pytestmark = pytest.mark.ros
 
@@ -43,6 +44,41 @@ def test_a_callback_that_raises_is_logged_and_the_next_runs(client, node, caplog
     assert texts == ["bad", "good"]
     assert "a callback failed; the node goes on" in caplog.text
     assert "ValueError: bad message" in caplog.text
+
+
+def test_a_failure_that_comes_again_at_once_is_logged_once(node, caplog):
+    turns = threading.Semaphore(0)
+
+    def fail() -> None:
+        turns.release()
+        raise ValueError("bad turn")
+
+    node.create_timer(0.01, fail)
+    with spinning(node):
+        for _ in range(5):
+            assert turns.acquire(timeout=30.0)
+    assert caplog.text.count("a callback failed; the node goes on") == 1
+
+
+def test_a_callback_that_does_not_end_is_left_alone(node, caplog, monkeypatch):
+    monkeypatch.setattr(executor_thread, "JOIN_TIMEOUT_S", 0.1)
+    monkeypatch.setattr(executor_thread, "CALLBACKS_TIMEOUT_S", 0.1)
+    entered, go_on = threading.Event(), threading.Event()
+
+    def hang() -> None:
+        entered.set()
+        go_on.wait(30.0)
+
+    node.create_timer(0.01, hang)
+    with spinning(node):
+        assert entered.wait(30.0)
+    assert "a callback in thread 'events' does not end: left alone" in caplog.text
+    assert executor_thread.is_spinning()
+    go_on.set()
+    for thread in threading.enumerate():
+        if thread.name == "events":
+            thread.join(30.0)
+    assert not executor_thread.is_spinning()
 
 
 def test_timers_run_until_the_end_and_not_after(node):
