@@ -2,6 +2,9 @@
 
 from collections.abc import Sequence
 
+LONGEST_INTERVAL_MS = 1e13
+"""Longer than any stamp: at a frequency too low for a division nothing is passed on."""
+
 
 class StateThrottle:
     """Admits a joint state when its stamp lies one interval after those of its joints before.
@@ -21,7 +24,8 @@ class StateThrottle:
     def set_frequency(self, frequency_hz: float) -> None:
         """Set the highest frequency; takes effect with the next message."""
         # Whole milliseconds, as upstream: 30 Hz in, 30 Hz out, in spite of jitter below 0.3 ms.
-        self._interval_ns = int(1000.0 / frequency_hz) * 1_000_000 if frequency_hz else 0
+        interval_ms = min(1000.0 / frequency_hz, LONGEST_INTERVAL_MS) if frequency_hz else 0.0
+        self._interval_ns = int(interval_ms) * 1_000_000
 
     def went_back(self, now_ns: int) -> bool:
         """Note the node's time; return whether it went back, in which case all is forgotten."""

@@ -56,6 +56,11 @@ def test_the_interval_is_in_whole_milliseconds(frequency_hz, interval_ms):
     assert passed(throttle, ("j",), [5000 + interval_ms]) == [5000 + interval_ms]
 
 
+@pytest.mark.parametrize("frequency_hz", [5e-324, 1e-300, 1e-20])
+def test_a_frequency_next_to_zero_passes_nothing_on(frequency_hz):
+    assert passed(StateThrottle(frequency_hz), ("j",), [1000, 4e12]) == []
+
+
 def test_a_new_frequency_takes_effect_with_the_next_stamp():
     throttle = StateThrottle(1.0)
     assert passed(throttle, ("j",), [1000, 1100]) == [1000]

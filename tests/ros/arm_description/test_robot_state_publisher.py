@@ -257,6 +257,14 @@ def test_time_that_moves_back_starts_anew(client, tf, send, latched, set_paramet
     assert node_time_s("b/") == 5.0
 
 
+def test_a_frequency_next_to_zero_leaves_the_node_settable(tf, send, set_parameters):
+    _, collector = tf()
+    assert set_parameters(NODE, publish_frequency=5e-324) == ""
+    assert set_parameters(NODE, publish_frequency=20.0) == ""
+    send(1.0, turn=0.0)
+    collector.wait_for(1)
+
+
 def test_the_topics_have_upstreams_quality_of_service(client, tf):
     from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
