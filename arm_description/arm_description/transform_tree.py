@@ -50,15 +50,18 @@ class Motion:
 
         Args:
             positions: (n,) of the message, in its own order, rad or m.
+
+        Where a joint's position is not finite or overflows, its row is not finite either.
         """
-        value = (self.multiplier * positions[self.source] + self.offset)[:, np.newaxis]
-        half = value * 0.5
-        return (
-            self.constant
-            + self.per_metre * value
-            + self.per_sine * np.sin(half)
-            + self.per_cosine * np.cos(half)
-        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            value = (self.multiplier * positions[self.source] + self.offset)[:, np.newaxis]
+            half = value * 0.5
+            return (
+                self.constant
+                + self.per_metre * value
+                + self.per_sine * np.sin(half)
+                + self.per_cosine * np.cos(half)
+            )
 
 
 class TransformTree:

@@ -1,5 +1,7 @@
 """The transforms that robot_state_publisher sends, against forward kinematics."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -101,6 +103,15 @@ def test_a_follower_that_the_message_names_has_its_own_position():
     assert np.allclose(matrix(rows["l4"]), expected(Frame("l3", "l4"), positions))
     assert np.allclose(matrix(rows["l5"]), expected(Frame("l4", "l5"), positions))
     assert resolve_mimics(MIXED, positions)["d"] == pytest.approx(0.225)
+
+
+@pytest.mark.parametrize("position", [1e308, -1e308, math.nan, math.inf])
+def test_a_follower_whose_position_overflows_has_a_row_that_is_not_finite(position):
+    leader = ("a", "prismatic", "")
+    follower = ("b", "prismatic", "<mimic joint='a' multiplier='10' offset='1'/>")
+    motion = TransformTree(robot(leader, follower)).motion(["a"])
+    finite = np.isfinite(motion.transforms(np.array([position]))).all(axis=1)
+    assert finite.tolist() == [math.isfinite(position), False]
 
 
 def test_of_a_name_that_stands_twice_the_first_counts():

@@ -159,12 +159,16 @@ class RobotStatePublisher(Node):
             self._publish(outlet, state)
 
     def _publish(self, outlet: _Outlet, state: JointPositions) -> None:
-        if not np.isfinite(state.positions[outlet.motion.source]).all():
+        transforms = outlet.motion.transforms(state.positions)
+        finite = np.isfinite(transforms).all(axis=1)
+        if not finite.all():
+            child = outlet.motion.frames[int(np.argmin(finite))].child
             self._complain(
-                f"a JointState about {listing(outlet.names)}: a position is not a finite number"
+                f"a JointState about {listing(outlet.names)}: a position is not a finite number, "
+                f"or too large for link {child!r}"
             )
             return
-        outlet.publisher.publish(outlet.motion.transforms(state.positions), state.stamp_ns)
+        outlet.publisher.publish(transforms, state.stamp_ns)
         self._throttle.passed_on(outlet.names, state.stamp_ns)
 
     def _outlet(self, names: tuple[str, ...]) -> _Outlet:

@@ -225,6 +225,16 @@ def test_a_position_that_is_no_number_is_not_sent(tf, send):
     assert children(collector.wait_for()[0]) == {"slide", "finger"}
 
 
+def test_a_position_that_is_too_large_for_what_mimics_it_is_not_sent(tf, send):
+    node, collector = tf()
+    send(1.0, push=1e308)
+    node.wait_for("ignored a JointState about push: a position is not a finite number, or too")
+    node.wait_for("large for link 'finger'")
+    send(1.0, push=0.25)
+    assert transforms(collector.wait_for()[0])["slide", "finger"][2] == 0.0
+    assert "Warning" not in node.output
+
+
 def test_bytes_that_are_no_joint_state_are_ignored(tf, send):
     node, collector = tf()
     send(1.0, b"\x00\x01\x00\x00 nonsense, far too short to be one")
