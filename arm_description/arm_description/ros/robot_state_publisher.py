@@ -15,6 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 from arm_description.errors import DescriptionError
 from arm_description.joint_state_encoding import (
+    NANOSECONDS,
     EncodingError,
     JointPositions,
     read_joint_positions,
@@ -145,7 +146,12 @@ class RobotStatePublisher(Node):
         if len(state.names) != len(state.positions):
             self._complain_of_sizes(state)
             return
-        self._stamp_clock.hear(state.stamp_ns)
+        if state.stamp_ns < 0:
+            stamp_s = state.stamp_ns / NANOSECONDS
+            about = f"a JointState about {listing(state.names)}"
+            self._complain(f"{about}: its stamp, {stamp_s:g} s, is negative")
+            return
+        self._stamp_clock.hear(state.names, state.stamp_ns)
         if self._throttle.went_back(self.get_clock().now().nanoseconds):
             # Throttled: with a second /clock about, this is so at every other message.
             self.get_logger().warning(
