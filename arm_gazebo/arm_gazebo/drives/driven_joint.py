@@ -68,7 +68,7 @@ class DrivenJoint:
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
         """Change the mode; a set-point starts from the state of the joint if it had none."""
         if self.mode not in SERVOED:
-            speed = self.joint.velocity
+            speed = self.joint.velocity_limit
             self.setpoint = Setpoint(position, min(max(velocity, -speed), speed))
         self.mode = mode
         self.effort = 0.0

@@ -199,10 +199,12 @@ def too_weak(
                 f"{limit} is not above its friction of {rubs:.4g}; it will hardly move",
             )
         elif fastest < SLOW_SHARE * joint.velocity:
+            limited = math.isfinite(joint.velocity_limit)
+            bound = "its velocity limit of" if limited else "the usual"
             yield (
                 joint.name,
                 f"{limit} moves it against its damping of {damps:.4g} at {fastest:.3g} at most, "
-                f"far below its velocity limit of {joint.velocity:.4g}",
+                f"far below {bound} {joint.velocity:.4g}",
             )
 
 

@@ -292,7 +292,7 @@ def _bounds(joint: RobotJoint, mode: DriveMode, command: InterfaceInfo) -> tuple
     """Return the lowest and highest command: the joint's limits, narrowed by the interface's."""
     lower, upper = {
         DriveMode.POSITION: (joint.lower, joint.upper),
-        DriveMode.VELOCITY: (-joint.velocity, joint.velocity),
+        DriveMode.VELOCITY: (-joint.velocity_limit, joint.velocity_limit),
         DriveMode.EFFORT: (-joint.effort, joint.effort),
     }[mode]
     lowest = -math.inf if command.minimum is None else command.minimum

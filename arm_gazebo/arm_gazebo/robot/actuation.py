@@ -14,7 +14,7 @@ from arm_gazebo.errors import ModelError
 from arm_gazebo.robot.mimic_joints import SCALAR_TYPES, Following
 
 DEFAULT_SPEED = {"revolute": 3.0, "continuous": 3.0, "prismatic": 0.5}
-"""Highest speed, in rad/s or m/s, of a joint whose URDF gives none."""
+"""Highest speed, in rad/s or m/s, on the way to a position, of a joint whose URDF gives none."""
 BOUNDLESS = 1e9
 """A limit of speed or effort, in SI units, from which on it is none: no joint comes near it."""
 
@@ -25,12 +25,14 @@ class Drive:
 
     Attributes:
         joint: name.
-        velocity: highest speed of a set-point, above 0.
+        velocity: highest speed of a set-point on its way to a position, above 0.
+        velocity_limit: highest speed at all, inf if it has no bound.
         effort: highest force or torque, inf if it has no bound.
     """
 
     joint: str
     velocity: float
+    velocity_limit: float
     effort: float
 
 
@@ -98,19 +100,23 @@ def _problem(info: JointInfo, known: dict[str, Joint], followers: dict[str, str]
 
 
 def _drive(joint: Joint, report: BuildReport) -> Drive:
-    velocity = joint.limit.velocity if joint.limit else 0.0
+    velocity = limit = joint.limit.velocity if joint.limit else 0.0
     effort = joint.limit.effort if joint.limit else 0.0
     element = f"joint '{joint.name}'"
     if not 0 < velocity < BOUNDLESS:
-        velocity = DEFAULT_SPEED[joint.type]
+        velocity, limit = DEFAULT_SPEED[joint.type], math.inf
         unit = "m/s" if joint.type == "prismatic" else "rad/s"
-        report.repair(element, f"it has no velocity limit; {velocity:g} {unit} is used", joint.line)
+        report.repair(
+            element,
+            f"it has no velocity limit; it goes to positions at up to {velocity:g} {unit}",
+            joint.line,
+        )
     if not 0 < effort < BOUNDLESS:
         effort = math.inf
         report.repair(
             element, "it has no effort limit; its drive is as strong as need be", joint.line
         )
-    return Drive(joint.name, velocity, effort)
+    return Drive(joint.name, velocity, limit, effort)
 
 
 def add_actuators(spec: mujoco.MjSpec, driven: Iterable[Drive], default: mujoco.MjsDefault) -> None:

@@ -15,7 +15,8 @@ class RobotJoint:
         actuator: index in `data.ctrl` and of its activation, None where nothing drives it.
         lower: lowest position, -inf if it has no bound.
         upper: highest position, inf if it has no bound.
-        velocity: highest speed of a set-point, above 0.
+        velocity: highest speed of a set-point on its way to a position, above 0.
+        velocity_limit: highest speed at all, inf if it has no bound.
         effort: highest force or torque, inf if it has no bound.
         initial: position at the start.
         linear: whether it slides; otherwise it turns.
@@ -28,6 +29,7 @@ class RobotJoint:
     lower: float = -math.inf
     upper: float = math.inf
     velocity: float = math.inf
+    velocity_limit: float = math.inf
     effort: float = math.inf
     initial: float = 0.0
     linear: bool = False

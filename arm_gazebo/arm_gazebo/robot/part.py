@@ -191,6 +191,7 @@ def _joints(
             lower=float(joint.range[0]) if limited else -math.inf,
             upper=float(joint.range[1]) if limited else math.inf,
             velocity=drive.velocity if drive else math.inf,
+            velocity_limit=drive.velocity_limit if drive else math.inf,
             effort=drive.effort if drive else math.inf,
             initial=initial,
             linear=joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE,

@@ -184,6 +184,31 @@ def test_command_beyond_a_limit_is_explained(bench, parts, interface, value, sen
     assert warning.startswith(f"joint 'j': {sentence}")
 
 
+@pytest.mark.parametrize("limit", ["", 'effort="2" velocity="0"', 'effort="0" velocity="1e12"'])
+@pytest.mark.parametrize("speed", [-15.0, 60.0])
+def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, parts, limit, speed):
+    urdf = parts.robot(
+        parts.link("base"),
+        parts.link("wheel", 1.0),
+        parts.joint("j", "base", "wheel", "continuous", limit=limit),
+        parts.ros2_control(["j"]),
+    )
+    wheel = bench(urdf)
+    wheel.claim("velocity")
+    wheel.command(speed)
+    wheel.run(2.0)
+    assert wheel.state("velocity") == pytest.approx([speed], rel=1e-3)
+    assert wheel.hardware.take_warnings() == []
+    wheel.release("velocity")
+    wheel.run(2.0)
+    assert wheel.state("velocity") == pytest.approx([0.0], abs=1e-3)
+    wheel.claim("position")
+    start = wheel.state("position")[0]
+    wheel.command(start + 9.0)
+    way = wheel.run(1.0)[:, 0] - start
+    assert 2.0 < way[-1] < 3.0 + 1e-6
+
+
 def test_command_beyond_a_limit_is_clamped(bench, parts):
     pendulum = bench(parts.pendulum(limit='lower="-1" upper="1" effort="20" velocity="3"'))
     pendulum.claim()
