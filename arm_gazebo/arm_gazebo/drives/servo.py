@@ -270,4 +270,7 @@ class Servo:
         model.actuator_forcelimited[actuator] = math.isfinite(limit)
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
-        model.dof_armature[self._joints[index].joint.dof_address] = rotor
+        dof = self._joints[index].joint.dof_address
+        # MuJoCo takes the inertia of a body that moves by itself from here, once and for all.
+        model.dof_M0[dof] += rotor - model.dof_armature[dof]
+        model.dof_armature[dof] = rotor

@@ -85,7 +85,10 @@ class StateTransfer:
     def carry_drives(self, source: mujoco.MjModel, target: mujoco.MjModel) -> None:
         """Copy what is set on a model while it runs: rotors, gains and limits of its drives."""
         there, here = self._velocities
-        target.dof_armature[here] = source.dof_armature[there]
+        rotors = source.dof_armature[there]
+        # As `Servo` does when it sets them.
+        target.dof_M0[here] += rotors - target.dof_armature[here]
+        target.dof_armature[here] = rotors
         there, here = self._controls
         for name in DRIVE_ARRAYS:
             getattr(target, name)[here] = getattr(source, name)[there]

@@ -209,6 +209,26 @@ def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, par
     assert 2.0 < way[-1] < 3.0 + 1e-6
 
 
+@pytest.mark.parametrize("rate_hz", [100, 500, 1000])
+def test_a_light_wheel_by_itself_is_turned_steadily_by_a_strong_drive(bench, parts, rate_hz):
+    """MuJoCo keeps the inertia of such a joint from when the model was made."""
+    urdf = parts.robot(
+        parts.link("base"),
+        parts.link("wheel", 0.6),
+        parts.joint("j", "base", "wheel", "continuous", limit='effort="50" velocity="3"'),
+        parts.ros2_control(["j"]),
+    )
+    wheel = bench(urdf, rate_hz)
+    wheel.claim("velocity")
+    wheel.command(2.0)
+    fastest = 0.0
+    for _ in range(round(0.5 * rate_hz)):
+        wheel.tick()
+        fastest = max(fastest, wheel.state("velocity")[0])
+    assert fastest < 2.2
+    assert wheel.state("velocity") == pytest.approx([2.0], abs=1e-3)
+
+
 def test_command_beyond_a_limit_is_clamped(bench, parts):
     pendulum = bench(parts.pendulum(limit='lower="-1" upper="1" effort="20" velocity="3"'))
     pendulum.claim()

@@ -53,6 +53,24 @@ def test_gains_and_rotors_are_carried_over(moving, things):
         assert simulation.model.dof_armature[here] == model.dof_armature[there]
 
 
+def test_a_wheel_by_itself_keeps_its_rotor(kept, parts, things):
+    """MuJoCo keeps the inertia of such a joint from when the model was made."""
+    wheel = parts.robot(
+        parts.link("base"),
+        parts.link("wheel", 0.6),
+        parts.joint("j", "base", "wheel", "continuous", limit='effort="50" velocity="3"'),
+        parts.ros2_control(["j"]),
+    )
+    world = kept("empty", robot=wheel)
+    world.arm.claim("velocity")
+    simulation = world.arm.simulation
+    before = simulation.model.dof_M0[0]
+    world.spawn("post", things.post, things.at(3, 3, 1))
+    assert simulation.model.dof_M0[0] == pytest.approx(before)
+    world.arm.tick()
+    assert simulation.data.M[0] == pytest.approx(before)
+
+
 @pytest.mark.parametrize("rate_hz", [30, 100, 500])
 def test_the_arm_goes_on_its_way(kept, things, rate_hz):
     """The same motion with and without three swaps in the middle of it."""
