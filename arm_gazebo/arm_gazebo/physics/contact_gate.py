@@ -10,6 +10,8 @@ from arm_gazebo.index_slice import as_slice
 CHECK_EVERY_S = 0.01
 FASTEST_M_S = 5.0
 """What moves slower than this cannot reach the floor unseen between two checks."""
+FALLING_M_S = 4.0
+"""What falls freely faster than this may be faster than that before the next check."""
 CONTACT = mujoco.mjtDisableBit.mjDSBL_CONTACT
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
@@ -39,6 +41,10 @@ class ContactGate:
         self._moving = as_slice(moving)
         self._needed = model.geom_rbound[moving] + _floor_height(model, data) + margin
         self._clear = np.empty(len(moving), dtype=bool)
+        free = model.jnt_dofadr[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE]
+        self._can_fall = len(free) > 0
+        self._upwards = data.qvel[2:]
+        self._free = as_slice(free)
 
     def update(self) -> None:
         """Look whether anything is near the floor; called once in each control period."""
@@ -51,6 +57,8 @@ class ContactGate:
             # Few and small steps: after 10 ms of sleep all that is called comes from afar, and a
             # reduction or a look at the options costs half as much as all of the physics.
             all_clear = False not in self._clear.tobytes()
+            if all_clear and self._can_fall:
+                all_clear = min(self._upwards[self._free].tolist()) > -FALLING_M_S
             if all_clear is not self._is_off:
                 self._is_off = all_clear
                 self._model.opt.disableflags = self._off if all_clear else self._on

@@ -2,6 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from arm_description.robot import Pose
+
 FLOOR = '<geom type="plane" size="0 0 1"/>'
 FAR_AWAY = '<geom type="box" size="0.1 0.1 0.1" pos="50 0 0.1"/>'
 
@@ -44,6 +46,28 @@ def test_self_collision_keeps_them_on(bench, parts, world):
 
 def test_robot_that_stands_on_the_floor_keeps_them_on(bench, parts, world):
     assert detects_contacts(bench(parts.arm(base="free"), world=world(FLOOR), base="free"))
+
+
+@pytest.mark.parametrize("rate_hz", [30, 100, 500])
+@pytest.mark.parametrize("height", [1.0, 3.0, 10.0])
+def test_falling_robot_hits_the_floor_as_if_they_were_always_on(
+    bench, parts, world, height, rate_hz
+):
+    ball = parts.link("ball", 1.0).replace(
+        "</link>", '<collision><geometry><sphere radius="0.02"/></geometry></collision></link>'
+    )
+    urdf = parts.robot(ball, parts.ros2_control([]))
+    runs = []
+    for things in ((FLOOR,), (FLOOR, FAR_AWAY)):
+        spawn = Pose((0.0, 0.0, height))
+        falling = bench(urdf, rate_hz, world(*things), base="free", spawn=spawn)
+        heights = []
+        for _ in range(round(1.7 * rate_hz)):
+            falling.tick()
+            heights.append(falling.simulation.data.qpos[2])
+        runs.append(heights)
+    assert runs[0][0] > height - 0.1
+    assert np.array_equal(*runs)
 
 
 @pytest.mark.parametrize("rate_hz", [30, 100, 500])
