@@ -156,3 +156,39 @@ def latched() -> Any:
     from rclpy.qos import DurabilityPolicy, QoSProfile
 
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@pytest.fixture
+def send(client) -> Callable[..., None]:
+    """Publish a joint state: stamp in seconds, positions by name."""
+    from sensor_msgs.msg import JointState
+
+    publishers = []
+
+    def send_one(stamp_s: float, positions: Any = None, **by_name: float) -> None:
+        if not publishers:
+            publishers.append(client.publisher(JointState, "joint_states"))
+        if isinstance(positions, bytes):
+            publishers[0].publish(positions)
+            return
+        values = list(by_name.values()) if positions is None else positions
+        message = JointState(name=list(by_name), position=values)
+        nanoseconds = round(stamp_s * 1e9)
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(nanoseconds, 10**9)
+        publishers[0].publish(message)
+
+    return send_one
+
+
+@pytest.fixture
+def tf(client, start, urdf):
+    """Start the node and return a function that collects /tf, matched."""
+    from tf2_msgs.msg import TFMessage
+
+    def collect(**parameters):
+        node = start("robot_state_publisher_node", robot_description=urdf, **parameters)
+        collector = client.subscribe(TFMessage, "/tf", 100)
+        client.wait_until(lambda: client.node.count_publishers("/tf"), "a publisher of /tf")
+        return node, collector
+
+    return collect
