@@ -116,7 +116,7 @@ class ControlPlane:
             reason = failure_of(
                 lambda: node.on_configure(parameters), f"making the topics of controller '{name}'"
             )
-            reason = reason or node.take_late_changes(self._executor)
+            reason = reason or node.take_late_changes()
             if reason:
                 self.cleanup_controller(name)
                 raise ControllerManagerError(f"controller '{name}' was not configured: {reason}")

@@ -7,7 +7,6 @@ from typing import Any
 
 from lifecycle_msgs.msg import TransitionEvent
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.executors import Executor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 
@@ -20,7 +19,6 @@ from arm_control.parameters import ParameterSpec, specs_of
 from arm_control.registry import load_object
 from arm_control.ros.controller_adapter import ControllerAdapter
 from arm_control.ros.convert import transition_events
-from arm_control.ros.executor_bridge import run_on_executor
 from arm_control.ros.manager_settings import ManagerSettings
 from arm_control.ros.parameter_node import ParameterNode
 
@@ -66,7 +64,7 @@ class ControllerNode(ParameterNode):
         self.controller = controller
         self._loop = loop
         self._is_configured = False
-        self._values_read: dict[str, Any] = {}
+        self._values_taken: Mapping[str, Any] = {}
         self._specs = controller.parameter_specs(self.given_parameters())
         general = _general_specs(controller.context.update_rate_hz)
         self.declare_specs((*self._specs, *general))
@@ -81,6 +79,7 @@ class ControllerNode(ParameterNode):
             TransitionEvent, "~/transition_event", QoSProfile(depth=EVENT_DEPTH)
         )
         self.add_on_set_parameters_callback(self._change_parameters)
+        self.add_post_set_parameters_callback(self._parameters_stored)
 
     def read_controller_parameters(self) -> tuple[Any, int]:
         """Return the controller's parameters as they are now, and the update rate asked for.
@@ -88,8 +87,8 @@ class ControllerNode(ParameterNode):
         Raises:
             ParameterError: a value does not fit.
         """
-        self._values_read = self.values_of(self._specs)
-        parameters = self.controller.build_parameters(self._values_read)
+        self._values_taken = self.values_of(self._specs)
+        parameters = self.controller.build_parameters(self._values_taken)
         rate_hz = self.get_parameter("update_rate").value
         if not isinstance(rate_hz, int) or rate_hz < 0:
             raise ParameterError(f"parameter 'update_rate' must not be negative, but is {rate_hz}")
@@ -104,20 +103,10 @@ class ControllerNode(ParameterNode):
         if self._adapter is not None:
             self._adapter.on_configure(parameters)
 
-    def take_late_changes(self, executor: Executor) -> str:
-        """Hand over what clients set since the parameters were read; return why that fails.
-
-        A change before the controller was configured is only noted, and one of them may still be
-        under way on the thread of `executor`: it is looked at there, between two changes.
-        """
-        reasons = [""]
-
-        def look() -> None:
-            values = self.values_of(self._specs)
-            reasons.append(self._take(values) if values != self._values_read else "")
-
-        run_on_executor(executor, look)
-        return reasons[-1]
+    def take_late_changes(self) -> str:
+        """Hand over what clients set since the parameters were read; return why that fails."""
+        values = self.values_of(self._specs)
+        return self._take(values) if values != self._values_taken else ""
 
     def on_cleanup(self) -> None:
         """Destroy the controller's end points."""
@@ -146,13 +135,24 @@ class ControllerNode(ParameterNode):
         reason = self._take({**values, **changes}) if changes else ""
         return SetParametersResult(successful=not reason, reason=reason)
 
+    def _parameters_stored(self, _changed: Sequence[Parameter]) -> None:
+        """Hand over a change that was looked at before the controller was configured."""
+        reason = self.take_late_changes() if self._is_configured else ""
+        if reason:
+            logging.getLogger(self.get_name()).error("what was set is not used: %s", reason)
+
     def _take(self, values: Mapping[str, Any]) -> str:
         """Hand values to the controller if it is configured; return why it does not take them."""
         try:
             parameters = self.controller.build_parameters(values)
         except ParameterError as error:
             return str(error)
-        return self._update_parameters(parameters) if self._is_configured else ""
+        if not self._is_configured:
+            return ""
+        reason = self._update_parameters(parameters)
+        if not reason:
+            self._values_taken = values
+        return reason
 
     def _update_parameters(self, parameters: Any) -> str:
         # On the loop thread, where the controller's state changes, too.

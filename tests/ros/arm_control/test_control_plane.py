@@ -195,6 +195,34 @@ def test_a_parameter_set_while_it_is_configured_that_it_refuses_fails_that(
     assert loaded.subscriptions() == 0
 
 
+def test_a_parameter_stored_after_it_was_configured_counts(
+    loaded: LoadedProbe, ros_bench: RosBench
+) -> None:
+    from rcl_interfaces.msg import SetParametersResult
+
+    def configure(_: object) -> SetParametersResult:
+        with ThreadPoolExecutor(1) as threads:
+            threads.submit(loaded.plane.configure_controller, "it").result(TIMEOUT_S)
+        return SetParametersResult(successful=True)
+
+    # After the controller's own look at the change, before the change is stored.
+    loaded.node._on_set_parameters_callbacks.append(configure)
+    assert ros_bench.set(loaded.node, "gain", 2.0).successful
+    assert loaded.probe.parameters.gain == 2.0
+
+
+def test_to_configure_it_asks_nothing_of_the_executor(
+    loaded: LoadedProbe, ros_bench: RosBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # It does not spin yet when a simulation starts its controllers: each request would wait 5 s.
+    def refuse(*_: object) -> None:
+        pytest.fail("the executor was asked for something")
+
+    monkeypatch.setattr(ros_bench.executor, "create_task", refuse)
+    loaded.plane.configure_controller("it")
+    assert loaded.state is LifecycleState.INACTIVE
+
+
 def test_without_a_change_no_parameters_are_handed_over(loaded: LoadedProbe) -> None:
     loaded.probe.refuses_changes = True
     loaded.plane.configure_controller("it")
