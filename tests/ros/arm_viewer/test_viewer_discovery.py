@@ -72,22 +72,6 @@ def test_rates_are_measured_beside_a_topic_of_another_type(client, stranger, vie
     viewer.node.send(MeasureRates(False))
 
 
-def test_a_rate_of_another_type_does_not_keep_what_is_read(client, stranger, viewer):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64
-
-    from arm_viewer.requests import MeasureRates
-
-    topic = "/late/joint_states"
-    wrong = stranger.node.create_publisher(Float64, topic, 10)
-    viewer.node.send(MeasureRates(True))
-    viewer.until(lambda: wrong.get_subscription_count() == 1)
-    right = client.node.create_publisher(JointState, topic, 10)
-    message = JointState(name=["a"], position=[1.0])
-    viewer.seen(lambda s: topic in s.joint_states, lambda: right.publish(message))
-    viewer.node.send(MeasureRates(False))
-
-
 def test_an_observer_that_fails_stops_no_other_and_is_named_once(
     client, viewer, monkeypatch, caplog
 ):
