@@ -86,6 +86,16 @@ def pendulum(more: str = "", limit: str = 'lower="-3" upper="3" effort="20" velo
     )
 
 
+def wheel(mass_kg: float, limit: str) -> str:
+    """Return a URDF: a wheel that turns by 'j' on a base, and nothing else."""
+    return robot(
+        link("base"),
+        link("wheel", mass_kg),
+        joint("j", "base", "wheel", "continuous", limit=limit),
+        ros2_control(["j"]),
+    )
+
+
 def serial_arm(dof: int, mass_kg: float, reach_m: float, friction: float = 0.0) -> str:
     """Return a URDF of an arm like those in factories: strong shoulder, light fast wrist.
 
@@ -200,6 +210,7 @@ class Parts:
     joint = staticmethod(joint)
     link = staticmethod(link)
     pendulum = staticmethod(pendulum)
+    wheel = staticmethod(wheel)
     robot = staticmethod(robot)
     ros2_control = staticmethod(ros2_control)
     serial_arm = staticmethod(serial_arm)

@@ -187,13 +187,7 @@ def test_command_beyond_a_limit_is_explained(bench, parts, interface, value, sen
 @pytest.mark.parametrize("limit", ["", 'effort="2" velocity="0"', 'effort="0" velocity="1e12"'])
 @pytest.mark.parametrize("speed", [-15.0, 60.0])
 def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, parts, limit, speed):
-    urdf = parts.robot(
-        parts.link("base"),
-        parts.link("wheel", 1.0),
-        parts.joint("j", "base", "wheel", "continuous", limit=limit),
-        parts.ros2_control(["j"]),
-    )
-    wheel = bench(urdf)
+    wheel = bench(parts.wheel(1.0, limit))
     wheel.claim("velocity")
     wheel.command(speed)
     wheel.run(2.0)
@@ -212,13 +206,7 @@ def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, par
 @pytest.mark.parametrize("rate_hz", [100, 500, 1000])
 def test_a_light_wheel_by_itself_is_turned_steadily_by_a_strong_drive(bench, parts, rate_hz):
     """MuJoCo keeps the inertia of such a joint from when the model was made."""
-    urdf = parts.robot(
-        parts.link("base"),
-        parts.link("wheel", 0.6),
-        parts.joint("j", "base", "wheel", "continuous", limit='effort="50" velocity="3"'),
-        parts.ros2_control(["j"]),
-    )
-    wheel = bench(urdf, rate_hz)
+    wheel = bench(parts.wheel(0.6, 'effort="50" velocity="3"'), rate_hz)
     wheel.claim("velocity")
     wheel.command(2.0)
     fastest = 0.0

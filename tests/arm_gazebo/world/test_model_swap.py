@@ -55,13 +55,7 @@ def test_gains_and_rotors_are_carried_over(moving, things):
 
 def test_a_wheel_by_itself_keeps_its_rotor(kept, parts, things):
     """MuJoCo keeps the inertia of such a joint from when the model was made."""
-    wheel = parts.robot(
-        parts.link("base"),
-        parts.link("wheel", 0.6),
-        parts.joint("j", "base", "wheel", "continuous", limit='effort="50" velocity="3"'),
-        parts.ros2_control(["j"]),
-    )
-    world = kept("empty", robot=wheel)
+    world = kept("empty", robot=parts.wheel(0.6, 'effort="50" velocity="3"'))
     world.arm.claim("velocity")
     simulation = world.arm.simulation
     before = simulation.model.dof_M0[0]
