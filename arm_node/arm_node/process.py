@@ -12,7 +12,6 @@ import logging
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from types import FrameType
@@ -22,6 +21,7 @@ from arm_node.discovery import answers_held_back
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.local_profile import use_local_profile
 from arm_node.notify import notify
+from arm_node.stop_event import StopEvent
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -44,7 +44,7 @@ class NodeProcess:
     thread.
     """
 
-    def __init__(self, stop: threading.Event) -> None:
+    def __init__(self, stop: StopEvent) -> None:
         """Make the executor; `stop` is set to end the process."""
         from rclpy.executors import SingleThreadedExecutor
 
@@ -84,6 +84,20 @@ class NodeProcess:
         """
         self._spinning.stop()
 
+    def destroy_nodes(self) -> None:
+        """Stop the executor and destroy the nodes that it has, unless a callback hangs.
+
+        A node left to the exit of the process is taken down while threads of DDS still use it,
+        which now and then is a segmentation fault.
+        """
+        from arm_node.executor_thread import is_spinning
+
+        nodes = self.executor.get_nodes()  # Before it is shut down: then it forgets them.
+        self.join_spinning()
+        if not is_spinning():
+            for node in nodes:
+                node.destroy_node()
+
 
 Application = Callable[[NodeProcess], AbstractContextManager[None]]
 """Builds the nodes before it yields, tears them down after; runs in the main thread."""
@@ -110,7 +124,7 @@ def run_process(
     # later a pause in the middle of a control period.
     gc.disable()
     # Before the imports below, which take some tenths of a second: Ctrl-C is heard from now on.
-    with _signals_set(threading.Event()) as stop:
+    with _signals_set(StopEvent()) as stop:
         try:
             prepare_environment()
             use_local_profile(os.environ)
@@ -124,7 +138,7 @@ def _run_with_ros(
     application: Application,
     argv: Sequence[str] | None,
     user_errors: tuple[type[Exception], ...],
-    stop: threading.Event,
+    stop: StopEvent,
 ) -> int:
     import rclpy
     from rclpy.impl.implementation_singleton import rclpy_implementation
@@ -168,7 +182,7 @@ def _leave_hanging_callbacks(exit_code: int) -> None:
 
 
 def _run_initialised(
-    application: Application, user_errors: tuple[type[Exception], ...], stop: threading.Event
+    application: Application, user_errors: tuple[type[Exception], ...], stop: StopEvent
 ) -> int:
     from arm_node.log_bridge import bridge_logging
 
@@ -189,9 +203,7 @@ def _run_initialised(
             logging.getLogger("arm_node").critical("cannot make the node: %s", first_line(error))
             process.stop(EXIT_FAILED)
         finally:
-            process.join_spinning()
-            for node in list(process.executor.get_nodes()):
-                node.destroy_node()
+            process.destroy_nodes()
     return process.exit_code
 
 
@@ -228,7 +240,7 @@ def first_line(error: BaseException) -> str:
 
 
 @contextmanager
-def _signals_set(stop: threading.Event) -> Iterator[threading.Event]:
+def _signals_set(stop: StopEvent) -> Iterator[StopEvent]:
     """Let the signals that mean the end set an event, and nothing else."""
 
     def ask_to_stop(_number: int, _frame: FrameType | None) -> None:

@@ -96,3 +96,35 @@ def test_a_callback_that_does_not_end_is_left_alone():
     )
     assert run.returncode == 7, run.stderr
     assert "a callback in thread 'executor' does not end: left alone after 5 s" in run.stderr
+
+
+LEFT_ALONE = """
+import os, sys
+from contextlib import contextmanager
+
+from arm_node.process import run_process
+
+@contextmanager
+def application(process):
+    from rclpy import create_node
+
+    node = create_node("worker")
+    node.cycle = node
+    node.create_timer(0.01, process.stop)
+    process.executor.add_node(node)
+    yield
+
+code = run_process(application, ["program"])
+for thread in os.listdir("/proc/self/task"):
+    print(open(f"/proc/self/task/{thread}/comm").read().strip())
+sys.exit(code)
+"""
+
+
+def test_nodes_and_their_participant_end_before_the_process():
+    run = subprocess.run(
+        [sys.executable, "-c", LEFT_ALONE], capture_output=True, text=True, timeout=60, check=True
+    )
+    threads = run.stdout.split("\n")
+    assert any("python" in name for name in threads)
+    assert [name for name in threads if name.startswith("dds.ev")] == []

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 from arm_cli.errors import UsageError
@@ -47,9 +48,9 @@ def run(options: argparse.Namespace) -> None:
     with connect() as session:
         from arm_cli.ros.goal import GoalSender
 
-        sender = GoalSender(session, class_, session.full_name(options.action_name))
-        _wait_for_server(session, sender, type_.full_name)
-        sender.send(filled, options.feedback)
+        with closing(GoalSender(session, class_, session.full_name(options.action_name))) as sender:
+            _wait_for_server(session, sender, type_.full_name)
+            sender.send(filled, options.feedback)
 
 
 def _wait_for_server(session: "Session", sender: "GoalSender", type_name: str) -> None:

@@ -36,6 +36,10 @@ class GoalSender:
         self._session = session
         self._client = ActionClient(session.node, action_class, name)
 
+    def close(self) -> None:
+        """Destroy the action client, which its node does not do for it."""
+        self._client.destroy()
+
     def is_ready(self) -> bool:
         """Return whether a server is there."""
         return self._client.server_is_ready()

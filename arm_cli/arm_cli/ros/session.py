@@ -161,14 +161,16 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
     except RuntimeError as error:
         raise UsageError(f"cannot start ROS: {first_line(error)}") from error
     try:
-        with SingleThreadedExecutor() as executor:
-            with answers_held_back():
-                node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
-            executor.add_node(node)
-            session = Session(node, executor)
-            with _signals_handled(session):
-                yield session
-        node.destroy_node()
+        with answers_held_back():
+            node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
+        try:
+            with SingleThreadedExecutor() as executor:
+                executor.add_node(node)
+                session = Session(node, executor)
+                with _signals_handled(session):
+                    yield session
+        finally:
+            node.destroy_node()
     except NameValidationException as error:
         reason, quoted_name, *_ = str(error).splitlines()
         raise UsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error

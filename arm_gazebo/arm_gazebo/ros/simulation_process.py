@@ -61,6 +61,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         ending.callback(process.join_spinning)
         with answers_held_back():
             node = Node(NODE_NAME)
+        nodes.callback(node.destroy_node)
         process.executor.add_node(node)
         settings = read_settings(node)
         outbox = Outbox()
