@@ -163,6 +163,9 @@ def _run_with_ros(
     finally:
         try_shutdown()
     _leave_hanging_callbacks(exit_code)
+    if exit_code != EXIT_OK:
+        # A node that was refused half made is not the executor's, but stands in reference cycles.
+        gc.collect()
     return exit_code
 
 

@@ -105,7 +105,7 @@ from contextlib import contextmanager
 from arm_node.process import run_process
 
 @contextmanager
-def application(process):
+def made(process):
     from rclpy import create_node
 
     node = create_node("worker")
@@ -114,17 +114,32 @@ def application(process):
     process.executor.add_node(node)
     yield
 
-code = run_process(application, ["program"])
+@contextmanager
+def refused(process):
+    from rclpy import create_node
+
+    node = create_node("worker")
+    node.cycle = node
+    raise ValueError("no such robot")
+    yield
+
+code = run_process(globals()[sys.argv[1]], ["program"], user_errors=(ValueError,))
 for thread in os.listdir("/proc/self/task"):
     print(open(f"/proc/self/task/{thread}/comm").read().strip())
 sys.exit(code)
 """
 
 
-def test_nodes_and_their_participant_end_before_the_process():
+@pytest.mark.parametrize(("application", "code"), [("made", 0), ("refused", 1)])
+def test_nodes_and_their_participant_end_before_the_process(application: str, code: int):
     run = subprocess.run(
-        [sys.executable, "-c", LEFT_ALONE], capture_output=True, text=True, timeout=60, check=True
+        [sys.executable, "-c", LEFT_ALONE, application],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
+    assert run.returncode == code, run.stderr
     threads = run.stdout.split("\n")
     assert any("python" in name for name in threads)
     assert [name for name in threads if name.startswith("dds.ev")] == []
