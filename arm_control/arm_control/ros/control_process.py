@@ -50,7 +50,8 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
         ending.callback(process.join_spinning)
         with answers_held_back():
             node = ControllerManagerNode(arguments)
-        nodes.callback(node.destroy_node)
+        own = nodes.enter_context(ExitStack())
+        own.callback(node.destroy_node)
         descriptions = DescriptionTopic(node)
         found = _wait_for_robot(process, node, descriptions)
         if found is not None:
@@ -59,7 +60,7 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
                 started.callback(manager.shutdown)
                 bring_up(manager, node.settings)
                 logger.info("update rate is %d Hz", manager.update_rate_hz)
-                loop = _loop(process, node, manager)
+                loop = _loop(process, node, manager, nodes)
                 started.pop_all()
             ending.callback(loop.join, LOOP_JOIN_TIMEOUT_S)
             ending.callback(loop.stop)
@@ -71,8 +72,8 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
                 robot_description=description,
                 descriptions=descriptions,
             )
-            nodes.pop_all()
-            nodes.callback(server.destroy_nodes)
+            own.pop_all()
+            own.callback(server.destroy_nodes)
             ending.callback(server.shutdown)
         yield
 
@@ -135,7 +136,7 @@ def _manager(description: str, node: ControllerManagerNode) -> ControllerManager
 
 
 def _loop(
-    process: NodeProcess, node: ControllerManagerNode, manager: ControllerManager
+    process: NodeProcess, node: ControllerManagerNode, manager: ControllerManager, nodes: ExitStack
 ) -> ControlLoop:
     """Start the loop; in simulation time it stands still until the first /clock."""
     simulated = SimulatedClock() if node.get_parameter("use_sim_time").value else None
@@ -155,13 +156,14 @@ def _loop(
     )
     loop.start(paused=simulated is not None)
     if simulated is not None:
-        simulated.listen(
+        clock_node = simulated.listen(
             node,
             process.executor,
             on_start=loop.resume,
             on_advance=lambda: loop.call(_look_at_the_clock),
             on_set_back=lambda: loop.call(pacer.restart),
         )
+        nodes.callback(clock_node.destroy_node)
     return loop
 
 

@@ -38,8 +38,8 @@ class SimulatedClock:
         on_start: Callable[[], object],
         on_advance: Callable[[], object],
         on_set_back: Callable[[], object],
-    ) -> None:
-        """Subscribe.
+    ) -> Node:
+        """Subscribe; return the clock's node, which is the caller's to destroy.
 
         Args:
             manager_node: the clock's node has its namespace and remaps.
@@ -69,6 +69,7 @@ class SimulatedClock:
         )
         node.create_subscription(ClockMessage, "/clock", take, CLOCK_QOS)
         executor.add_node(node)
+        return node
 
 
 class DeadlineClock:
