@@ -71,7 +71,8 @@ class BagRecorder:
         self._subscriptions: dict[str, tuple[Subscription, QoSProfile, type]] = {}
         self._numbers: dict[str, WriterNumbers] = {}
         self._skipped: set[str] = set()
-        self._missing_said = False
+        self._said: set[str] = set()
+        self._topics_looked_at: frozenset[str] | None = None
         self._dropped_said = 0
 
     def run(self, discover: bool = True) -> None:
@@ -185,15 +186,22 @@ class BagRecorder:
 
     def _say_missing(self) -> None:
         missing = sorted(self._selection.names - self._subscriptions.keys() - self._skipped)
-        if self._missing_said or not (missing or not self._subscriptions):
+        topics = frozenset(self._graph.topics())
+        if topics == self._topics_looked_at or not (missing or not self._subscriptions):
             return
-        self._missing_said = True
+        self._topics_looked_at = topics
         if not missing:
-            _say(f"waiting for topics, {this_domain()}")
+            self._say_once(f"waiting for topics, {this_domain()}")
         for name in missing:
-            near = describe_known(name, self._graph.topics())
+            # Said anew with its hint where the topic that is meant is found late.
+            near = describe_known(name, topics)
             hint = f"; {near}" if near.startswith("did") else ""
-            _say(f"waiting for a publisher of {name} on {this_domain()}{hint}")
+            self._say_once(f"waiting for a publisher of {name} on {this_domain()}{hint}")
+
+    def _say_once(self, text: str) -> None:
+        if text not in self._said:
+            self._said.add(text)
+            _say(text)
 
     def _say_drops(self) -> None:
         dropped = self._recording.dropped.total() + self.lost.total()

@@ -152,6 +152,15 @@ def test_a_topic_that_is_not_there_is_waited_for(start, client, tmp_path):
     assert command.wait() == 0, command.err
 
 
+def test_a_near_topic_that_comes_late_is_named(start, client, tmp_path):
+    command = start(f"arm bag record /chattr -o {tmp_path / 'late'}")
+    command.wait_for("waiting for a publisher of /chattr on ROS_DOMAIN_ID=")
+    client.node.create_publisher(TFMessage, "/chatter", 10)
+    command.wait_for("did you mean '/chatter'")
+    command.process.send_signal(signal.SIGTERM)
+    assert command.wait() == 0, command.err
+
+
 def test_names_that_no_topic_can_have_are_refused_and_leave_no_bag(run, tmp_path):
     folder = tmp_path / "none"
     for line in (f"'/a b' -o {folder}", f"/tf --topics 7th -o {folder}"):
