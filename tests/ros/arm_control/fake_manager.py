@@ -108,6 +108,8 @@ def application(
         server.shutdown()
         loop.stop()
         loop.join(5.0)
+        # An executor that waits for a node that goes has a callback that failed, with a traceback.
+        process.join_spinning()
         server.destroy_nodes()
 
 

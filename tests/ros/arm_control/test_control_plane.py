@@ -92,10 +92,10 @@ class RosBench:
         self.manager.bring_up()
         self.loop = ControlLoop(lambda: None, Pacer(0.01))
         self.loop.start(paused=True)
-        thread = ExecutorThread("executor", SingleThreadedExecutor())
-        thread.start()
-        self.executor = thread.executor
-        ending.callback(thread.stop)
+        self.thread = ExecutorThread("executor", SingleThreadedExecutor())
+        self.thread.start()
+        self.executor = self.thread.executor
+        ending.callback(self.thread.stop)
         ending.callback(self.loop.join, TIMEOUT_S)
         ending.callback(self.loop.stop)
 
@@ -177,6 +177,8 @@ def loaded(ros_bench: RosBench, ending: ExitStack, monkeypatch: pytest.MonkeyPat
     ending.callback(ros_bench.node.destroy_node)
     loaded = LoadedProbe(ros_bench, monkeypatch)
     ending.callback(loaded.plane.destroy_nodes)
+    # No node goes while the executor looks at it.
+    ending.callback(ros_bench.thread.stop)
     return loaded
 
 
@@ -257,6 +259,7 @@ def test_warnings_of_overruns_can_be_switched_off_at_any_time(
         ros_bench.node, ros_bench.manager, ros_bench.loop, ros_bench.executor
     )
     ending.callback(server.destroy_nodes)
+    ending.callback(ros_bench.thread.stop)
     ending.callback(server.shutdown)
     for value in (False, True):
         assert ros_bench.set(ros_bench.node, "overruns.print_warnings", value).successful
