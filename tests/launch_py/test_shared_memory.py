@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-from launch_py.supervision.shared_memory import SharedMemoryLedger, watch_folder
+from launch_py.supervision.shared_memory import SharedMemoryLedger, mapped_ports, watch_folder
 
 HOLD = (
     "import fcntl, sys; f = open(sys.argv[1]); fcntl.flock(f, fcntl.LOCK_EX); "
@@ -107,6 +107,20 @@ def test_a_port_that_somebody_still_sends_to_stays(tmp_path, segment):
     with (tmp_path / "fastrtps_port7411").open("r+b") as file, mmap.mmap(file.fileno(), 0):
         assert ledger.sweep() == []
     assert "fastrtps_port7411" in ledger.sweep()
+
+
+def test_a_port_of_the_same_name_in_another_container_is_another(tmp_path):
+    folder, processes = tmp_path / "shm", tmp_path / "proc"
+    folder.mkdir()
+    for pid, root, port in (
+        ("1", "/", "fastrtps_port7000"),
+        ("2", tmp_path / "container", "fastrtps_port7411"),
+    ):
+        (processes / pid).mkdir(parents=True)
+        (processes / pid / "root").symlink_to(root)
+        (processes / pid / "maps").write_text(f"7f00-7f01 rw-s 0 00:2a 1   {folder}/{port}\n")
+    (tmp_path / f"container{folder}").mkdir(parents=True)
+    assert mapped_ports(str(folder), str(processes)) == {"fastrtps_port7000"}
 
 
 def test_what_a_dead_process_sent_goes_though_somebody_still_reads_it(tmp_path, segment):

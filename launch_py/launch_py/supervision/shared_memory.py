@@ -53,7 +53,7 @@ class SharedMemoryLedger:
         segment of its port anew, and leaves it behind even when it ends in order itself.
         """
         left = [stem for stem in sorted(self._owned) if self._files(stem)]
-        in_use = _mapped_ports(self._folder) if left else set[str]()
+        in_use = mapped_ports(self._folder) if left else set[str]()
         removed: list[str] = []
         for stem in left:
             # In this order: to try the lock of a port in the making would disturb its maker.
@@ -117,19 +117,23 @@ def _stem(lock_file: str) -> str:
     return lock_file
 
 
-def _mapped_ports(folder: str) -> set[str]:
+def mapped_ports(folder: str, processes: str = "/proc") -> set[str]:
     """Return the names of the folder's ports that some process has mapped; see proc_pid_maps(5).
 
+    A process of another container may have a port of the same name, but in a folder of its own.
     Processes of other users cannot be looked into; their locks still count.
     """
     wanted = re.compile(f"{re.escape(folder)}/({PORT_PREFIX}\\S+)$", re.MULTILINE)
+    here = os.stat(folder)
     names: set[str] = set()
-    for pid in filter(str.isdigit, os.listdir("/proc")):
+    for pid in filter(str.isdigit, os.listdir(processes)):
         with (
             suppress(OSError),
-            open(f"/proc/{pid}/maps", encoding="utf-8", errors="replace") as file,
+            open(f"{processes}/{pid}/maps", encoding="utf-8", errors="replace") as file,
         ):
-            names.update(wanted.findall(file.read()))
+            mapped = wanted.findall(file.read())
+            if mapped and os.path.samestat(os.stat(f"{processes}/{pid}/root{folder}"), here):
+                names.update(mapped)
     return names
 
 
