@@ -1,11 +1,12 @@
-# What CI does, for a person: `make check` for the linters and types, `make test` for the tests.
+# The steps of CI: `make check` runs linters and type checker, `make test` the tests, and
+# `make docs` builds the manual into site/.
 PYTHON ?= python3
 RUN := $(PYTHON) -m
 
-.PHONY: install check format test
+.PHONY: install check docs format test
 
 install:
-	$(RUN) pip install ./arm_interfaces '.[test,dev]'
+	$(RUN) pip install ./arm_interfaces '.[test,dev,docs]'
 
 check:
 	$(RUN) ruff check .
@@ -17,4 +18,8 @@ format:
 	$(RUN) ruff format .
 
 test:
-	$(RUN) pytest
+	$(RUN) pytest -n 2 --dist loadfile
+
+# The variable switches off a notice of mkdocs-material about its successor.
+docs:
+	NO_MKDOCS_2_WARNING=1 $(RUN) mkdocs build --strict

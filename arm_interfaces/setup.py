@@ -1,6 +1,6 @@
-"""Tell setuptools which packages the build makes and who makes them.
+"""Tell setuptools which packages to build and which commands build them.
 
-Run by the backend only (``pip install ./arm_interfaces``). The rest of the metadata stands in
+Only the backend runs it (``pip install ./arm_interfaces``). The other metadata are in
 ``pyproject.toml``.
 """
 

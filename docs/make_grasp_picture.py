@@ -1,4 +1,4 @@
-"""Makes the README's picture of the grasp, as the camera on its stand publishes it."""
+"""Makes the manual's picture of the grasp, with the depth camera on its stand."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ HELD_UP = "Holding for"
 
 
 def main() -> None:
-    """Take one picture while the cylinder is held up."""
+    """Save one image while the cylinder is held up."""
     command = [sys.executable, "-m", "arm_cli", "launch", *LAUNCH]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as launcher:
         assert launcher.stdout is not None

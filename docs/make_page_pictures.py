@@ -1,4 +1,4 @@
-"""Makes the README's pictures of the page: the arm beside its camera, and what is inside its links.
+"""Makes the manual's pictures of the page: the arm beside its camera, and what is inside its links.
 
     python docs/make_page_pictures.py
 
@@ -24,9 +24,9 @@ SIZE: ViewportSize = {"width": 1280, "height": 800}
 PORT = 18082
 TIMEOUT_MS = 240_000
 MOVING_MS = 3_000
-"""The arm gets to its pose, and the charts show how."""
+"""Time in which the arm reaches its pose and the charts show the motion."""
 FRAMES = 4
-"""What was sent to the page arrives with the first ones."""
+"""Frames to draw before a screenshot, so that the latest messages are shown."""
 POSE = "data: [-0.9, 0.5, 0.7, 0.9]"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
@@ -43,7 +43,7 @@ window.drawFrame = () => new Promise((done) => frame((now) => {
   done();
 }));
 """
-"""The processor draws a frame for seconds; meanwhile the page would not hear of a click."""
+"""Draws only on request: software rendering takes seconds a frame and would delay clicks."""
 
 
 @contextlib.contextmanager
@@ -58,7 +58,7 @@ def running(*words: str) -> Iterator[None]:
 
 
 def open_page(page: Page) -> None:
-    """Open the page once it is served, and wait until it has the robot's sliders."""
+    """Open the page once it is served, and wait for the robot's sliders."""
     url = f"http://127.0.0.1:{PORT}"
     while True:
         with contextlib.suppress(OSError), urllib.request.urlopen(url, timeout=5):
@@ -74,7 +74,7 @@ def open_page(page: Page) -> None:
 
 
 def take(page: Page, name: str, *ticked: str) -> None:
-    """Tick some boxes, and save what the page shows then."""
+    """Tick some boxes, and save a screenshot."""
     for label in ticked:
         page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
     page.wait_for_timeout(MOVING_MS)

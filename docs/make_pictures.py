@@ -1,4 +1,4 @@
-"""Makes the README's pictures: two robots, and what the arm's front camera publishes.
+"""Makes the manual's pictures: two robots, and what the arm's front camera publishes.
 
     python docs/make_pictures.py
 
@@ -25,11 +25,11 @@ from rclpy.node import Node
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64MultiArray
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.robot.build_options import Base, BuildOptions
+from arm_gazebo.robot.part import Base, BuildOptions
 
 IMAGES = Path(__file__).with_name("images")
 WIDTH, HEIGHT = 960, 720
@@ -87,7 +87,7 @@ def draw(
 
 
 def take_camera_picture(path: Path) -> None:
-    """Save what /videocamera shows once the gripper is in the view."""
+    """Save an image of /videocamera once the gripper is in view."""
     launcher = subprocess.Popen([sys.executable, "-m", "arm_cli", "launch", "world:=objects"])
     rclpy.init()
     node = Node("make_pictures")

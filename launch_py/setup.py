@@ -1,10 +1,16 @@
-"""Installs this folder as an ament_python package, for colcon; pip uses the root pyproject.toml."""
+"""Installs this folder alone, by colcon or pip; the root pyproject.toml installs the suite."""
 
 from pathlib import Path
 
 from setuptools import find_packages, setup
 
 PACKAGE = "launch_py"
+REQUIREMENTS = [
+    "PyYAML>=6.0",
+    "rich>=13",
+    "ros-jazzy-common-interfaces==5.3.6",
+    "ros-jazzy-rclpy[fastrtps]==7.1.6",
+]
 DATA_FOLDERS = ["config"]
 DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
 
@@ -17,7 +23,10 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
         *((f"share/{PACKAGE}/{path.parent}", [str(path)]) for path in DATA_FILES),
     ],
-    install_requires=["setuptools"],
+    install_requires=[
+        "setuptools",
+        *REQUIREMENTS,
+    ],
     zip_safe=True,
     description=(
         "Process supervisor and launch files in Python: starts when ready, restarts with "

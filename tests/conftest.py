@@ -1,15 +1,19 @@
 """What tests of several packages share: a ROS domain of their own, patience with the machine."""
 
-import fcntl
+import atexit
 import os
 import signal
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack
 from functools import cache
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from arm_node.ros_domain import domain_of_its_own
+from arm_node.workarounds.switch import is_off_by_hand
 
 # How long an example takes says more about the machine than about the code. The same examples each
 # time: what a change breaks is told by its tests, not by luck. `--hypothesis-profile search` tries
@@ -18,12 +22,6 @@ settings.register_profile("search", deadline=None)
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
 
-DOMAIN_IDS = range(1, 102)
-"""ROS domain ids whose ports no operating system hands out by itself."""
-
-DOMAIN_PORTS = (7400, 250)
-"""The first UDP port of domain 0, and how many ports each domain has (DDSI-RTPS 2.5, 9.6.2.3)."""
-
 DISCOVERY_OVER_TRANSPORTS = """\
 <?xml version="1.0" encoding="UTF-8" ?>
 <dds xmlns="http://www.eprosima.com">
@@ -31,7 +29,10 @@ DISCOVERY_OVER_TRANSPORTS = """\
 </dds>
 """
 
-_held_lock: list[int] = []
+DDS_SETTINGS = ("FASTRTPS_DEFAULT_PROFILES_FILE", "ROS_AUTOMATIC_DISCOVERY_RANGE")
+
+_held_domain = ExitStack()
+atexit.register(_held_domain.close)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -41,7 +42,9 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     signal.signal(signal.SIGQUIT, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    if "ROS_DOMAIN_ID" not in os.environ:
+    # Each worker of pytest-xdist takes a domain; it would inherit one from the process above it.
+    is_above_workers = getattr(config.option, "dist", "no") != "no"
+    if "ROS_DOMAIN_ID" not in os.environ and not is_above_workers:
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
@@ -52,7 +55,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Have participants of this process find each other as those of several processes do."""
+    """Skip tests of what is switched off; let participants of this process find each other.
+
+    They do so as those of several processes do.
+    """
+    for mark in item.iter_markers("workaround"):
+        if is_off_by_hand(mark.args[0]):
+            pytest.skip(f"ARM_WITHOUT switches {mark.args[0]} off")
     if item.get_closest_marker("ros") is not None:
         _discover_over_transports()
 
@@ -83,30 +92,18 @@ def _discover_over_transports() -> None:
         context.try_shutdown()
 
 
-def _busy_domains() -> set[int]:
-    """Return the domains in which something on this machine listens now."""
-    first, count = DOMAIN_PORTS
-    table = Path("/proc/net/udp")
-    lines = table.read_text().splitlines()[1:] if table.exists() else []
-    ports = (int(line.split()[1].rpartition(":")[2], 16) for line in lines)
-    return {(port - first) // count for port in ports if port >= first}
+@pytest.fixture(autouse=True)
+def _keep_dds_settings() -> Iterator[None]:
+    """Undo changes by verbs in this process: later tests' programs would inherit them."""
+    before = {name: os.environ.get(name) for name in DDS_SETTINGS}
+    yield
+    for name, value in before.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
 
 
 def _lock_a_domain() -> int:
     """Return a domain id that no other session of this machine uses while this one lasts."""
-    folder = Path(tempfile.gettempdir()) / "ros-domains-in-tests"
-    folder.mkdir(exist_ok=True)
-    busy = _busy_domains()
-    for offset in DOMAIN_IDS:
-        domain = 1 + (os.getpid() + offset) % len(DOMAIN_IDS)
-        if domain in busy:
-            continue
-        lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            os.close(lock)
-            continue
-        _held_lock.append(lock)
-        return domain
-    raise RuntimeError(f"all ROS domains from {DOMAIN_IDS[0]} to {DOMAIN_IDS[-1]} are in use")
+    return _held_domain.enter_context(domain_of_its_own())

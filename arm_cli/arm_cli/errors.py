@@ -1,31 +1,31 @@
-"""What can go wrong on the command line, in the user's words.
+"""Errors of the command line; every message is a sentence for the user.
 
 ArmCliError
-|-- UsageError          the words of the command make no sense
-|-- NotFoundError       no such topic, node, service, type, file, ...
-|-- MessageError        values do not fit a message's fields
-|-- BagError            a recording cannot be written or read
-|-- RefusedError        a simulation answers that it cannot do what is asked for
-`-- UnansweredError     somebody who should answer does not
+|-- CommandUsageError       the command's arguments are wrong
+|-- NoSuchNameError         no such topic, node, service, type, file, ...
+|-- MessageError            values do not fit a message's fields
+|-- BagError                a recording cannot be written or read
+|-- SimulationRefusedError  a simulation refuses a request
+`-- UnansweredError         a node does not answer
 """
 
 import signal
 
 
 class ArmCliError(Exception):
-    """Root: the message is one sentence for the user."""
+    """Base class; the message is one sentence for the user."""
 
     exit_code = 1
 
 
-class UsageError(ArmCliError):
-    """The words of the command make no sense."""
+class CommandUsageError(ArmCliError):
+    """The command's arguments are wrong."""
 
     exit_code = 2
 
 
-class NotFoundError(ArmCliError):
-    """Something that was named does not exist; the message names what does."""
+class NoSuchNameError(ArmCliError):
+    """A name does not exist; the message says which names do."""
 
 
 class MessageError(ArmCliError):
@@ -36,18 +36,18 @@ class BagError(ArmCliError):
     """A recording cannot be written or read."""
 
 
-class RefusedError(ArmCliError):
-    """A simulation answers that it cannot do what is asked for; the message is its own."""
+class SimulationRefusedError(ArmCliError):
+    """A simulation refuses a request; the message is the simulation's."""
 
 
 class UnansweredError(ArmCliError):
-    """Somebody who should answer does not."""
+    """A node does not answer."""
 
 
 class StoppedError(Exception):
-    """A signal ended the command: not an error, but the end.
+    """A signal ended the command, which is not an error.
 
-    Its exit code is the signal's number, as with ros2.
+    The exit code is the signal's number, as with ros2.
     """
 
     def __init__(self, number: int = signal.SIGINT) -> None:

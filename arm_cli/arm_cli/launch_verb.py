@@ -1,9 +1,16 @@
 """`arm launch`: the simulated arm, or any launch file, under launch_py's supervisor."""
 
+import argparse
+import sys
 from collections.abc import Sequence
+from functools import partial
 
+from arm_cli.errors import ArmCliError
+from arm_cli.launch_domain import launch_domain
+from arm_cli.word_completion import complete_with
+from arm_node.ros_domain import NoFreeDomainError
 from launch_py import LaunchError
-from launch_py.command_line import run as run_launch
+from launch_py.command.command_line import run as run_launch
 
 SHORT_NAMES = {
     "": ("arm_gazebo", "arm_gazebo.launch.py"),
@@ -11,18 +18,41 @@ SHORT_NAMES = {
 }
 
 
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments for Tab completion only; launch_py parses the words itself."""
+    from arm_cli.launch_completion import launch_words
+
+    complete_with(
+        parser.add_argument("words", nargs="*"), partial(launch_words, short_names=SHORT_NAMES)
+    )
+    for options in (("-s", "--show-args"), ("-p", "--print"), ("-d", "--debug")):
+        parser.add_argument(*options, action="store_true")
+    parser.add_argument("-a", "--show-all-subprocesses-output", action="store_true")
+
+
 def run(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
-    return run_launch(
-        argv, program="arm launch", short_names=SHORT_NAMES, before_start=_check_environment
-    )
+    # Imported only here, because Tab completion needs none of it.
+    from launch_py.supervision.terminal_key import KeyCommand
+
+    try:
+        with launch_domain(argv) as words:
+            return run_launch(
+                words,
+                program="arm launch",
+                short_names=SHORT_NAMES,
+                before_start=_check_environment,
+                key=KeyCommand("emergency stop", (sys.executable, "-m", "arm_cli", "stop")),
+            )
+    except NoFreeDomainError as error:
+        raise ArmCliError(str(error)) from error
 
 
 def _check_environment() -> None:
-    """Refuse to start processes that would all fail for the same reason.
+    """Check the environment before any process starts and fails.
 
     Raises:
-        LaunchError: ROS cannot start in this environment; the message says the fix.
+        LaunchError: ROS cannot start in this environment; the message says how to fix it.
     """
     from arm_node.environment import UnusableEnvironmentError, prepare_environment
 

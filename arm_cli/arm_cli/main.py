@@ -1,4 +1,4 @@
-"""Entry point of the `arm` command: finds the verb and leaves the rest to it."""
+"""Entry point of the `arm` command: finds the verb and runs it."""
 
 import os
 import signal
@@ -19,9 +19,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _leave_broken_pipe()
 
 
+def gz() -> int:
+    """Run a command line of Gazebo's `gz`, or Ignition's `ign`, from a launch file."""
+    return main(["gz", *sys.argv[1:]])
+
+
 def _run(words: list[str]) -> int:
-    # Imported here: an interrupt meanwhile is one like any other.
+    # Imported here, so that Ctrl-C during the imports is handled like any other.
     from arm_cli.errors import StoppedError
+    from arm_cli.output import say
     from arm_cli.verbs import ARM
 
     if None in (sys.stdin, sys.stdout, sys.stderr):
@@ -33,10 +39,10 @@ def _run(words: list[str]) -> int:
 
         complete_words()
     if words[:1] in (["-V"], ["--version"]):
-        print(_version())
+        say(_version())
         return 0
     try:
-        # Whoever reads from a pipe sees each line when it is printed.
+        # The reader of a pipe sees each line as soon as it is printed.
         sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
         code = ARM.run("arm", words)
         sys.stdout.flush()
@@ -46,8 +52,8 @@ def _run(words: list[str]) -> int:
 
 
 def _leave_broken_pipe() -> int:
-    # The reader, `head` for example, has had enough. Python flushes stdout once more at exit and
-    # would complain.
+    # The reader, for example `head`, has closed the pipe. Without this, Python's last flush of
+    # stdout would fail at exit.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return EXIT_BROKEN_PIPE
 

@@ -1,10 +1,36 @@
-"""What several verbs print alike."""
+"""Prints: no other module of `arm_cli` writes to stdout or stderr.
+
+Names and strings come from other processes, so all output is made safe for a terminal here.
+"""
 
 import argparse
-import json
 import math
 import sys
 from typing import Any
+
+from arm_node.printable import printable, printable_document, printable_message
+
+
+def say(*lines: object) -> None:
+    """Print each argument as one line."""
+    for line in lines:
+        print(printable(str(line)))
+
+
+def say_document(text: str, end: str = "\n") -> None:
+    """Print a text of several lines, such as YAML or a file."""
+    print(printable_document(text), end=end)
+
+
+def say_coloured(line: str) -> None:
+    """Print a line whose parts `colour` or `printable` have already made safe."""
+    print(line)
+
+
+def complain(message: str) -> None:
+    """Print a message on stderr, after all earlier output on stdout."""
+    sys.stdout.flush()
+    print(printable_message(message), file=sys.stderr, flush=True)
 
 
 def add_json_argument(parser: argparse.ArgumentParser) -> None:
@@ -13,13 +39,21 @@ def add_json_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def print_json(value: Any) -> None:
-    """Print a value as one line of JSON; numbers that JSON lacks (nan, inf) become null."""
-    print(json.dumps(_finite(value), ensure_ascii=False))
+    """Print a value as one line of JSON; numbers without a JSON form (nan, inf) become null."""
+    # Imported here, because `arm --help` and the Tab key do without it.
+    import json
+
+    text = json.dumps(_finite(value), ensure_ascii=False)
+    if printable(text) != text:
+        # Escape with JSON's own escapes; the json module does not escape DEL.
+        text = json.dumps(_finite(value)).replace("\x7f", "\\u007f")
+    print(text)
 
 
 def colour(code: int, text: str) -> str:
-    """Return the text in a terminal colour (an SGR number), plain off a terminal."""
-    return f"\033[{code}m{text}\033[0m" if sys.stdout.isatty() else text
+    """Return the text, made safe, in a colour (an SGR number) if stdout is a terminal."""
+    safe = printable(text)
+    return f"\033[{code}m{safe}\033[0m" if sys.stdout.isatty() else safe
 
 
 def _finite(value: Any) -> Any:

@@ -1,6 +1,8 @@
-"""Parameter values as text, and text as parameter values."""
+"""Converts parameter values to text and text to parameter values."""
 
 from typing import Any
+
+from arm_node.limited_yaml import YamlError, load_yaml
 
 TYPE_NAMES = (
     "not set",
@@ -37,35 +39,33 @@ _ARRAY_OFFSET = 5
 
 
 def content_of(value: Any) -> Any:
-    """Return what a rcl_interfaces/msg/ParameterValue holds, None where it holds nothing."""
+    """Return the value in a rcl_interfaces/msg/ParameterValue, None if it is not set."""
     return None if value.type == NOT_SET else getattr(value, _FIELDS[value.type])
 
 
 def read_value(value: Any) -> Any:
-    """Return what a ParameterValue holds as a plain value, arrays as lists."""
+    """Return the value in a ParameterValue as a plain value, arrays as lists."""
     content = content_of(value)
     return list(content) if value.type >= _ARRAY_OFFSET else content
 
 
 def write_value(value: Any, text: str) -> None:
-    """Put a word of the command line into a ParameterValue.
+    """Write a word of the command line to a ParameterValue.
 
-    As with ros2, the word is read as YAML, which tells the type; what fits no type is a string. A
-    list that mixes whole and other numbers is one of doubles.
+    As with ros2, the word is read as YAML, which gives the type; a word that fits no other type is
+    a string. A list of integers and floats becomes a double array.
     """
-    import yaml
-
     try:
-        content = yaml.safe_load(text)
-    # PyYAML's constructors raise a ValueError: the 30th of February is no date, but a word.
-    except (yaml.YAMLError, ValueError):
+        content = load_yaml(text)
+    # An invalid date such as the 30th of February is a string.
+    except YamlError:
         content = text
     if not set_value(value, content):
         set_value(value, text)
 
 
 def set_value(value: Any, content: Any) -> bool:
-    """Put a Python value into a ParameterValue; return whether it is of a type that fits."""
+    """Write a Python value to a ParameterValue; return whether a parameter can have its type."""
     if isinstance(content, list):
         return _set_list(value, content)
     for class_, number in _SCALARS:
@@ -89,5 +89,5 @@ def _set_list(value: Any, content: list[Any]) -> bool:
 
 
 def _type_of(content: Any) -> type | None:
-    """Return a value's type; None for an integer that is too large for a message."""
+    """Return a value's type, or None for an integer that does not fit into a message."""
     return None if type(content) is int and content not in _INTEGERS else type(content)

@@ -1,4 +1,4 @@
-"""The --qos-* options of publishers and subscriptions, in ros2's words."""
+"""The --qos-* options of publishers and subscriptions, spelled as in ros2."""
 
 import argparse
 from dataclasses import dataclass
@@ -20,16 +20,16 @@ RELIABILITIES = ("system_default", "reliable", "best_effort", "best_available")
 DURABILITIES = ("system_default", "transient_local", "volatile", "best_available")
 LIVELINESSES = ("system_default", "automatic", "manual_by_topic", "best_available")
 LARGEST_DEPTH = 2**31 - 1
-"""What rclpy takes."""
+"""The largest depth that rclpy accepts."""
 
 
 @dataclass(frozen=True, slots=True)
 class QosChoice:
-    """What was asked for; None leaves it to the profile, or to what the other side offers.
+    """The requested QoS policies; None leaves a policy to the profile or to the other side's QoS.
 
     Attributes:
         profile: short name of a preset.
-        depth: of the queue.
+        depth: length of the queue.
         history: short name.
         reliability: short name.
         durability: short name.
@@ -47,7 +47,7 @@ class QosChoice:
 
     @property
     def is_given(self) -> bool:
-        """Whether anything was asked for."""
+        """Whether any policy was requested."""
         return self != QosChoice()
 
 
@@ -55,8 +55,8 @@ def add_qos_arguments(parser: argparse.ArgumentParser, default: str) -> None:
     """Add the options.
 
     Args:
-        parser: to add them to.
-        default: says what holds where none is given.
+        parser: the verb's parser.
+        default: describes the QoS without any option.
     """
     group = parser.add_argument_group("quality of service", f"By default: {default}.")
     group.add_argument("--qos-profile", choices=PROFILES, help="preset to start from")
@@ -75,7 +75,7 @@ def _depth(text: str) -> int:
 
 
 def qos_choice(options: argparse.Namespace) -> QosChoice:
-    """Return what the parsed options ask for."""
+    """Return the QoS policies that the parsed options request."""
     return QosChoice(
         profile=options.qos_profile,
         depth=options.qos_depth,

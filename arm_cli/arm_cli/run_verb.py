@@ -1,4 +1,4 @@
-"""`arm run`: an executable of a package, in place of this process."""
+"""`arm run` and `arm view`: replace this process by an executable of a package."""
 
 import argparse
 import os
@@ -7,34 +7,15 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from arm_cli.errors import NotFoundError, UsageError
+from arm_cli.errors import CommandUsageError, NoSuchNameError
+from arm_cli.output import complain
+from arm_cli.verb import VerbFunctions
 from arm_cli.word_completion import complete_with
-from launch_py.child_environment import default_environment, for_program
 from launch_py.errors import LaunchError
-from launch_py.packages import Packages
+from launch_py.system.child_environment import default_environment, for_program
+from launch_py.system.packages import Packages
 
-COURSE_EXECUTABLES: dict[tuple[str, str], tuple[str, str, tuple[str, ...]]] = {
-    ("arm_control", "arm_controller"): (
-        "arm_controller",
-        "arm_controller_node",
-        ("--ros-args", "-p", "desired_param:=[1.0, 0.5, 0.1, 0.5]"),
-    ),
-    ("arm_control", "publisher_terminal"): ("arm_controller", "publisher_terminal", ()),
-    ("arm_control", "publisher_defined"): ("arm_controller", "publisher_defined", ()),
-    ("mycobot_system_tests", "arm_gripper_loop_controller"): (
-        "arm_controller",
-        "arm_gripper_loop_controller",
-        (),
-    ),
-    ("mycobot_system_tests", "arm_gripper_loop_controller.py"): (
-        "arm_controller",
-        "arm_gripper_loop_controller",
-        (),
-    ),
-    ("gz_ros2_control_demos", "example_gripper"): ("arm_controller", "example_gripper", ()),
-    ("gz_ros2_control_demos", "example_diff_drive"): ("arm_controller", "example_diff_drive", ()),
-}
-"""Executables of the course project, by package and name there: what does the same here."""
+DEFAULT_PORT = 8080
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,15 +25,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument("executable_name", help="such as publisher_terminal"), executables
     )
     parser.add_argument("argv", nargs=argparse.REMAINDER, help="its arguments")
-    parser.add_argument("--prefix", default="", help="put before it, such as 'gdb -ex run --args'")
+    parser.add_argument("--prefix", default="", help="words before the command, such as gdb")
 
 
 def run(words: Sequence[str]) -> NoReturn:
-    """Become the executable; what follows its name is passed on to it.
+    """Replace this process by the executable, which gets the words after its name.
 
     Raises:
-        NotFoundError: there is no such package or executable; the message names near ones.
-        UsageError: the prefix cannot be started, or a quotation in it has no end.
+        NoSuchNameError: there is no such package or executable; the message suggests similar
+            names.
+        CommandUsageError: the prefix cannot be started, or a quotation mark in it is not closed.
     """
     from arm_cli.command_parser import CommandParser
 
@@ -62,16 +44,16 @@ def run(words: Sequence[str]) -> NoReturn:
     try:
         prefix = shlex.split(options.prefix)
     except ValueError as error:
-        raise UsageError(f"--prefix {options.prefix!r}: {error}") from error
+        raise CommandUsageError(f"--prefix {options.prefix!r}: {error}") from error
     command = find_command(options.package_name, options.executable_name)
-    become([*prefix, *command, *options.argv])
+    replace_process([*prefix, *command, *options.argv])
 
 
-def become(command: list[str]) -> NoReturn:
-    """Put a program with its arguments in this process's place, as `arm launch` would start it.
+def replace_process(command: list[str]) -> NoReturn:
+    """Replace this process by a program, in the environment that `arm launch` would give it.
 
     Raises:
-        UsageError: it cannot be started.
+        CommandUsageError: the program cannot be started.
     """
     interactive = sys.stdout.isatty()
     added = default_environment(os.environ, None, None, interactive)
@@ -80,26 +62,24 @@ def become(command: list[str]) -> NoReturn:
     try:
         os.execvpe(command[0], command, environment)
     except OSError as error:
-        raise UsageError(f"cannot start {command[0]}: {error.strerror}") from error
+        raise CommandUsageError(f"cannot start {command[0]}: {error.strerror}") from error
 
 
 def find_command(package: str, name: str) -> tuple[str, ...]:
-    """Return the command line of an executable, by its name here or in a course project.
+    """Return the command line of an executable, or of its replacement here.
 
     Raises:
-        NotFoundError: there is no such package or executable.
+        NoSuchNameError: there is no such package or executable.
     """
     installed = Packages(os.environ)
-    candidates: list[tuple[str, str, tuple[str, ...]]] = [(package, name, ())]
-    if (package, name) in COURSE_EXECUTABLES:
-        candidates.append(COURSE_EXECUTABLES[package, name])
-    errors: list[LaunchError] = []
-    for home, here, arguments in candidates:
-        try:
-            return (*installed.executable(home, here), *arguments)
-        except LaunchError as error:
-            errors.append(error)
-    raise NotFoundError(str(errors[0])) from errors[0]
+    try:
+        command = installed.executable(package, name)
+    except LaunchError as error:
+        raise NoSuchNameError(str(error)) from error
+    found = installed.stand_in_of(package, name)
+    if found is not None and found.remark:
+        complain(found.remark)
+    return command
 
 
 def packages(**_: object) -> list[str]:
@@ -108,6 +88,32 @@ def packages(**_: object) -> list[str]:
 
 
 def executables(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Return the executables of the package that was typed, for the Tab key."""
+    """Return the executables of the typed package, for the Tab key."""
     wanted = parsed_args.package_name
     return [name for package, name in Packages(os.environ).executables() if package == wanted]
+
+
+def add_view_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=DEFAULT_PORT,
+        help=f"port of the page on 127.0.0.1 (default {DEFAULT_PORT})",
+    )
+    parser.add_argument(
+        "--publish-joint-states",
+        action="store_true",
+        help="publish joint states from the page's sliders, without a robot",
+    )
+
+
+def view(options: argparse.Namespace) -> NoReturn:
+    """Replace this process by the node of the page."""
+    publish = "true" if options.publish_joint_states else "false"
+    parameters = (f"port:={options.port}", f"publish_joint_states:={publish}")
+    words = [word for parameter in parameters for word in ("-p", parameter)]
+    replace_process([*find_command("arm_viewer", "arm_viewer_node"), "--ros-args", *words])
+
+
+VIEW = VerbFunctions(add_view_arguments, view)

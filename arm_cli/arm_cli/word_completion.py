@@ -1,24 +1,31 @@
-"""What the Tab key offers, by argcomplete.
+"""Tab completion with argcomplete, and `arm completion`, which prints a shell's script.
 
-A verb's argument is given a completer, a function that returns the words that fit. Completers are
-asked only while a shell completes, so they may be slow: those of `arm_cli.ros.completers` look at
-the running graph.
+An argument of a verb may have a completer, a function that returns the possible words. Completers
+run only when a shell completes a line, so they may be slow: those of `arm_cli.ros.completers` look
+at the running graph.
 """
 
 import argparse
-from collections.abc import Callable, Iterable
+import os
+import shlex
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
+
+from arm_cli.output import say_document
+from arm_cli.verb import VerbFunctions
 
 Completer = Callable[..., Iterable[str]]
 
+SHELLS = ("bash", "zsh", "fish")
+
 
 def complete_with(argument: argparse.Action, completer: Completer) -> None:
-    """Let Tab offer a completer's words for an argument."""
+    """Set the completer of an argument."""
     argument.completer = completer  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def complete_words() -> None:
-    """Answer the shell that asks for completions, and end the process."""
+    """Print the completions that the shell requests, and exit."""
     import argcomplete
 
     from arm_cli.verbs import ARM
@@ -47,24 +54,63 @@ def interface_packages(**_: Any) -> list[str]:
     return InterfaceIndex().packages()
 
 
+def words_before(first: int) -> list[str]:
+    """Return the complete words typed so far, starting with word `first`; `arm` is word 0."""
+    line = os.environ.get("COMP_LINE", "")
+    typed = line[: int(os.environ.get("COMP_POINT") or len(line))]
+    try:
+        words = shlex.split(typed)
+    except ValueError:
+        # A quotation mark is open, so the last word is not complete.
+        words = typed.split()
+    return words[first:] if typed[-1:].isspace() else words[first:-1]
+
+
 def _parser(family: Any) -> argparse.ArgumentParser:
-    """Return one parser of everything: the form in which argcomplete wants it."""
+    """Return a parser of the typed verb, for argcomplete.
+
+    It has only the names of the other verbs, because importing them all would take too long.
+    """
     parser = argparse.ArgumentParser(prog=family.name)
-    _add_verbs(parser, family.verbs)
+    _add_verbs(parser, family.verbs, words_before(1))
     return parser
 
 
-def _add_verbs(parser: argparse.ArgumentParser, verbs: Iterable[Any]) -> None:
+def _add_verbs(parser: argparse.ArgumentParser, verbs: Iterable[Any], typed: Sequence[str]) -> None:
     from importlib import import_module
 
-    from arm_cli.verb import VerbFamily
+    from arm_cli.verb import Verb, VerbFamily
 
     choices = parser.add_subparsers()
     for verb in verbs:
         inner = choices.add_parser(verb.name, help=verb.help)
-        if isinstance(verb, VerbFamily):
-            _add_verbs(inner, verb.verbs)
+        if verb.name != next(iter(typed), None):
             continue
-        add_arguments = getattr(import_module(verb.module), "add_arguments", None)
+        if isinstance(verb, VerbFamily):
+            _add_verbs(inner, verb.verbs, typed[1:])
+            continue
+        implementation = verb.load() if isinstance(verb, Verb) else import_module(verb.module)
+        add_arguments = getattr(implementation, "add_arguments", None)
         if add_arguments is not None:
             add_arguments(inner)
+
+
+def add_print_script_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("shell", choices=SHELLS)
+    parser.epilog = (
+        "To install it, add 'eval \"$(arm completion bash)\"' to ~/.bashrc, the same with zsh to "
+        "~/.zshrc, or 'arm completion fish | source' to ~/.config/fish/config.fish."
+    )
+
+
+def print_script(options: argparse.Namespace) -> None:
+    """Print the script."""
+    from argcomplete.shell_integration import shellcode
+
+    # argcomplete has one script for both bash and zsh.
+    shell = "fish" if options.shell == "fish" else "bash"
+    say_document(shellcode(["arm"], shell=shell))
+
+
+PRINT_SCRIPT = VerbFunctions(add_print_script_arguments, print_script)

@@ -1,33 +1,39 @@
 """ros2_control in Python: hardware interface, controller manager, controllers and spawner.
 
-What a controller or a hardware component of your own needs is here; `arm_control.testing` has
-the fakes to test it with, and `arm_control.ros` the ROS side.
+This package exports what you need to write your own controller or hardware component.
+`arm_control.testing` has fakes to test them with.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from arm_control.chainable_controller import ChainableController
-    from arm_control.control_loop import ControlLoop
-    from arm_control.controller import Controller, ControllerContext, NoParameters, ReturnType
-    from arm_control.controller_manager import ControllerManager, ManagerObserver
-    from arm_control.controller_switch import Strictness, SwitchRequest, SwitchResult
+    from arm_control.controllers.controller import (
+        ChainableController,
+        Controller,
+        ControllerContext,
+        InterfaceConfiguration,
+        NoParameters,
+        ReturnType,
+    )
     from arm_control.errors import ArmControlError, ControllerError, ControllerManagerError
-    from arm_control.hardware import Hardware, HardwareReturn
-    from arm_control.hardware_info import (
+    from arm_control.hardware.driver import Hardware, HardwareReturn, SystemInterface
+    from arm_control.hardware.info import (
         HardwareInfo,
         InterfaceInfo,
         JointInfo,
         parse_hardware_info,
     )
-    from arm_control.interface_configuration import InterfaceConfiguration
-    from arm_control.joint_limits import JointLimits, SoftLimits, read_joint_limits
+    from arm_control.hardware.joint_limits import JointLimits, SoftLimits, read_joint_limits
     from arm_control.lifecycle import LifecycleState, Transition
-    from arm_control.manager_policy import ManagerPolicy
-    from arm_control.pacer import Pacer, PacerStatistics
+    from arm_control.loop.control_loop import ControlLoop
+    from arm_control.loop.pacer import Pacer, PacerStatistics
+    from arm_control.manager.controller_manager import ControllerManager
+    from arm_control.manager.manager_observer import ManagerObserver
+    from arm_control.manager.settings import ManagerPolicy
+    from arm_control.manager.switch_planner import Strictness, SwitchRequest, SwitchResult
     from arm_control.parameters import parameter
-    from arm_control.system_interface import SystemInterface
+    from arm_control.run_inputs import run_input
 
 __all__ = [
     "ArmControlError",
@@ -61,34 +67,68 @@ __all__ = [
     "parameter",
     "parse_hardware_info",
     "read_joint_limits",
+    "run_input",
 ]
 
-_HOMES = {
-    "chainable_controller": ("ChainableController",),
-    "control_loop": ("ControlLoop",),
-    "controller": ("Controller", "ControllerContext", "NoParameters", "ReturnType"),
-    "controller_manager": ("ControllerManager", "ManagerObserver"),
-    "controller_switch": ("Strictness", "SwitchRequest", "SwitchResult"),
-    "errors": ("ArmControlError", "ControllerError", "ControllerManagerError"),
-    "hardware": ("Hardware", "HardwareReturn"),
-    "hardware_info": ("HardwareInfo", "InterfaceInfo", "JointInfo", "parse_hardware_info"),
-    "interface_configuration": ("InterfaceConfiguration",),
-    "joint_limits": ("JointLimits", "SoftLimits", "read_joint_limits"),
-    "lifecycle": ("LifecycleState", "Transition"),
-    "manager_policy": ("ManagerPolicy",),
-    "pacer": ("Pacer", "PacerStatistics"),
+_EXPORTS = {
+    "controllers.controller": (
+        "ChainableController",
+        "Controller",
+        "ControllerContext",
+        "InterfaceConfiguration",
+        "NoParameters",
+        "ReturnType",
+    ),
+    "errors": (
+        "ArmControlError",
+        "ControllerError",
+        "ControllerManagerError",
+    ),
+    "hardware.driver": (
+        "Hardware",
+        "HardwareReturn",
+        "SystemInterface",
+    ),
+    "hardware.info": (
+        "HardwareInfo",
+        "InterfaceInfo",
+        "JointInfo",
+        "parse_hardware_info",
+    ),
+    "hardware.joint_limits": (
+        "JointLimits",
+        "SoftLimits",
+        "read_joint_limits",
+    ),
+    "lifecycle": (
+        "LifecycleState",
+        "Transition",
+    ),
+    "loop.control_loop": ("ControlLoop",),
+    "loop.pacer": (
+        "Pacer",
+        "PacerStatistics",
+    ),
+    "manager.controller_manager": ("ControllerManager",),
+    "manager.manager_observer": ("ManagerObserver",),
+    "manager.settings": ("ManagerPolicy",),
+    "manager.switch_planner": (
+        "Strictness",
+        "SwitchRequest",
+        "SwitchResult",
+    ),
     "parameters": ("parameter",),
-    "system_interface": ("SystemInterface",),
+    "run_inputs": ("run_input",),
 }
-_HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
+_MODULE_OF = {name: module for module, names in _EXPORTS.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
-    # A public name is imported when it is first used: a spawner lives for half a second and needs
-    # neither numpy nor the robot's description, which take as long to import.
-    if name not in _HOME_OF:
+    # A public name is imported on first use: a spawner runs for half a second and needs neither
+    # numpy nor the robot description, and importing those takes as long again.
+    if name not in _MODULE_OF:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    value = getattr(import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
     globals()[name] = value
     return value
 

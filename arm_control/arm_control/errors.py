@@ -2,15 +2,16 @@
 
 ArmControlError
 ├── HardwareInfoError      a <ros2_control> block that cannot be used
-├── RegistryError          a controller or hardware type that is not known or not loadable
+├── RegistryError          a controller or hardware type that is unknown or cannot be loaded
 ├── ParameterError         a parameter of a controller that is missing or wrong
-├── ControllerError        a controller refuses a step of its life cycle
-├── ControllerManagerError the manager refuses what was asked of it
-├── UnhandledFailureError  a controller or component raised, and nobody is to catch it
-├── LoopStoppedError       a call to a control loop that runs no more
-├── ManagerUnreachableError a controller manager that is not there, or does not answer
+├── ControllerError        a controller refuses a life-cycle transition
+├── ControllerManagerError the manager refuses a request
+├── StateError             a state that cannot be saved or restored
+├── UnhandledFailureError  a controller or component raised, and the process must end
+├── LoopStoppedError       a call to a control loop that has ended
+├── ManagerUnreachableError a controller manager that is not running or does not answer
 ├── SpawnError             a step of a spawner that failed
-└── WaitInterruptedError   a wait that was given up because the process is to end
+└── WaitInterruptedError   a wait that ended early because the process is shutting down
 """
 
 
@@ -23,7 +24,7 @@ class HardwareInfoError(ArmControlError):
 
 
 class RegistryError(ArmControlError):
-    """No installed package offers the controller or hardware type, or it cannot be imported."""
+    """No installed package provides the controller or hardware type, or its import fails."""
 
 
 class ParameterError(ArmControlError):
@@ -31,28 +32,32 @@ class ParameterError(ArmControlError):
 
 
 class ControllerError(ArmControlError):
-    """Raised by a controller's life-cycle method to refuse, with the reason."""
+    """Raised by a controller's life-cycle method to refuse a transition; the message says why."""
 
 
 class ControllerManagerError(ArmControlError):
     """The manager refuses a request; the message says why and what exists."""
 
 
+class StateError(ArmControlError):
+    """A state cannot be saved or restored; the message says whose, and why."""
+
+
 class UnhandledFailureError(ArmControlError):
-    """A controller or component raised in a cycle, and the manager is told not to catch it."""
+    """A controller or component raised in a cycle while `handle_exceptions` is false."""
 
 
 class LoopStoppedError(ArmControlError):
-    """The control loop has ended, so it will not run the function handed to it."""
+    """The control loop has ended, so it cannot run the function passed to it."""
 
 
 class ManagerUnreachableError(ArmControlError):
-    """The controller manager is not there, or does not answer."""
+    """The controller manager is not running or does not answer."""
 
 
 class SpawnError(ArmControlError):
-    """A step failed; the message says which."""
+    """A step of a spawner failed; the message says which."""
 
 
 class WaitInterruptedError(ArmControlError):
-    """The process was told to end while it waited."""
+    """The process was told to shut down while it waited."""

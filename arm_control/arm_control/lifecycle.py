@@ -22,9 +22,9 @@ class Transition(Enum):
 
     Attributes:
         id: in lifecycle_msgs/msg/Transition.
-        state_id: id of the state while it lasts, in lifecycle_msgs/msg/State.
-        state_label: name of that state.
-        goal: the primary state it leads to.
+        state_id: id of its transition state in lifecycle_msgs/msg/State.
+        state_label: name of its transition state.
+        goal: the primary state that it leads to.
     """
 
     id: int

@@ -1,13 +1,16 @@
-"""Parameters of controllers: a frozen dataclass says names, types, defaults and rules.
+"""Parameters of controllers: a frozen dataclass declares names, types, defaults and rules.
 
-A controller names its dataclass in `Controller.parameters_type`; the ROS half declares the fields
-on the controller's node, a program without ROS makes an instance itself. A field that is a
-dataclass groups its fields under its name: 'map_interface_to_joint_state.position'.
+A controller names its dataclass in `Controller.parameters_type`. The ROS half declares the fields
+on the controller's node; a program without ROS creates an instance directly. A field that is itself
+a dataclass becomes a group: 'map_interface_to_joint_state.position'.
 """
 
 import dataclasses
+import math
+import operator
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass
+from functools import cache
 from typing import Any, TypeGuard, get_args, get_origin, get_type_hints
 
 from arm_control.errors import ParameterError
@@ -21,8 +24,13 @@ class _Rules:
     description: str
     read_only: bool
     above: float | None = None
+    at_least: float | None = None
     at_most: float | None = None
     one_of: tuple[str, ...] = ()
+    at_configuration: bool = False
+
+
+_RULE_NAMES = tuple(field.name for field in dataclasses.fields(_Rules))
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +39,17 @@ class ParameterSpec:
 
     Attributes:
         name: full name, with dots.
-        type: bool, int, float or str; of each element where `is_list`.
+        type: bool, int, float or str; of each element if `is_list`.
         is_list: whether it is a list of that type.
-        default: its value where none is given.
-        description: for `ros2 param describe`.
+        default: value used when none is given.
+        description: text for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
-        above: what its value must exceed; None for no such bound.
-        at_most: what its value must not exceed; None for no such bound.
-        one_of: what its value must be; empty for anything.
+        above: exclusive lower bound; None for no bound.
+        at_least: inclusive lower bound, which also refuses infinity; None for no bound.
+        at_most: inclusive upper bound; None for no bound.
+        one_of: the allowed values; empty allows any.
+        at_configuration: whether the controller reads it only when it is configured: a later change
+            takes effect at the next configuration.
     """
 
     name: str
@@ -48,23 +59,37 @@ class ParameterSpec:
     description: str
     read_only: bool
     above: float | None = None
+    at_least: float | None = None
     at_most: float | None = None
     one_of: tuple[str, ...] = ()
+    at_configuration: bool = False
 
     @property
     def constraint(self) -> str:
-        """What its value must be beyond its type, in words; empty for anything."""
+        """The rule for its value, in words, such as 'above 0'; empty if there is no rule."""
         if self.one_of:
             return f"one of {', '.join(self.one_of)}"
-        lower = [] if self.above is None else [f"above {self.above:g}"]
-        upper = [] if self.at_most is None else [f"at most {self.at_most:g}"]
-        return " and ".join(lower + upper)
+        bounds = (("above", self.above), ("at least", self.at_least), ("at most", self.at_most))
+        return " and ".join(f"{word} {bound:g}" for word, bound in bounds if bound is not None)
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The smallest and largest allowed number; None if there is no bound."""
+        if self.is_list or (self.above, self.at_least, self.at_most) == (None, None, None):
+            return None
+        least = self.at_least
+        if self.above is not None:
+            least = self.above + 1 if self.type is int else self.above
+        return (
+            -math.inf if least is None else least,
+            math.inf if self.at_most is None else self.at_most,
+        )
 
     def convert(self, value: object) -> Any:
-        """Return the value in the parameter's own type; an integer serves as a float.
+        """Return the value in the parameter's type; an integer is accepted for a float.
 
         Raises:
-            ParameterError: it does not fit.
+            ParameterError: the value has another type or breaks a rule.
         """
         if not self.is_list:
             return self._convert_scalar(value, self.name)
@@ -81,8 +106,9 @@ class ParameterSpec:
             raise ParameterError(
                 f"parameter '{name}' must be of type {self.type.__name__}, not {value!r}"
             )
-        # Not `value <= above`: a NaN is above nothing.
+        # Not `value <= above`: a comparison with NaN is false, so NaN would pass.
         too_low = self.above is not None and not value > self.above
+        too_low |= self.at_least is not None and not self.at_least <= value < math.inf
         too_high = self.at_most is not None and not value <= self.at_most
         if too_low or too_high or (self.one_of and value not in self.one_of):
             raise ParameterError(f"parameter '{name}' must be {self.constraint}, but is {value!r}")
@@ -95,27 +121,30 @@ def parameter(
     *,
     read_only: bool = False,
     above: float | None = None,
+    at_least: float | None = None,
     at_most: float | None = None,
     one_of: tuple[str, ...] = (),
+    at_configuration: bool = False,
 ) -> Any:
     """Describe a field of a parameters dataclass.
 
     Args:
-        default: its value where none is given; an empty tuple for a list.
+        default: value used when none is given; an empty tuple for a list.
         description: one line for `ros2 param describe`.
         read_only: whether it is fixed once the controller is loaded.
-        above: what its value, or each element, must exceed.
-        at_most: what its value, or each element, must not exceed.
-        one_of: what its value, or each element, must be.
+        above: exclusive lower bound of the value, or of each element.
+        at_least: inclusive lower bound of the value, or of each element; infinity is refused.
+        at_most: inclusive upper bound of the value, or of each element.
+        one_of: the allowed values.
+        at_configuration: whether a change takes effect at the controller's next configuration.
     """
-    return dataclasses.field(
-        default=default,
-        metadata={_METADATA_KEY: _Rules(description, read_only, above, at_most, one_of)},
-    )
+    rules = _Rules(description, read_only, above, at_least, at_most, one_of, at_configuration)
+    return dataclasses.field(default=default, metadata={_METADATA_KEY: rules})
 
 
+@cache  # Reading a dataclass is slow, and a node asks at every change.
 def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpec, ...]:
-    """Return the parameters that a dataclass describes, those of its groups included."""
+    """Return the parameters that a dataclass describes, including those of its groups."""
     specs: list[ParameterSpec] = []
     hints = get_type_hints(parameters_type)
     for field in dataclasses.fields(parameters_type):
@@ -138,20 +167,16 @@ def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpe
                 element,
                 is_list,
                 field.default,
-                rules.description,
-                rules.read_only,
-                rules.above,
-                rules.at_most,
-                rules.one_of,
+                **{name: getattr(rules, name) for name in _RULE_NAMES},
             )
         )
     return tuple(specs)
 
 
 def list_among(values: Mapping[str, Any], name: str) -> tuple[Any, ...]:
-    """Return a list among values that nobody has checked yet, for names that depend on it.
+    """Return a list from unchecked values; the names of other parameters depend on it.
 
-    What is no list counts as empty: that it is wrong is said where it is converted.
+    A value that is not a list counts as empty here; the converter reports it.
     """
     value = values.get(name)
     return tuple(value) if _is_list(value) else ()
@@ -166,7 +191,7 @@ def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -
 
     Args:
         parameters_type: the dataclass.
-        values: by full name; what is missing takes its default.
+        values: by full name; missing ones take their defaults.
 
     Raises:
         ParameterError: a name is unknown, or a value has the wrong type.
@@ -176,12 +201,53 @@ def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise ParameterError(
-            f"unknown parameter {', '.join(unknown)}; there is {', '.join(known) or 'none'}"
+            f"unknown parameter {', '.join(unknown)}; known are {', '.join(known) or 'none'}"
         )
     converted = {
         spec.name: spec.convert(values[spec.name]) for spec in specs if spec.name in values
     }
     return _build(parameters_type, converted, "")
+
+
+def take_group(parameters_type: type[Any], prefix: str, values: dict[str, Any]) -> Any:
+    """Remove the values below a prefix, such as 'gains.j0.', and return them as a group.
+
+    Args:
+        parameters_type: the group's dataclass.
+        prefix: of the group's names in `values`, with the dot at its end.
+        values: by full name.
+
+    Raises:
+        ParameterError: a name is unknown, or a value has the wrong type; the message names the
+            group.
+    """
+    names = [name for name in values if name.startswith(prefix)]
+    own = {name.removeprefix(prefix): values.pop(name) for name in names}
+    try:
+        return build_parameters(parameters_type, own)
+    except ParameterError as error:
+        raise ParameterError(f"under '{prefix[:-1]}': {error}") from error
+
+
+def extend_parameters(parameters_type: type[Any], base: Any, **groups: Any) -> Any:
+    """Return an instance of a derived dataclass: the base's values, and those of its groups."""
+    fields = {field.name: getattr(base, field.name) for field in dataclasses.fields(base)}
+    return parameters_type(**fields, **groups)
+
+
+def check_values(parameters: object, specs: Iterable[ParameterSpec], prefix: str = "") -> None:
+    """Check the values of an instance that was made without `build_parameters`.
+
+    Args:
+        parameters: has an attribute for each parameter.
+        specs: the rules to check.
+        prefix: prefix of the names in `specs` that the attributes lack.
+
+    Raises:
+        ParameterError: a value breaks the rules of its parameter.
+    """
+    for spec in specs:
+        spec.convert(operator.attrgetter(spec.name.removeprefix(prefix))(parameters))
 
 
 def _build(parameters_type: type[Any], values: Mapping[str, Any], prefix: str) -> Any:

@@ -1,4 +1,4 @@
-"""Snapshots of what a controller manager holds, as its list services show it."""
+"""Snapshots of a controller manager's contents, as its list services return them."""
 
 from dataclasses import dataclass
 
@@ -12,8 +12,8 @@ class InterfaceStatus:
     Attributes:
         name: full name, 'j0/position'.
         is_available: whether its component is configured.
-        is_claimed: whether a controller commands it; False for every state interface.
-        data_type: 'double', or what the robot description says.
+        is_claimed: whether a controller has claimed it; False for every state interface.
+        data_type: as in the robot description; 'double' by default.
     """
 
     name: str
@@ -27,12 +27,12 @@ class HardwareComponentStatus:
     """A hardware component and its interfaces.
 
     Attributes:
-        name: of the component.
+        name: the component's name.
         type: 'system', 'actuator' or 'sensor'.
         plugin: the driver's type string.
-        state: of its life cycle.
-        read_write_rate_hz: how often it is really read and written.
-        is_async: whether the description asks for a thread of its own.
+        state: its life-cycle state.
+        read_write_rate_hz: the actual rate at which it is read and written.
+        is_async: whether the description asks for a separate thread.
         command_interfaces: in the driver's order.
         state_interfaces: in the driver's order.
     """
@@ -49,11 +49,11 @@ class HardwareComponentStatus:
 
 @dataclass(frozen=True, slots=True)
 class ChainConnection:
-    """References of one controller that another one commands.
+    """Reference interfaces of one controller that another one commands.
 
     Attributes:
-        name: of the controller that exports them.
-        reference_interfaces: without its name.
+        name: the controller that exports them.
+        reference_interfaces: their names, without the controller's name.
     """
 
     name: str
@@ -65,19 +65,19 @@ class ControllerStatus:
     """A loaded controller.
 
     Attributes:
-        name: of the controller.
+        name: the controller's name.
         type_name: its ros2_control type string.
-        state: of its life cycle.
-        update_rate_hz: how often it really runs.
-        claimed_interfaces: command interfaces it holds; empty unless active.
-        required_command_interfaces: what it asks for; empty unless inactive or active.
-        required_state_interfaces: what it asks for; empty unless inactive or active.
-        is_chainable: whether others may command it.
-        is_chained: whether another one does.
-        reference_interfaces: what it exports for that, without its name; empty unless inactive
-            or active, like the two below.
-        exported_state_interfaces: what it exports for others to read, without its name.
-        chain_connections: the references of others that it commands.
+        state: its life-cycle state.
+        update_rate_hz: its actual update rate.
+        claimed_interfaces: command interfaces that it has claimed; empty unless active.
+        required_command_interfaces: those it requires; empty unless inactive or active.
+        required_state_interfaces: those it requires; empty unless inactive or active.
+        is_chainable: whether another controller may command it.
+        is_chained: whether another controller commands it now.
+        reference_interfaces: references that it exports, without its name; empty unless inactive
+            or active, like the next two.
+        exported_state_interfaces: states that it exports for others to read, without its name.
+        chain_connections: references of other controllers that it commands.
     """
 
     name: str

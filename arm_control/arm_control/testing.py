@@ -1,40 +1,41 @@
-"""Fakes for tests of controllers and of programs built on the manager."""
+"""Fakes for testing controllers and programs built on the controller manager."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.hardware import HardwareReturn
-from arm_control.hardware_info import HardwareInfo, InterfaceInfo, JointInfo
+from arm_control.hardware.driver import HardwareReturn
+from arm_control.hardware.info import HardwareInfo, InterfaceInfo, JointInfo
 
 
 class ManualClock:
-    """A clock that moves when it is told to."""
+    """A clock that moves only when it is told to."""
 
     def __init__(self, now_s: float = 0.0) -> None:
         self._now_s = now_s
 
     def now_s(self) -> float:
-        """Return the time it was last set to."""
+        """Return the current time."""
         return self._now_s
 
     def advance(self, seconds: float) -> None:
-        """Let time pass."""
+        """Move the clock forward."""
         self._now_s += seconds
 
 
 class FakeHardware:
-    """Hardware whose states follow its commands at once, and which fails on demand.
+    """Hardware whose states follow its commands immediately, and which fails on demand.
 
-    A state interface with the name of a command interface shows the last command; any other keeps
-    its initial value. Tests make it fail by setting the attributes below.
+    A state interface with the same name as a command interface shows the last command; any other
+    keeps its initial value. Tests make it fail by setting the attributes below.
 
     Attributes:
         read_result: what `read` returns.
         write_result: what `write` returns.
         refused: life-cycle methods that fail, such as 'on_activate'; also
             'prepare_command_mode_switch' and 'perform_command_mode_switch'.
+        unmeasured: states that are NaN; one that is taken out has its initial value again.
         events: names of the life-cycle methods called, in order.
         mode_switches: (start, stop) of each mode switch performed.
     """
@@ -46,6 +47,8 @@ class FakeHardware:
         self.read_result = HardwareReturn.OK
         self.write_result = HardwareReturn.OK
         self.refused: set[str] = set()
+        self.unmeasured: set[str] = set()
+        self._hidden: frozenset[str] = frozenset()
         self.events: list[str] = []
         self.mode_switches: list[tuple[tuple[str, ...], tuple[str, ...]]] = []
         self.states = np.empty(0)
@@ -66,12 +69,12 @@ class FakeHardware:
         )
 
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
-        """Keep the views."""
+        """Store the views."""
         self.states = states
         self.commands = commands
 
     def on_configure(self) -> bool:
-        """Put every state at its initial value."""
+        """Set every state to its initial value."""
         self.states[:] = self._initial
         return self._record("on_configure")
 
@@ -92,7 +95,7 @@ class FakeHardware:
         return self._record("on_shutdown")
 
     def prepare_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
-        """Agree, unless told to refuse."""
+        """Accept, unless told to refuse."""
         return "prepare_command_mode_switch" not in self.refused
 
     def perform_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
@@ -103,11 +106,15 @@ class FakeHardware:
         return True
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Report the outcome asked for."""
+        """Replace the unmeasured states by NaN; return `read_result`."""
+        for name in self._hidden | self.unmeasured:
+            index = self.state_interfaces.index(name)
+            self.states[index] = np.nan if name in self.unmeasured else self._initial[index]
+        self._hidden = frozenset(self.unmeasured)
         return self.read_result
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Let the states follow every command that is not NaN."""
+        """Copy every command that is not NaN to its state; return `write_result`."""
         commands = self.commands[self._mirrored_commands]
         given = ~np.isnan(commands)
         self.states[self._mirrored_states[given]] = commands[given]

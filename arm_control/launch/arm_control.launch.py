@@ -1,9 +1,20 @@
-"""The controllers of a world that is already up: one spawner after the other, each when ready."""
+"""Spawns the controllers of a running simulation, one after the other.
 
+As in ROS 1, `controllers` can also be the names of the controllers. One spawner starts all of them.
+"""
+
+import re
 from typing import Any
 
-from launch_py import DeclareLaunchArgument, LaunchDescription, ProcessExited
-from launch_py.conditions import IfCondition, UnlessCondition
+from arm_control.course import (
+    COURSE_ARGUMENT,
+    HARDWARE_INTERFACE_ARGUMENT,
+    launch_arguments,
+    take_course,
+)
+from launch_py import Action, DeclareLaunchArgument, Finished, LaunchDescription
+from launch_py.actions import OpaqueFunction
+from launch_py.launch_context import LaunchContext
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import (
     EqualsSubstitution,
@@ -13,10 +24,21 @@ from launch_py.substitutions import (
 )
 
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+DEFAULT_FILE = PathJoinSubstitution(
+    [
+        FindPackageShare("arm_control"),
+        "config",
+        IfElseSubstitution(
+            IS_ROS1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
+        ),
+    ]
+)
+NAMES = re.compile(r"\s*\w+(\s+\w+)*\s*")
+"""The names of controllers. The path of a parameter file has a dot or a slash."""
 
 
-def spawner(*names: str, **options: Any) -> Node:
-    """Return what starts controllers in the manager that the arguments name."""
+def spawner(*names: str, file: str, **options: Any) -> Node:
+    """Return a spawner of controllers for the manager that the launch arguments name."""
     return Node(
         package="arm_control",
         executable="spawner",
@@ -26,34 +48,60 @@ def spawner(*names: str, **options: Any) -> Node:
             "--controller-manager",
             LaunchConfiguration("controller_manager"),
             "--param-file",
-            LaunchConfiguration("controllers"),
+            file,
         ],
-        ready=ProcessExited(),
+        ready=Finished(),
         **options,
     )
 
 
-def arguments() -> list[DeclareLaunchArgument]:
-    """Return the declarations."""
-    file = IfElseSubstitution(
-        IS_ROS1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
-    )
+def spawners(context: LaunchContext) -> list[Action]:
+    """Return the spawner of the named controllers, or of the broadcaster and then the others."""
+    words = context.launch_configurations
+    file = words["controllers"]
+    if NAMES.fullmatch(file):
+        names = file.split()
+        file = launch_arguments(words["course"]).get("controllers") or DEFAULT_FILE.perform(context)
+        return [spawner(*names, file=file)]
+    broadcaster = spawner("joint_state_broadcaster", file=file)
+    if words["interface"] == "ros1":
+        names = [f"j{i}p_controller" for i in range(4)]
+    else:
+        names = ["position_controller"]
+    return [broadcaster, spawner(*names, file=file, depends_on=broadcaster)]
+
+
+def arguments() -> list[Action]:
+    """Return the launch arguments, and what sets them from the course."""
     return [
+        DeclareLaunchArgument("course", **COURSE_ARGUMENT),
+        OpaqueFunction(function=take_course),
         DeclareLaunchArgument(
             "interface",
             default_value="ros2",
             choices=["ros2", "ros1"],
-            description="one controller of all joints, or as in ROS 1 one for each under /arm",
+            description="one controller for all joints, or as in ROS 1 one for each, under /arm",
         ),
         DeclareLaunchArgument(
+            "robot_name",
+            default_value="arm",
+            description="with interface:=ros1, the namespace of the controller manager",
+        ),
+        DeclareLaunchArgument("hardware_interface", **HARDWARE_INTERFACE_ARGUMENT),
+        DeclareLaunchArgument(
             "controllers",
-            default_value=PathJoinSubstitution([FindPackageShare("arm_control"), "config", file]),
-            description="parameter file of the controllers",
+            default_value=DEFAULT_FILE,
+            description="parameter file of the controllers; or, as in ROS 1, the names of those to "
+            "spawn: 'NAME NAME'",
         ),
         DeclareLaunchArgument(
             "controller_manager",
             default_value=IfElseSubstitution(
-                IS_ROS1, if_value="/arm/controller_manager", else_value="/controller_manager"
+                IS_ROS1,
+                if_value=PathJoinSubstitution(
+                    ["/", LaunchConfiguration("robot_name"), "controller_manager"]
+                ),
+                else_value="/controller_manager",
             ),
             description="the controller manager's node",
         ),
@@ -61,14 +109,5 @@ def arguments() -> list[DeclareLaunchArgument]:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the spawners of the broadcaster and of what commands positions."""
-    broadcaster = spawner("joint_state_broadcaster")
-    position = spawner(
-        "position_controller", depends_on=broadcaster, condition=UnlessCondition(IS_ROS1)
-    )
-    single = spawner(
-        *(f"j{i}p_controller" for i in range(4)),
-        depends_on=broadcaster,
-        condition=IfCondition(IS_ROS1),
-    )
-    return LaunchDescription([*arguments(), broadcaster, position, single])
+    """Return the spawners of the broadcaster and the position controllers."""
+    return LaunchDescription([*arguments(), OpaqueFunction(function=spawners)])

@@ -1,10 +1,10 @@
-"""The arm without physics: ros2_control_node on hardware that does at once what it is told."""
+"""The arm without physics: ros2_control_node with mock hardware that follows every command."""
 
 from launch_py import (
     DeclareLaunchArgument,
+    Finished,
     LaunchDescription,
     Notified,
-    ProcessExited,
     SetLaunchConfiguration,
 )
 from launch_py.ros import FindPackageShare, Node, ParameterValue
@@ -13,7 +13,7 @@ from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitut
 
 def describe(model: str, hardware: str) -> str:
     """Return the URDF text of the model."""
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.xacro.expansion import expand_xacro
 
     return expand_xacro(model, {"hardware": hardware, "camera": "none"})
 
@@ -59,7 +59,7 @@ def generate_launch_description() -> LaunchDescription:
                 package="arm_control",
                 executable="spawner",
                 arguments=["joint_state_broadcaster", "position_controller"],
-                ready=ProcessExited(),
+                ready=Finished(),
                 depends_on=manager,
             ),
         ]

@@ -1,1 +1,1 @@
-"""Nodes that use the arm: arm_controller_node, publisher_terminal, publisher_defined."""
+"""Sample nodes that command the robots: with typed poses, poses from a file, and actions."""

@@ -1,11 +1,11 @@
-"""Executable arm_controller_node: sends the arm to the pose in a parameter, prints its state."""
+"""Executable arm_controller_node: moves the arm to the pose in a parameter, prints its state."""
 
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from arm_controller.errors import ArmControllerError
-from arm_node.process import run_node
+from arm_node.process import NodeProcess, run_node
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -16,7 +16,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     return run_node(_make_node, argv, user_errors=(ArmControllerError,))
 
 
-def _make_node() -> "Node":
+def _make_node(_process: NodeProcess) -> "Node":
     from arm_controller.ros.arm_controller import ArmController
 
     return ArmController()

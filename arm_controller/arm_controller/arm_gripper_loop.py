@@ -1,4 +1,4 @@
-"""The loop of arm and gripper: to a target, close, home, open, and again."""
+"""Moves arm and gripper in a loop: move to a target, close, move home, open."""
 
 import logging
 from typing import Protocol
@@ -13,9 +13,10 @@ logger = logging.getLogger(__name__)
 
 
 class ArmWithGripper(Protocol):
-    """What the loop moves.
+    """The robot that the loop moves.
 
-    A movement returns when it has ended: None where it got there, else a phrase that says why not.
+    Each movement returns when it has ended: None if it reached its goal, else a phrase with the
+    reason.
     """
 
     async def connect(self) -> None:
@@ -31,45 +32,42 @@ class ArmWithGripper(Protocol):
         ...
 
     async def pause(self, seconds: float) -> None:
-        """Return after some time."""
+        """Return after this time."""
         ...
 
 
-class ArmGripperLoop:
-    """Moves an arm and its gripper to and fro.
+async def run_for_ever(robot: ArmWithGripper) -> None:
+    """Repeat the loop until the task is cancelled."""
+    while True:
+        await run_once(robot)
 
-    What is logged about a movement is its result: a place that was not reached is an error, and
-    the loop goes on.
+
+async def run_once(robot: ArmWithGripper) -> None:
+    """Move arm and gripper to the target and back; first wait until they can be moved.
+
+    The result of each movement is logged. A position that was not reached is logged as an error,
+    and the loop goes on.
     """
+    await robot.connect()
+    await _move_arm(robot, "target", TARGET)
+    await _move_gripper(robot, "Closing", CLOSED)
+    await _move_arm(robot, "home", HOME)
+    await _move_gripper(robot, "Opening", OPEN)
+    await robot.pause(PAUSE_S)
 
-    def __init__(self, robot: ArmWithGripper) -> None:
-        self._robot = robot
 
-    async def run_for_ever(self) -> None:
-        """Go round and round."""
-        while True:
-            await self.run_once()
+async def _move_arm(robot: ArmWithGripper, place: str, positions: tuple[float, ...]) -> None:
+    logger.info("Moving to %s position", place)
+    failure = await robot.move_arm(positions)
+    if failure is None:
+        logger.info("Reached %s position - Pausing", place)
+    else:
+        logger.error("%s position not reached: %s", place.capitalize(), failure)
+    await robot.pause(PAUSE_S)
 
-    async def run_once(self) -> None:
-        """Go round once; waits first for whatever is not there (yet, or any more)."""
-        await self._robot.connect()
-        await self._move_arm("target", TARGET)
-        await self._move_gripper("Closing", CLOSED)
-        await self._move_arm("home", HOME)
-        await self._move_gripper("Opening", OPEN)
-        await self._robot.pause(PAUSE_S)
 
-    async def _move_arm(self, place: str, positions: tuple[float, ...]) -> None:
-        logger.info("Moving to %s position", place)
-        failure = await self._robot.move_arm(positions)
-        if failure is None:
-            logger.info("Reached %s position - Pausing", place)
-        else:
-            logger.error("%s position not reached: %s", place.capitalize(), failure)
-        await self._robot.pause(PAUSE_S)
-
-    async def _move_gripper(self, doing: str, position: float) -> None:
-        logger.info("%s gripper", doing)
-        failure = await self._robot.move_gripper(position)
-        if failure is not None:
-            logger.warning("%s gripper: %s", doing, failure)
+async def _move_gripper(robot: ArmWithGripper, doing: str, position: float) -> None:
+    logger.info("%s gripper", doing)
+    failure = await robot.move_gripper(position)
+    if failure is not None:
+        logger.warning("%s gripper: %s", doing, failure)

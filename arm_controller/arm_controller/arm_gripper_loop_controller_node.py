@@ -1,28 +1,28 @@
-"""Executable arm_gripper_loop_controller: moves an arm and its gripper to and fro until Ctrl-C."""
+"""Executable arm_gripper_loop_controller: moves an arm and its gripper back and forth."""
 
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
-from arm_node.discovery import answers_held_back
 from arm_node.process import NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run until the end is asked for; return the exit code."""
+    """Run until a signal ends it; return the exit code."""
     return run_process(_application, argv, user_errors=(ArmControllerError,))
 
 
 @contextmanager
 def _application(process: NodeProcess) -> Iterator[None]:
-    from arm_controller.arm_gripper_loop import ArmGripperLoop
+    from arm_controller.arm_gripper_loop import run_for_ever
     from arm_controller.ros.arm_gripper_loop_controller import ArmGripperLoopController
 
-    with answers_held_back():
+    with prompt_discovery():
         node = ArmGripperLoopController()
     process.executor.add_node(node)
-    process.executor.create_task(ArmGripperLoop(node).run_for_ever)
+    process.executor.create_task(run_for_ever, node)
     yield
     node.stop()
 

@@ -2,12 +2,11 @@
 
     ArmControllerError
     ├── PoseError            a pose that the arm cannot take
-    ├── CommandLineError     a typed line that is no pose
+    ├── CommandLineError     a typed line that is not a pose
     ├── PoseFileError        a file of poses that cannot be used
-    ├── DeliveryError        nobody took a command
-    ├── ParameterValueError  a node parameter that makes no sense
-    ├── PlanError            what shall be picked up cannot be, from where it stands
-    └── PickError            a pick that did not come off
+    ├── DeliveryError        a command without a subscriber
+    ├── PlanError            an object that the arm cannot pick up at its place
+    └── PickError            a pick that failed
 
 Every message is a sentence for the user.
 """
@@ -18,27 +17,23 @@ class ArmControllerError(Exception):
 
 
 class PoseError(ArmControllerError):
-    """A pose has the wrong length, is not finite, or lies beyond a joint's limits."""
+    """A pose has the wrong length, is not finite, or exceeds a joint's limits."""
 
 
 class CommandLineError(ArmControllerError):
-    """A line typed at the prompt is not a list of as many numbers as there are joints."""
+    """A typed line does not contain one number for each joint."""
 
 
 class PoseFileError(ArmControllerError):
-    """A file of poses is missing, unreadable or wrong; the message names file and line."""
+    """A file of poses is missing, unreadable or invalid; the message names file and line."""
 
 
 class DeliveryError(ArmControllerError):
-    """A command was not published because nobody listened for too long."""
-
-
-class ParameterValueError(ArmControllerError):
-    """A parameter of a node has a value that the node cannot work with."""
+    """A command was not published because it had no subscriber for too long."""
 
 
 class PlanError(ArmControllerError):
-    """There is no way for the arm to do what it shall; the message says why."""
+    """The arm has no path for the task; the message says why."""
 
 
 class PickError(ArmControllerError):

@@ -1,13 +1,15 @@
-"""Executable example_diff_drive: drives the robot on two wheels in circles, until it is stopped."""
+"""Executable example_diff_drive: drives a two-wheeled robot in circles until it is stopped."""
 
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import repeat
+from typing import TYPE_CHECKING
 
 from arm_controller.errors import ArmControllerError
-from arm_node.discovery import answers_held_back
-from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
+from arm_node.process import NodeProcess, run_node
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 FORWARDS_M_S = 0.1
 TO_THE_LEFT_RAD_S = 0.1
@@ -15,31 +17,27 @@ PACE_S = 0.05
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run until a signal; return 1 if nobody listens."""
-    return run_process(_application, argv, user_errors=(ArmControllerError,))
+    """Run until a signal ends it; return 1 if there is no subscriber."""
+    return run_node(_make_node, argv, user_errors=(ArmControllerError,))
 
 
-@contextmanager
-def _application(process: NodeProcess) -> Iterator[None]:
+def _make_node(process: NodeProcess) -> "Node":
     from geometry_msgs.msg import TwistStamped
 
     from arm_controller.ros.command_sequence import CommandSequence
 
-    # Without a stamp: the controller's clock may be a simulation's, and then it counts as now.
+    # Without a stamp the command counts as new, even if the controller uses simulation time.
     command = TwistStamped()
     command.twist.linear.x = FORWARDS_M_S
     command.twist.angular.z = TO_THE_LEFT_RAD_S
-    with answers_held_back():
-        node = CommandSequence(
-            "diff_drive_test_node",
-            "diff_drive_base_controller/cmd_vel",
-            TwistStamped,
-            repeat(command),
-            PACE_S,
-            lambda published: process.stop(EXIT_OK if published else EXIT_FAILED),
-        )
-    process.executor.add_node(node)
-    yield
+    return CommandSequence(
+        process,
+        "diff_drive_test_node",
+        "diff_drive_base_controller/cmd_vel",
+        TwistStamped,
+        repeat(command),
+        PACE_S,
+    )
 
 
 if __name__ == "__main__":

@@ -1,40 +1,38 @@
-"""Executable example_gripper: closes the gripper of the demo, half opens it, and lets go."""
+"""Executable example_gripper: closes the demo's gripper, opens it halfway, and releases it."""
 
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from arm_controller.errors import ArmControllerError
-from arm_node.discovery import answers_held_back
-from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
+from arm_node.process import NodeProcess, run_node
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 COMMANDS = (0.0, 0.38, 0.19, 0.0)
-"""In m or N, as the gripper is commanded."""
+"""In m or N, depending on the gripper's command interface."""
 PACE_S = 1.0
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run until every command has had its turn; return 1 if nobody listens."""
-    return run_process(_application, argv, user_errors=(ArmControllerError,))
+    """Run until every command has been sent; return 1 if there is no subscriber."""
+    return run_node(_make_node, argv, user_errors=(ArmControllerError,))
 
 
-@contextmanager
-def _application(process: NodeProcess) -> Iterator[None]:
+def _make_node(process: NodeProcess) -> "Node":
     from std_msgs.msg import Float64MultiArray
 
     from arm_controller.ros.command_sequence import CommandSequence
 
-    with answers_held_back():
-        node = CommandSequence(
-            "gripper_test_node",
-            "gripper_controller/commands",
-            Float64MultiArray,
-            (Float64MultiArray(data=[command]) for command in COMMANDS),
-            PACE_S,
-            lambda published: process.stop(EXIT_OK if published else EXIT_FAILED),
-        )
-    process.executor.add_node(node)
-    yield
+    return CommandSequence(
+        process,
+        "gripper_test_node",
+        "gripper_controller/commands",
+        Float64MultiArray,
+        (Float64MultiArray(data=[command]) for command in COMMANDS),
+        PACE_S,
+    )
 
 
 if __name__ == "__main__":

@@ -11,9 +11,15 @@ JOINTS = (
 """The joints of the arm."""
 HOME = (0.0,) * len(JOINTS)
 
+
+def prefixed_joints(prefix: str) -> list[str]:
+    """Return the arm's joints, with the prefix before the names of both links of each joint."""
+    return [prefix + name.replace("_to_", f"_to_{prefix}") for name in JOINTS]
+
+
 HAND = "gripper_base"
-"""The link that carries the fingers: x across, y ahead, z up."""
+"""The link that carries the fingers: x sideways, y forward, z up."""
 GRASP_CENTRE = (0.0, 0.069, -0.01)
-"""Middle between the pads, closed on 30 mm, in the hand's frame (m)."""
+"""The centre between the pads, 30 mm apart, in the frame of the hand (m)."""
 WIDE_OPEN, OPEN, CLOSED = 0.15, 0.0, -0.7
 """Positions of the gripper: 43 mm, 39 mm and 6 mm between the pads."""

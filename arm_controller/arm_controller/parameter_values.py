@@ -1,151 +1,130 @@
-"""Turns the values of parameters into what a node works with.
+"""Readers for this package's parameters; see `arm_node.parameter_values`."""
 
-ROS takes the type of a parameter from how the user writes it: `2` is no double, `[1, 0]` no list
-of doubles. These readers accept both, and say what is wrong with anything else.
-"""
-
-import math
 from array import array
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TypeGuard
+from string import Formatter
 
-from arm_controller.errors import ParameterValueError
-from arm_controller.pose import JointPose
+from arm_controller.joint_pose import JointPose
+from arm_node.parameter_values import (
+    ParameterValueError,
+    numbers_in,
+    read_number,
+    read_numbers,
+    read_text,
+    read_texts,
+    refusal,
+)
 
-LARGEST = 1e9
-"""No number may be greater: as a time it is thirty years, and ROS counts nanoseconds in 64 bits."""
+MAX_NUMBER = 1e9
+"""Largest allowed number: as a time it is thirty years, and ROS has 64 bits of nanoseconds."""
+
+JOINT_FIELDS = ("name", "index", "position", "velocity", "effort")
+"""What a line printed for a joint may contain in braces."""
 
 
-def read_number(value: object, *, positive: bool = True) -> float:
-    """Return a number up to `LARGEST`, above zero or, if not `positive`, zero as well.
+def read_joint_format(value: object) -> str:
+    """Return a format of a joint's line, whose fields are among `JOINT_FIELDS`.
 
     Raises:
-        ParameterValueError: it is something else.
+        ParameterValueError: the value is not a text, or has other fields.
     """
-    wanted = "a number above 0" if positive else "0 or a number above"
-    if not _is_finite(value):
-        raise ParameterValueError(f"must be {wanted}, not {value!r}")
-    if value < 0 or (positive and value == 0):
-        raise ParameterValueError(f"must be {wanted}, not {value:g}")
-    if value > LARGEST:
-        raise ParameterValueError(f"must be at most {LARGEST:g}, not {value:g}")
-    return float(value)
+    text = read_text(value)
+    try:
+        parts = list(Formatter().parse(text))
+    except ValueError as error:
+        raise ParameterValueError(f"the format '{text}' is wrong: {error}") from error
+    for _, field, spec, conversion in parts:
+        if field is not None and (field not in JOINT_FIELDS or spec or conversion):
+            existing = ", ".join(f"{{{name}}}" for name in JOINT_FIELDS)
+            raise ParameterValueError(f"the format '{text}' may contain only {existing}")
+    return text
+
+
+def read_positive(value: object) -> float:
+    """Return a number above 0, up to `MAX_NUMBER`.
+
+    Raises:
+        ParameterValueError: the value is something else.
+    """
+    wanted = "a number above 0"
+    number = _up_to_largest(value, wanted)
+    if number <= 0:
+        raise refusal(wanted, value)
+    return number
+
+
+def read_zero_or_more(value: object) -> float:
+    """Return a number from 0 up to `MAX_NUMBER`.
+
+    Raises:
+        ParameterValueError: the value is something else.
+    """
+    wanted = "a number of at least 0"
+    number = _up_to_largest(value, wanted)
+    if number < 0:
+        raise refusal(wanted, value)
+    return number
 
 
 def read_rate(value: object) -> float:
-    """Return how often something happens per second, 0 for never; its period is up to `LARGEST`.
+    """Return a rate in Hz, 0 for never; its period is at most `MAX_NUMBER`.
 
     Raises:
-        ParameterValueError: it is something else.
+        ParameterValueError: the value is something else.
     """
-    rate = read_number(value, positive=False)
-    least = 1.0 / LARGEST
+    rate = read_zero_or_more(value)
+    least = 1.0 / MAX_NUMBER
     if 0.0 < rate < least:
-        raise ParameterValueError(f"must be 0 or at least {least:g}, not {rate:g}")
+        raise refusal(f"0 or at least {least:g}", value)
     return rate
 
 
 def read_pose(value: object, joint_names: Sequence[str]) -> JointPose | None:
     """Return a pose, or None for a parameter that is not set.
 
-    A text is as good as the list that it shows: ROS has no list of integers and doubles together,
-    and its command line sends `[1, 0.5, 0, 0]` as a text.
-
     Raises:
-        ParameterValueError: it is no list.
-        PoseError: it is a list, but no pose.
+        ParameterValueError: the value is not a list.
+        PoseError: the list is not a pose.
     """
     if value is None:
         return None
-    values = _numbers_in(value) if isinstance(value, str) else value
-    # What comes through the parameter service is an array.
-    if not isinstance(values, (list, tuple, array)):
-        raise ParameterValueError(f"must be a list of {len(joint_names)} numbers, not {value!r}")
+    values = numbers_in(value)
+    # The parameter service delivers an array.
+    if not isinstance(values, list | tuple | array):
+        raise refusal(f"a list of {len(joint_names)} numbers", value)
     return JointPose.of(joint_names, values)
 
 
 def read_joint_names(value: object) -> tuple[str, ...]:
-    """Return a list of one or more different names.
+    """Return a list of unique names, at least one.
 
     Raises:
-        ParameterValueError: it is something else.
+        ParameterValueError: the value is something else.
     """
-    names = tuple(value) if isinstance(value, (list, tuple)) else ()
-    if not names or not all(isinstance(name, str) and name for name in names):
-        raise ParameterValueError(f"must be a list of joint names, not {value!r}")
+    wanted = "a list of joint names"
+    names = read_texts(value, wanted)
+    if not names:
+        raise refusal(wanted, value)
     if len(set(names)) != len(names):
         raise ParameterValueError(f"names a joint twice: {', '.join(names)}")
     return names
 
 
 def read_place(value: object) -> tuple[float, float]:
-    """Return a place on the ground, x and y.
+    """Return a position on the ground, x and y.
 
     Raises:
-        ParameterValueError: it is not a list of two finite numbers.
+        ParameterValueError: the value is not a list of two finite numbers.
     """
-    values = _numbers_in(value) if isinstance(value, str) else value
-    if isinstance(values, (list, tuple, array)) and len(values) == 2:
-        x, y = values
-        if all(_is_finite(number) for number in (x, y)):
-            return float(x), float(y)
-    raise ParameterValueError(f"must be a list of two numbers, x and y, not {value!r}")
+    wanted = "a list of two numbers, x and y"
+    numbers = read_numbers(value, wanted)
+    if len(numbers) != 2:
+        raise refusal(wanted, value)
+    return numbers[0], numbers[1]
 
 
-def read_prefix(value: object) -> str:
-    """Return what stands before every name, maybe nothing.
-
-    Raises:
-        ParameterValueError: it is not a text.
-    """
-    if not isinstance(value, str):
-        raise ParameterValueError(f"must be a text, not {value!r}")
-    return value
-
-
-def read_flag(value: object) -> bool:
-    """Return true or false.
-
-    Raises:
-        ParameterValueError: it is something else.
-    """
-    if not isinstance(value, bool):
-        raise ParameterValueError(f"must be true or false, not {value!r}")
-    return value
-
-
-def read_topic(value: object) -> str:
-    """Return the name of a topic.
-
-    Raises:
-        ParameterValueError: it is not a text or an empty one.
-    """
-    if not isinstance(value, str) or not value:
-        raise ParameterValueError(f"must be the name of a topic, not {value!r}")
-    return value
-
-
-def read_path(value: object) -> Path:
-    """Return the path of a file, `~` expanded; whether the file is there is not asked.
-
-    Raises:
-        ParameterValueError: it is not a text or an empty one.
-    """
-    if not isinstance(value, str) or not value:
-        raise ParameterValueError(f"must be the path of a file, not {value!r}")
-    return Path(value).expanduser()
-
-
-def _is_finite(value: object) -> TypeGuard[float]:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _numbers_in(text: str) -> list[float] | None:
-    words = text.strip()
-    if not (words.startswith("[") and words.endswith("]")):
-        return None
-    try:
-        return [float(word) for word in words[1:-1].split(",")]
-    except ValueError:
-        return None
+def _up_to_largest(value: object, wanted: str) -> float:
+    number = read_number(value, wanted)
+    if number > MAX_NUMBER:
+        raise refusal(f"at most {MAX_NUMBER:g}", value)
+    return number

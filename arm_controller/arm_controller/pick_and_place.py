@@ -5,21 +5,21 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from arm_controller.errors import PickError
+from arm_controller.joint_path import JointPath
 from arm_controller.mycobot import CLOSED, WIDE_OPEN
 from arm_controller.pick_plan import PickPlan
-from arm_controller.way import Way
 
 logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """How a movement of the gripper ended.
+    """The result of a gripper movement.
 
     Attributes:
-        position: where the driven joint is, in rad.
-        reached: whether that is where it was sent.
-        stalled: whether something between the fingers keeps it from there.
+        position: position of the driven joint, in rad.
+        reached: whether it reached its goal.
+        stalled: whether something between the fingers stopped it.
     """
 
     position: float
@@ -28,18 +28,18 @@ class Grip:
 
 
 class PickingRobot(Protocol):
-    """An arm with a gripper. A movement returns when it has ended."""
+    """An arm with a gripper. Each movement returns when it has ended."""
 
     async def connect(self) -> None:
         """Return once arm and gripper can be moved."""
         ...
 
-    async def follow(self, way: Way) -> str | None:
-        """Move the arm; return None where it got there, else a phrase that says why not."""
+    async def follow(self, path: JointPath) -> str | None:
+        """Move the arm; return None if it reached its goal, else a phrase with the reason."""
         ...
 
     async def grip(self, position: float, max_effort: float) -> Grip | str:
-        """Move the gripper to a position (rad); a phrase says why there is no result."""
+        """Move the gripper to a position (rad); return a phrase if there is no result."""
         ...
 
     async def pause(self, seconds: float) -> None:
@@ -48,10 +48,9 @@ class PickingRobot(Protocol):
 
 
 class PickAndPlace:
-    """Carries a plan out, and says each step.
+    """Executes a plan and logs each step.
 
-    What the fingers hold is known from where they stop: fingers that close all the way hold
-    nothing.
+    Fingers that close fully hold nothing; fingers that stop earlier hold the object.
     """
 
     def __init__(self, robot: PickingRobot, plan: PickPlan) -> None:
@@ -59,10 +58,10 @@ class PickAndPlace:
         self._plan = plan
 
     async def run(self) -> None:
-        """Pick, hold and put back once; the arm goes home afterwards.
+        """Pick up, hold and put back the object once, then move the arm home.
 
         Raises:
-            PickError: a step failed, after which nothing else is moved; says which and why.
+            PickError: a step failed and the robot stopped; the message says which and why.
         """
         plan, task = self._plan, self._plan.task
         await self._robot.connect()
@@ -73,24 +72,24 @@ class PickAndPlace:
         await self._go(f"up by {task.lift:g} m", plan.up)
         logger.info("Holding for %g s", task.hold_s)
         await self._robot.pause(task.hold_s)
-        await self._close("Looking whether the object is still held")
+        await self._close("Checking whether the object is still held")
         await self._go("down again", plan.down)
         await self._open()
         await self._go("away", plan.away)
         await self._go("to home position", plan.home)
         logger.info("The object was picked up, held and put back")
 
-    async def _go(self, where: str, way: Way) -> None:
+    async def _go(self, where: str, path: JointPath) -> None:
         logger.info("Moving %s", where)
-        failure = await self._robot.follow(way)
+        failure = await self._robot.follow(path)
         if failure is not None:
-            raise PickError(f"the arm did not get {where}: {failure}")
+            raise PickError(f"the arm could not move {where}: {failure}")
 
     async def _open(self) -> None:
         logger.info("Opening gripper")
         grip = await self._grip(WIDE_OPEN)
         if not grip.reached:
-            raise PickError(f"the gripper did not open: it stands at {grip.position:.3f} rad")
+            raise PickError(f"the gripper did not open: it is at {grip.position:.3f} rad")
 
     async def _close(self, doing: str) -> None:
         logger.info("%s", doing)
@@ -99,7 +98,7 @@ class PickAndPlace:
             raise PickError("there is nothing between the fingers: they closed all the way")
         if not grip.stalled:
             raise PickError(
-                f"the grip was ended at {grip.position:.3f} rad: somebody else moves it"
+                f"the grip ended at {grip.position:.3f} rad: another node moves the gripper"
             )
         logger.info("The object is held, at %.3f rad", grip.position)
 

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
-from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 logger = logging.getLogger(__name__)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run until it has come off or not; return the exit code."""
+    """Run one pick; return the exit code."""
     return run_process(_application, argv, user_errors=(ArmControllerError,))
 
 
@@ -23,7 +23,7 @@ def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.ros.pick_and_place import PickAndPlaceNode
     from arm_description.errors import DescriptionError
 
-    with answers_held_back():
+    with prompt_discovery():
         node = PickAndPlaceNode()
 
     async def pick() -> None:
@@ -31,7 +31,7 @@ def _application(process: NodeProcess) -> Iterator[None]:
             await node.connect()
             await PickAndPlace(node, await node.plan()).run()
         except (ArmControllerError, DescriptionError) as error:
-            # What was stopped by a signal did not fail.
+            # A pick that a signal interrupts has not failed.
             if not process.stopping:
                 logger.critical("%s", error)
                 process.stop(EXIT_FAILED)

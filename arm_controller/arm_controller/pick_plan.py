@@ -1,8 +1,8 @@
-"""How the myCobot picks an upright object up from the side, and puts it back.
+"""Plans how the myCobot picks up an upright object from the side and puts it back.
 
-The fingers come at a height, level, close on the object from left and right, and go straight up.
-From which side they come follows from the arm: not from everywhere does it get near and away
-without swinging round.
+The fingers approach horizontally at a given height, close on the object from left and right, and
+move straight up. The planner chooses the direction of approach: in some directions the arm would
+pass a singularity.
 """
 
 import math
@@ -13,26 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_controller.errors import PlanError
-from arm_controller.mycobot import GRASP_CENTRE, HAND, HOME, JOINTS
-from arm_controller.straight_way import straight_way
-from arm_controller.way import Way, reverse_way, way_to
+from arm_controller.joint_path import JointPath, path_to, reversed_path, straight_path
+from arm_controller.mycobot import GRASP_CENTRE, HAND, HOME, prefixed_joints
 from arm_description.errors import KinematicsError
-from arm_description.inverse_kinematics import InverseKinematics
-from arm_description.robot import Robot
+from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.transforms import transform
+from arm_description.urdf.robot import Robot
 
 Array = NDArray[np.float64]
 
 HEADINGS_DEG = (-40.0, -30.0, -50.0, 25.0, 35.0, 15.0, 45.0, -20.0, 0.0)
-"""Where the fingers point, seen from the line from the arm to the object; the best is first."""
+"""Directions of the fingers relative to the direction of the object, the best first."""
 POSTURES = (
     (-0.59, -2.3, 1.4, 1.0, -1.7, -0.1),
     (-1.7, -2.4, 1.75, 0.6, 0.6, 0.0),
     (-1.0, -1.0, -1.4, 2.5, -1.0, 0.0),
 )
-"""Where to look for positions of the joints; the first counts from the object's direction."""
-RUN_UP_M = 0.07
-"""Distance from which the fingers come straight, clear of the object."""
+"""Starts of the inverse kinematics; the first joint is relative to the object's direction."""
+APPROACH_M = 0.07
+"""Length of the straight approach, which starts clear of the object."""
 SWING_S, STRAIGHT_S = 3.0, 2.0
 
 
@@ -41,12 +40,12 @@ class PickTask:
     """What to pick up, and how; lengths in m.
 
     Attributes:
-        x: where the object stands, in the frame of the robot's root.
-        y: likewise.
-        height: at which it is gripped, likewise.
+        x: position of the object, in the frame of the robot's root.
+        y: position of the object, in the same frame.
+        height: height of the grip, in the same frame.
         lift: how far it is lifted.
         hold_s: how long it is held there.
-        max_effort: most effort of the gripper's drive, N m.
+        max_effort: effort limit of the gripper's drive, N m.
     """
 
     x: float = 0.22
@@ -59,30 +58,30 @@ class PickTask:
 
 @dataclass(frozen=True, slots=True)
 class PickPlan:
-    """The ways of one pick, in the order in which they are gone."""
+    """The paths of one pick, in the order in which the arm follows them."""
 
     task: PickTask
-    to_object: Way
-    approach: Way
-    up: Way
-    down: Way
-    away: Way
-    home: Way
+    to_object: JointPath
+    approach: JointPath
+    up: JointPath
+    down: JointPath
+    away: JointPath
+    home: JointPath
 
 
 def plan_pick(robot: Robot, task: PickTask, prefix: str = "") -> PickPlan:
-    """Return the ways of a pick.
+    """Return the paths of a pick.
 
     Args:
         robot: a myCobot with its gripper.
         task: what to pick up.
-        prefix: of the robot's names.
+        prefix: prefix of the robot's names.
 
     Raises:
-        UrdfError: it is another robot.
-        PlanError: the object cannot be gripped there; says why.
+        UrdfError: the robot is not a myCobot.
+        PlanError: the object cannot be gripped there; the message says why.
     """
-    kinematics = InverseKinematics(robot, prefix + HAND, [prefix + name for name in JOINTS])
+    kinematics = InverseKinematics(robot, prefix + HAND, prefixed_joints(prefix))
     why: list[Exception] = []
     for heading, posture in _tries(task):
         try:
@@ -96,7 +95,7 @@ def plan_pick(robot: Robot, task: PickTask, prefix: str = "") -> PickPlan:
 
 
 def _tries(task: PickTask) -> Iterator[tuple[float, Sequence[float]]]:
-    """Yield headings (rad) and postures to start the search from, the best first."""
+    """Yield headings (rad) and start positions for the search, the best first."""
     direction = math.atan2(task.y, task.x)
     for turn in HEADINGS_DEG:
         for first, *others in POSTURES:
@@ -110,22 +109,22 @@ def _plan(
     place = np.array([task.x, task.y, task.height])
     lifted = np.array([task.x, task.y, task.height + task.lift])
     grasp = tuple(kinematics.solve(_hand_at(place, ahead), posture).tolist())
-    # Planned away from the grasp, where the arm is stretched least.
-    away = straight_way(kinematics, grasp, _hand_at(place - RUN_UP_M * ahead, ahead), STRAIGHT_S)
-    up = straight_way(kinematics, grasp, _hand_at(lifted, ahead), STRAIGHT_S)
+    # Planned in reverse, away from the grasp, where the arm is bent most.
+    away = straight_path(kinematics, grasp, _hand_at(place - APPROACH_M * ahead, ahead), STRAIGHT_S)
+    up = straight_path(kinematics, grasp, _hand_at(lifted, ahead), STRAIGHT_S)
     return PickPlan(
         task,
-        to_object=way_to(away[-1].positions, SWING_S),
-        approach=reverse_way(away, grasp),
+        to_object=path_to(away[-1].positions, SWING_S),
+        approach=reversed_path(away, grasp),
         up=up,
-        down=reverse_way(up, grasp),
+        down=reversed_path(up, grasp),
         away=away,
-        home=way_to(HOME, SWING_S),
+        home=path_to(HOME, SWING_S),
     )
 
 
 def _hand_at(place: Array, ahead: Array) -> Array:
-    """Return the pose of the hand, level, with a place between the pads."""
+    """Return the horizontal pose of the hand with a position between the pads."""
     up = np.array([0.0, 0.0, 1.0])
     rotation = np.column_stack([np.cross(ahead, up), ahead, up])
     return transform(rotation, place - rotation @ GRASP_CENTRE)

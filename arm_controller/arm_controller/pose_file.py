@@ -1,10 +1,10 @@
-"""Reads the file of poses that publisher_defined goes through.
+"""Reads the file of poses for publisher_defined.
 
     poses:
       - [0.5, 0.5, 0.5, 0.5]
       - [0.0, 0.0, 0.0, 0.0]
 
-Works on YAML's nodes instead of its values: only they know their line.
+It uses YAML nodes instead of values, because only nodes know their line.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,9 @@ from pathlib import Path
 import yaml
 
 from arm_controller.errors import PoseError, PoseFileError
-from arm_controller.pose import JointPose
+from arm_controller.joint_pose import JointPose
+from arm_node.limited_yaml import YamlError, compose_yaml
+from arm_node.user_file import read_text
 
 POSES_KEY = "poses"
 
@@ -23,28 +25,28 @@ def read_pose_file(path: Path, joint_names: Sequence[str]) -> tuple[JointPose, .
 
     Args:
         path: the YAML file.
-        joint_names: the joints that each pose gives a position for, in its order.
+        joint_names: the joints of each pose, in its order.
 
     Raises:
-        PoseFileError: the file is missing, no YAML, or anything but a list of poses; the message
-            names the file and the line.
+        PoseFileError: the file is missing, not YAML, or not a list of poses; the message names the
+            file and the line.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except FileNotFoundError as error:
-        raise PoseFileError(f"there is no pose file {path}") from error
+        raise PoseFileError(f"the pose file {path} does not exist") from error
     except (OSError, UnicodeDecodeError) as error:
         raise PoseFileError(f"cannot read the pose file {path}: {error}") from error
     try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
-    except yaml.YAMLError as error:
-        raise PoseFileError(f"{path} is not YAML: {_problem(error)}") from error
+        root = compose_yaml(text)
+    except YamlError as error:
+        raise PoseFileError(f"{path} is not YAML: {error}") from error
     return tuple(_pose(item, path, joint_names) for item in _pose_items(root, path))
 
 
 def _pose_items(root: yaml.Node | None, path: Path) -> list[yaml.Node]:
     if not isinstance(root, yaml.MappingNode):
-        raise PoseFileError(f"{path} must hold the key '{POSES_KEY}' with a list of poses")
+        raise PoseFileError(f"{path} must have the key '{POSES_KEY}' with a list of poses")
     items: list[yaml.Node] | None = None
     for key, value in root.value:
         if key.value != POSES_KEY:
@@ -55,7 +57,7 @@ def _pose_items(root: yaml.Node | None, path: Path) -> list[yaml.Node]:
             raise PoseFileError(f"{_place(value, path)}: '{POSES_KEY}' must be a list of poses")
         items = value.value
     if not items:
-        raise PoseFileError(f"{path} holds no pose under the key '{POSES_KEY}'")
+        raise PoseFileError(f"{path} has no pose under the key '{POSES_KEY}'")
     return items
 
 
@@ -72,8 +74,8 @@ def _pose(item: yaml.Node, path: Path, joint_names: Sequence[str]) -> JointPose:
 
 
 def _number(node: yaml.Node, path: Path) -> float:
-    # YAML 1.1 takes 1e-3 for a text, so what is a number is for Python to say.
-    if isinstance(node, yaml.ScalarNode) and node.style is None:
+    # YAML 1.1 reads 1e-3 as a string, so Python decides what is a number.
+    if isinstance(node, yaml.ScalarNode) and not node.style:
         try:
             return float(node.value)
         except ValueError:
@@ -84,9 +86,3 @@ def _number(node: yaml.Node, path: Path) -> float:
 
 def _place(node: yaml.Node, path: Path) -> str:
     return f"{path}, line {node.start_mark.line + 1}"
-
-
-def _problem(error: yaml.YAMLError) -> str:
-    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
-        return f"line {error.problem_mark.line + 1}: {error.problem}"
-    return str(error)

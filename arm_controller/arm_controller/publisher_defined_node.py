@@ -1,30 +1,25 @@
-"""Executable publisher_defined: sends the arm to the poses of a file, one after the other."""
+"""Executable publisher_defined: moves the arm to the poses in a file, one after the other."""
 
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from arm_controller.errors import ArmControllerError
-from arm_node.discovery import answers_held_back
-from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
+from arm_node.process import NodeProcess, run_node
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run until every pose has had its turn; return 1 if one of them was not reached."""
-    return run_process(_application, argv, user_errors=(ArmControllerError,))
+    """Run until all poses are done; return 1 if one of them was not reached."""
+    return run_node(_make_node, argv, user_errors=(ArmControllerError,))
 
 
-@contextmanager
-def _application(process: NodeProcess) -> Iterator[None]:
+def _make_node(process: NodeProcess) -> "Node":
     from arm_controller.ros.publisher_defined import PublisherDefined
 
-    def end(missed: int) -> None:
-        process.stop(EXIT_FAILED if missed else EXIT_OK)
-
-    with answers_held_back():
-        node = PublisherDefined(end)
-    process.executor.add_node(node)
-    yield
+    return PublisherDefined(process)
 
 
 if __name__ == "__main__":

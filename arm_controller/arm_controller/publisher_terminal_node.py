@@ -1,4 +1,4 @@
-"""Executable publisher_terminal: sends the arm to the poses that a person types."""
+"""Executable publisher_terminal: moves the arm to the poses that the user types."""
 
 import os
 import sys
@@ -7,17 +7,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
-from arm_controller.input_lines import InputLines
-from arm_controller.terminal_dialogue import TerminalDialogue
-from arm_node.discovery import answers_held_back
+from arm_controller.terminal import InputLines, TerminalDialogue
 from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 LINGER_S = 0.2
-"""The last message may still be on its way when the input ends."""
+"""Time for the last message to arrive after the input has ended."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Talk until the end of input or a signal; return 1 if a good line was not delivered."""
+    """Run until the end of input or a signal; return 1 if a valid line was not delivered."""
     return run_process(_application, argv, user_errors=(ArmControllerError,))
 
 
@@ -25,7 +24,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.ros.publisher_terminal import PublisherTerminal
 
-    with answers_held_back():
+    with prompt_discovery():
         node = PublisherTerminal(process)
     process.executor.add_node(node)
     with _standard_input() as descriptor, InputLines(descriptor) as lines:
@@ -46,7 +45,7 @@ def _talk(dialogue: TerminalDialogue, process: NodeProcess) -> None:
             exit_code = EXIT_OK
         process.wait(LINGER_S)
     finally:
-        # Whoever ends the dialogue by a signal has not failed.
+        # A dialogue that a signal interrupts has not failed.
         if not process.stopping:
             process.stop(exit_code)
 
@@ -58,7 +57,7 @@ def _write(text: str) -> None:
 
 @contextmanager
 def _standard_input() -> Iterator[int]:
-    # A process that was started without an input has none to talk to: the same as its end.
+    # A process may start without standard input, which counts as the end of input.
     if sys.stdin is not None:
         yield sys.stdin.fileno()
         return

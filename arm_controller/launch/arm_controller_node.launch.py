@@ -1,6 +1,8 @@
-"""The controller node with a pose from a file: config/params.yaml or another."""
+"""Starts the controller node with a pose from a file: config/params.yaml or another."""
 
+from arm_control.course import COURSE_ARGUMENT, take_course
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified
+from launch_py.actions import OpaqueFunction
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import (
     EqualsSubstitution,
@@ -17,11 +19,13 @@ def generate_launch_description() -> LaunchDescription:
     parameters = PathJoinSubstitution([FindPackageShare("arm_controller"), "config", file])
     return LaunchDescription(
         [
+            DeclareLaunchArgument("course", **COURSE_ARGUMENT),
+            OpaqueFunction(function=take_course),
             DeclareLaunchArgument(
                 "interface",
                 default_value="ros2",
                 choices=["ros2", "ros1"],
-                description="one controller of all joints, or as in ROS 1 one for each under /arm",
+                description="one controller for all joints, or as in ROS 1 one each, under /arm",
             ),
             DeclareLaunchArgument(
                 "params_file",
@@ -31,7 +35,7 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "namespace",
                 default_value=IfElseSubstitution(is_ros1, if_value="arm"),
-                description="of the node",
+                description="namespace of the node",
             ),
             Node(
                 package="arm_controller",

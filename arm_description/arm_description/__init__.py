@@ -1,6 +1,6 @@
-"""Robot descriptions: URDF and xacro to a `Robot`, its kinematics and its files.
+"""Robot descriptions: reads URDF and xacro into a `Robot`, with its kinematics and its files.
 
-Holds no ROS at import; the nodes robot_state_publisher and joint_state_publisher are in `ros/`.
+It imports no ROS. The nodes robot_state_publisher and joint_state_publisher are in `publishers`.
 """
 
 from arm_description.errors import (
@@ -15,9 +15,12 @@ from arm_description.errors import (
     XacroError,
     XmlError,
 )
-from arm_description.kinematics import forward_kinematics
-from arm_description.resources import resolve_uri
-from arm_description.robot import (
+from arm_description.kinematics.forward import forward_kinematics
+from arm_description.resources import ResourceFinder, resolve_uri
+from arm_description.urdf.joint_type import JointType
+from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import (
     Box,
     Capsule,
     Collision,
@@ -27,20 +30,17 @@ from arm_description.robot import (
     Inertial,
     Joint,
     JointLimit,
-    JointType,
     Link,
     Material,
     Mesh,
-    Mimic,
     Pose,
     Robot,
     SafetyLimits,
     Sphere,
     Visual,
 )
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
-from arm_description.xml_document import parse_xml
+from arm_description.urdf.xml_document import parse_xml
+from arm_description.xacro.expansion import expand_xacro
 
 __all__ = [
     "Box",
@@ -63,6 +63,7 @@ __all__ = [
     "Mimic",
     "MimicCycleError",
     "Pose",
+    "ResourceFinder",
     "ResourceNotFoundError",
     "Robot",
     "SafetyLimits",

@@ -1,11 +1,11 @@
 """The errors of this package; each message says what is wrong, where, and what exists.
 
 DescriptionError
-├── XmlError                 not XML, or XML that is refused (a DOCTYPE, too large)
-├── UrdfError                XML, but not a robot
+├── XmlError                 text that is not XML or is refused (a DOCTYPE, too large)
+├── UrdfError                XML that does not describe a robot
 │   └── MimicCycleError      joints that mimic each other in a circle
 ├── XacroError               a xacro file that cannot be expanded
-├── ResourceNotFoundError    a mesh or another file that a URI names and no folder holds
+├── ResourceNotFoundError    a mesh or another file that a URI names but that does not exist
 ├── MeshFileError            a mesh file that cannot be read
 ├── KinematicsError          joint positions that do not fit the robot
 ├── JointStateError          a joint state message that cannot be used
@@ -18,7 +18,7 @@ class DescriptionError(Exception):
 
 
 class XmlError(DescriptionError):
-    """The text is not well-formed XML, or holds what is refused for safety."""
+    """The text is not well-formed XML, or contains something that is refused for safety."""
 
 
 class UrdfError(DescriptionError):
@@ -38,11 +38,11 @@ class ResourceNotFoundError(DescriptionError):
 
 
 class MeshFileError(DescriptionError):
-    """A mesh file that cannot be read, or whose triangles nobody could draw."""
+    """A mesh file that cannot be read or drawn."""
 
 
 class KinematicsError(DescriptionError):
-    """Joint positions that do not fit the robot: an unknown joint, a value that is no number."""
+    """Joint positions that do not fit the robot: an unknown joint, or a value not finite."""
 
 
 class JointStateError(DescriptionError):

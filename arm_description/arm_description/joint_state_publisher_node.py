@@ -1,4 +1,4 @@
-"""The executable joint_state_publisher: joint states without a robot, from a URDF's joints."""
+"""The executable joint_state_publisher: publishes joint states for the joints of a URDF."""
 
 import argparse
 import sys
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_description.errors import DescriptionError
-from arm_description.xacro_expansion import expand_xacro
+from arm_description.xacro.expansion import expand_xacro
 from arm_node.process import NodeProcess, run_process
 
 
@@ -18,7 +18,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     def application(process: NodeProcess) -> Iterator[None]:
         from rclpy.utilities import remove_ros_args
 
-        from arm_description.ros.joint_state_publisher import JointStatePublisher
+        from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 
         file = _parser().parse_args(remove_ros_args(arguments)[1:]).urdf
         description = None if file is None else expand_xacro(file)
@@ -32,13 +32,14 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="joint_state_publisher",
-        description="Publish joint_states of a robot that is not there. Parameters and topics as "
-        "the ROS 2 node of that name has them.",
+        description="Publish joint_states without a robot. Parameters and topics are those of the "
+        "ROS 2 node of the same name.",
     )
     parser.add_argument(
         "urdf",
         nargs="?",
-        help="a URDF or xacro file; without it, the topic robot_description gives the robot",
+        help="a URDF, xacro, SDF or COLLADA file; without it, the robot comes from the topic "
+        "robot_description",
     )
     return parser
 

@@ -1,126 +1,215 @@
-"""Files that a URDF names: package://, model:// and file:// URIs and plain paths."""
+"""Finds the files that a description names: package://, model:// and file:// URIs and paths.
+
+The simulation, the page, `arm check` and xacro's $(find) all use a `ResourceFinder`.
+"""
 
 import os
-import re
-import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import TypeVar
 from urllib.parse import unquote
 
 from arm_description.errors import ResourceNotFoundError
+from arm_description.package_search import (
+    GAZEBO,
+    SUITE,
+    PackagePlace,
+    PackageSearch,
+    model_folders,
+)
+from arm_description.urdf.description_source import source_of
+from arm_description.urdf.robot import Collision, Mesh, Robot, Visual
 
 SCHEMES = ("package://", "model://", "file://")
-MODEL_PATH_VARIABLES = ("GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
-"""Where Gazebo's users say where their models are."""
-MANIFEST = "package.xml"
-FOLDERS_UP = 3
-"""At least: the folder of a model's file, its package, and what holds its neighbours."""
-_MANIFEST_NAME = re.compile(r"<name>\s*([\w.-]+)\s*</name>")
+ShapeT = TypeVar("ShapeT", Visual, Collision)
+
+
+class ResourceFinder:
+    """Finds the files that one description names, and records where its packages are.
+
+    Args:
+        file: the description's file; None if unknown.
+        package_path: folders that the user names for packages; see `PackageSearch`.
+        environ: the environment variables.
+    """
+
+    def __init__(
+        self,
+        file: Path | None = None,
+        package_path: Sequence[Path] = (),
+        environ: Mapping[str, str] = os.environ,
+    ) -> None:
+        self._environ = environ
+        self._search = PackageSearch(file, package_path, environ)
+        self._used: dict[str, dict[Path, PackagePlace]] = {}
+
+    @classmethod
+    def of_description(
+        cls,
+        urdf: str,
+        package_path: Sequence[Path] = (),
+        environ: Mapping[str, str] = os.environ,
+    ) -> "ResourceFinder":
+        """Return the finder of a description, which may contain its own path.
+
+        Args:
+            urdf: the description's text.
+            package_path: folders to search before those that the description names.
+            environ: the environment variables.
+        """
+        source = source_of(urdf)
+        given = dict.fromkeys((*package_path, *source.package_path))
+        return cls(source.file, tuple(given), environ)
+
+    @property
+    def used(self) -> Mapping[str, tuple[PackagePlace, ...]]:
+        """Where each package was found so far; a package may have files in several folders."""
+        return MappingProxyType({name: tuple(found.values()) for name, found in self._used.items()})
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders in which relative paths are looked up."""
+        return self._search.folders()
+
+    def find(self, uri: str) -> Path:
+        """Return the existing file or folder that a URI names.
+
+        * `package://NAME/REST`: REST in the package's folder; see `PackageSearch`.
+        * `model://NAME/REST`: first in the folders of GZ_SIM_RESOURCE_PATH and GAZEBO_MODEL_PATH,
+          then like package://.
+        * `file:///PATH` and an absolute path: that file.
+        * a relative path: beside the description's file, in its package, in the folders that the
+          user names, then in the working folder.
+
+        `..` may lead to another of the given folders, but not out of them or out of a package, so
+        that a description from an unknown source can only name its own files.
+
+        Raises:
+            ResourceNotFoundError: the file does not exist; the message names every place tried.
+        """
+        tried: dict[Path, None] = {}
+        for candidate in self._candidates(uri.strip()):
+            # os.path.exists, unlike Path.exists, accepts names that no file can have.
+            if os.path.exists(candidate):
+                return candidate
+            tried[candidate] = None
+        places = "".join(f"\n  {candidate}" for candidate in tried)
+        raise ResourceNotFoundError(f"no file for '{uri.strip()}'; tried:{places}")
+
+    def package(self, name: str) -> Path:
+        """Return the folder of a package's data; see `PackageSearch`.
+
+        Raises:
+            ResourceNotFoundError: there is none; a one-line message, which xacro quotes.
+        """
+        tried: dict[Path, None] = {}
+        for place in self._search.places(name):
+            # os.path.isdir, unlike Path.is_dir, accepts names that no folder can have.
+            if os.path.isdir(place.folder):
+                self._remember(name, place)
+                return place.folder
+            tried[place.folder] = None
+        raise ResourceNotFoundError(f"no package '{name}'; tried {', '.join(map(str, tried))}")
+
+    def located(self, robot: Robot) -> Robot:
+        """Return the robot with absolute paths for its meshes; those not found stay unchanged."""
+        return replace(
+            robot,
+            links=tuple(
+                replace(
+                    link,
+                    visuals=tuple(map(self._located, link.visuals)),
+                    collisions=tuple(map(self._located, link.collisions)),
+                )
+                for link in robot.links
+            ),
+        )
+
+    def _located(self, shape: ShapeT) -> ShapeT:
+        mesh = shape.geometry
+        if not isinstance(mesh, Mesh):
+            return shape
+        try:
+            path = self.find(mesh.uri)
+        except ResourceNotFoundError:
+            return shape
+        return replace(shape, geometry=replace(mesh, uri=str(path.absolute())))
+
+    def _candidates(self, uri: str) -> Iterator[Path]:
+        scheme = next((known for known in SCHEMES if uri.lower().startswith(known)), "")
+        rest = uri[len(scheme) :]
+        if not rest:
+            raise ResourceNotFoundError(f"'{uri}' names no file")
+        if not scheme and "://" in uri:
+            raise ResourceNotFoundError(
+                f"cannot read '{uri}'; {', '.join(SCHEMES)} and plain paths are supported"
+            )
+        if scheme == "file://":
+            yield Path(unquote(rest.removeprefix("localhost")))
+        elif scheme:
+            yield from self._in_packages(scheme, rest)
+        elif os.path.isabs(rest):
+            yield Path(rest)
+        else:
+            yield from _in_folders(rest, [*self._search.folders(), Path.cwd()])
+
+    def _in_packages(self, scheme: str, rest: str) -> Iterator[Path]:
+        name, _, inside = rest.partition("/")
+        # A URI that is joined from parts often has "//", which must not start an absolute path.
+        inside = inside.lstrip("/")
+        if name in ("", ".", ".."):
+            raise ResourceNotFoundError(f"'{scheme}{rest}' names no package")
+        if os.path.normpath(inside or ".").split(os.sep)[0] == "..":
+            raise ResourceNotFoundError(f"'{scheme}{rest}' leads out of the package '{name}'")
+        is_elsewhere = False
+        for place in self._places(scheme, name):
+            if place.origin == SUITE and is_elsewhere:
+                # A file missing from the user's package must not come from the suite's package of
+                # that name.
+                return
+            path = place.folder / inside
+            if os.path.exists(path):
+                self._remember(name, place)
+            is_elsewhere = is_elsewhere or self._search.is_package(place.folder, name)
+            yield path
+
+    def _places(self, scheme: str, name: str) -> Iterator[PackagePlace]:
+        if scheme == "model://":
+            for folder in model_folders(self._environ):
+                yield PackagePlace(folder / name, GAZEBO)
+        yield from self._search.places(name)
+
+    def _remember(self, name: str, place: PackagePlace) -> None:
+        self._used.setdefault(name, {}).setdefault(place.folder, place)
 
 
 def resolve_uri(
     uri: str, search_path: Sequence[Path] = (), environ: Mapping[str, str] = os.environ
 ) -> Path:
-    """Return the existing file or folder that a URI names.
-
-    * `package://NAME/REST`: REST in the package's folder; see `package_folders`.
-    * `model://NAME/REST`: the same after the folders of GZ_SIM_RESOURCE_PATH and
-      GAZEBO_MODEL_PATH.
-    * `file:///PATH` and an absolute path: that file.
-    * a relative path: in each folder of the search path, then in the working folder.
-
-    `..` may lead to another of the given folders, and not out of them or of a package: a
-    description that comes from anywhere names its own files.
+    """Return the existing file or folder of a URI that is not from a description's file.
 
     Args:
-        uri: what the URDF says.
-        search_path: folders; for package:// they hold packages, or are the package itself.
-        environ: where the variables are read.
+        uri: see `ResourceFinder.find`.
+        search_path: folders for packages and for relative paths.
+        environ: the environment variables.
 
     Raises:
-        ResourceNotFoundError: names every place tried.
+        ResourceNotFoundError: the file does not exist; the message names every place tried.
     """
-    tried: dict[Path, None] = {}
-    for candidate in _candidates(uri.strip(), search_path, environ):
-        # os.path.exists, unlike Path.exists, takes names that no file can have.
-        if os.path.exists(candidate):
-            return candidate
-        tried[candidate] = None
-    places = "".join(f"\n  {candidate}" for candidate in tried)
-    raise ResourceNotFoundError(f"no file for '{uri}'; tried:{places}")
+    return ResourceFinder(None, search_path, environ).find(uri)
 
 
 def find_package(
     name: str, search_path: Sequence[Path] = (), environ: Mapping[str, str] = os.environ
 ) -> Path:
-    """Return the folder of a package's data; see `package_folders`.
+    """Return the folder of a package's data; see `ResourceFinder.package`.
 
     Raises:
-        ResourceNotFoundError: in one line, for xacro takes it into its own.
+        ResourceNotFoundError: there is none.
     """
-    tried: dict[Path, None] = {}
-    for folder in package_folders(name, search_path, environ):
-        # os.path.isdir, unlike Path.is_dir, takes names that no folder can have.
-        if os.path.isdir(folder):
-            return folder
-        tried[folder] = None
-    raise ResourceNotFoundError(f"no package '{name}'; tried {', '.join(map(str, tried))}")
-
-
-def package_folders(
-    name: str, search_path: Sequence[Path], environ: Mapping[str, str]
-) -> Iterator[Path]:
-    """Yield where a package may be, existing or not.
-
-    First its share folder, under each prefix of AMENT_PREFIX_PATH and under this Python's own;
-    then a folder NAME of the search path, and of Gazebo's, who asks the same of it. A folder of
-    those, or one in it, that is called otherwise is the package if its package.xml says so, as
-    in many a repository.
-    """
-    yield from (share / name for share in share_folders(environ))
-    search = (*search_path, *_model_folders(environ))
-    for folder in search:
-        yield folder / name
-        if folder.name == name:
-            yield folder
-    for folder in search:
-        for place in (folder, *_folders_in(folder)):
-            if place.name != name and _package_name(place) == name:
-                yield place
-
-
-def folders_of(model: Path) -> tuple[Path, ...]:
-    """Return where a model's own files may be: beside it, in its package, in a neighbour."""
-    above = tuple(model.absolute().parents)
-    package = next((i for i, folder in enumerate(above) if (folder / MANIFEST).is_file()), 0)
-    return above[: max(FOLDERS_UP, package + 2)]
-
-
-def share_folders(environ: Mapping[str, str] = os.environ) -> list[Path]:
-    """Return the folders that hold packages' data, in the order of AMENT_PREFIX_PATH."""
-    prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    return [Path(prefix) / "share" for prefix in dict.fromkeys([*prefixes, sys.prefix])]
-
-
-def _candidates(
-    uri: str, search_path: Sequence[Path], environ: Mapping[str, str]
-) -> Iterator[Path]:
-    scheme = next((known for known in SCHEMES if uri.lower().startswith(known)), "")
-    rest = uri[len(scheme) :]
-    if not rest:
-        raise ResourceNotFoundError(f"'{uri}' names no file")
-    if not scheme and "://" in uri:
-        raise ResourceNotFoundError(
-            f"cannot read '{uri}'; {', '.join(SCHEMES)} and plain paths are understood"
-        )
-    if scheme == "file://":
-        yield Path(unquote(rest.removeprefix("localhost")))
-    elif scheme:
-        yield from _in_packages(scheme, rest, search_path, environ)
-    elif os.path.isabs(rest):
-        yield Path(rest)
-    else:
-        yield from _in_folders(rest, [*search_path, Path.cwd()])
+    return ResourceFinder(None, search_path, environ).package(name)
 
 
 def _in_folders(rest: str, folders: Sequence[Path]) -> Iterator[Path]:
@@ -130,39 +219,3 @@ def _in_folders(rest: str, folders: Sequence[Path]) -> Iterator[Path]:
     if not inside:
         raise ResourceNotFoundError(f"'{rest}' leads out of {', '.join(dict.fromkeys(roots))}")
     yield from inside
-
-
-def _in_packages(
-    scheme: str, rest: str, search_path: Sequence[Path], environ: Mapping[str, str]
-) -> Iterator[Path]:
-    name, _, inside = rest.partition("/")
-    # Put together from parts, a URI often has "//": no path of the whole file system.
-    inside = inside.lstrip("/")
-    if name in ("", ".", ".."):
-        raise ResourceNotFoundError(f"'{scheme}{rest}' names no package")
-    if os.path.normpath(inside or ".").split(os.sep)[0] == "..":
-        raise ResourceNotFoundError(f"'{scheme}{rest}' leads out of the package '{name}'")
-    if scheme == "model://":
-        yield from (folder / name / inside for folder in _model_folders(environ))
-    yield from (folder / inside for folder in package_folders(name, search_path, environ))
-
-
-def _model_folders(environ: Mapping[str, str]) -> list[Path]:
-    paths = (environ.get(variable, "") for variable in MODEL_PATH_VARIABLES)
-    return [Path(folder) for path in paths for folder in path.split(os.pathsep) if folder]
-
-
-def _folders_in(folder: Path) -> list[Path]:
-    try:
-        return sorted(path for path in folder.iterdir() if os.path.isdir(path))
-    except OSError:
-        return []
-
-
-def _package_name(folder: Path) -> str:
-    """Return what a folder's package.xml calls it, "" where there is none to be read."""
-    try:
-        found = _MANIFEST_NAME.search((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return ""
-    return found.group(1) if found else ""

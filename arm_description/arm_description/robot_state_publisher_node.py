@@ -5,17 +5,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_description.errors import DescriptionError
-from arm_node.discovery import answers_held_back
 from arm_node.process import NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 
 @contextmanager
 def application(_process: NodeProcess) -> Iterator[None]:
     """Run the node."""
-    from arm_description.ros.event_loop import spinning
-    from arm_description.ros.robot_state_publisher import RobotStatePublisher
+    from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher, spinning
 
-    with answers_held_back():
+    with prompt_discovery():
         node = RobotStatePublisher()
     with spinning(node):
         yield

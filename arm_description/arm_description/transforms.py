@@ -1,19 +1,18 @@
 """Rotations and rigid transforms in URDF's conventions.
 
-Roll, pitch and yaw turn about the fixed axes x, y, z in this order, so R = Rz(yaw) Ry(pitch)
+Roll, pitch and yaw rotate about the fixed axes x, y, z in this order, so R = Rz(yaw) Ry(pitch)
 Rx(roll). Quaternions are (x, y, z, w), as in geometry_msgs. Angles in rad, lengths in m.
 """
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, sin
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from arm_node.rigid_transform import rpy_from_rows
 
-UPRIGHT = 1e-9
-"""Cosine of a pitch at which x points along the fixed z, and roll and yaw turn about one axis."""
+Array = NDArray[np.float64]
 
 
 def rotation_from_rpy(rpy: Sequence[float]) -> Array:
@@ -30,16 +29,8 @@ def rotation_from_rpy(rpy: Sequence[float]) -> Array:
 
 
 def rpy_from_rotation(rotation: Array) -> tuple[float, float, float]:
-    """Return roll, pitch, yaw of a (3, 3) rotation; roll is 0 where only its sum with yaw counts.
-
-    The pitch is at most a quarter turn to both sides.
-    """
-    (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rotation.tolist()
-    level = hypot(r00, r10)
-    pitch = atan2(-r20, level)
-    if level < UPRIGHT:
-        return 0.0, pitch, atan2(-r01, r11)
-    return atan2(r21, r22), pitch, atan2(r10, r00)
+    """Return roll, pitch, yaw of a (3, 3) rotation; see `rpy_from_rows`."""
+    return rpy_from_rows(rotation.tolist())
 
 
 def rotation_about(axis: Sequence[float], angle: float) -> Array:
@@ -78,15 +69,18 @@ def quaternion_from_rpy(rpy: Sequence[float]) -> Array:
     )
 
 
-def quaternion_product(first: Array, second: Array) -> Array:
-    """Return the quaternion (x, y, z, w) that turns by `second`, then by `first`."""
-    x, y, z, w = first
-    a, b, c, d = second
+def rotation_from_quaternion(quaternion: Array) -> Array:
+    """Return the (3, 3) rotation of a unit quaternion (x, y, z, w)."""
+    x, y, z, w = quaternion.tolist()
     return np.array(
         [
-            w * a + x * d + y * c - z * b,
-            w * b - x * c + y * d + z * a,
-            w * c + x * b - y * a + z * d,
-            w * d - x * a - y * b - z * c,
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     )
+
+
+def wxyz_from_rpy(rpy: Sequence[float]) -> Array:
+    """Return the quaternion (w, x, y, z) of roll, pitch, yaw, in MuJoCo's order."""
+    return np.roll(quaternion_from_rpy(rpy), 1)

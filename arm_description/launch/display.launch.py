@@ -1,10 +1,6 @@
-"""Any robot without physics: its frames, and the page in the browser whose sliders move it."""
-
-import os
-from pathlib import Path
+"""Shows any robot without physics, with the page in the browser, whose sliders move it."""
 
 from launch_py import (
-    AppendEnvironmentVariable,
     DeclareLaunchArgument,
     IncludeLaunchDescription,
     LaunchDescription,
@@ -18,28 +14,20 @@ FRONT = "front"
 
 def describe(model: str, model_args: str, camera: str) -> str:
     """Return the URDF text of the model."""
-    from arm_description.xacro_arguments import arguments_of_text
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.xacro.expansion import arguments_of_text, expand_xacro
 
-    # The default is left to the model: another one may take other values of that name.
+    # The model chooses the default: another model may have other values of that name.
     cameras = {} if camera == FRONT else {"camera": camera}
     return expand_xacro(model, cameras | arguments_of_text(model_args))
 
 
-def own_folders(model: str) -> str:
-    """Return where the page finds the meshes of a model that is not installed."""
-    from arm_description.resources import folders_of
-
-    return os.pathsep.join(map(str, folders_of(Path(model))))
-
-
 def sliders(viewer: str) -> str:
-    """Return whose sliders move the joints."""
+    """Return which sliders move the joints."""
     return "page" if viewer == "true" else "none"
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the state publisher, what publishes joint states, the page and RViz."""
+    """Return the state publisher, the source of joint states, the page and RViz."""
     share = FindPackageShare("arm_description")
     return LaunchDescription(
         [
@@ -64,9 +52,6 @@ def generate_launch_description() -> LaunchDescription:
                 default_value="true",
                 description="open the page in the browser; false: joint_state_publisher instead",
                 choices=["true", "false"],
-            ),
-            AppendEnvironmentVariable(
-                "GZ_SIM_RESOURCE_PATH", Call(own_folders, LaunchConfiguration("model"))
             ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(

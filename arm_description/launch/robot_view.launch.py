@@ -1,21 +1,16 @@
-"""A robot without physics, for launch files that know which one: frames, joint states, RViz."""
+"""Shows a robot without physics, for other launch files: frames, joint states, RViz."""
 
 import os
 import shutil
 
 from launch_py import (
-    Action,
     DeclareLaunchArgument,
-    ExecuteProcess,
     IncludeLaunchDescription,
     LaunchDescription,
     Notified,
 )
-from launch_py.actions import OpaqueFunction
 from launch_py.conditions import IfCondition
-from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
-from launch_py.packages import Packages
 from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitutions import (
     AndSubstitution,
@@ -24,20 +19,21 @@ from launch_py.substitutions import (
     LaunchConfiguration,
     PathJoinSubstitution,
 )
+from launch_py.system.packages import Packages
 
 SLIDERS = "joint_state_publisher_gui"
 SWITCH = ["true", "false"]
 
 
-def whose(sliders: str) -> str:
-    """Return what moves the joints: SLIDERS, the page, or nothing."""
+def source_of_motion(sliders: str) -> str:
+    """Return which program moves the joints: SLIDERS, the page, or none."""
     if sliders == "gui":
         return SLIDERS if SLIDERS in Packages(os.environ).names() else "page"
     return sliders
 
 
 def page() -> IncludeLaunchDescription:
-    """Return the page in the browser, whose sliders stand for the robot."""
+    """Return the page in the browser, with sliders that move the joints."""
     file = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"])
     return IncludeLaunchDescription(
         PythonLaunchDescriptionSource(file),
@@ -47,8 +43,8 @@ def page() -> IncludeLaunchDescription:
 
 
 def moved_by(source: str) -> EqualsSubstitution:
-    """Return whether the joints are moved by this."""
-    return EqualsSubstitution(Call(whose, LaunchConfiguration("sliders")), source)
+    """Return whether this program moves the joints."""
+    return EqualsSubstitution(Call(source_of_motion, LaunchConfiguration("sliders")), source)
 
 
 def publisher(name: str, condition: IfCondition | None = None) -> Node:
@@ -64,43 +60,38 @@ def publisher(name: str, condition: IfCondition | None = None) -> Node:
     )
 
 
-def rviz(context: LaunchContext) -> list[Action]:
-    """Return RViz."""
-    words = context.launch_configurations
-    frame = ("-f", words["fixed_frame"]) if words["fixed_frame"] else ()
-    clock = ("--ros-args", "-p", f"use_sim_time:={words['use_sim_time']}")
-    return [
-        ExecuteProcess(
-            cmd=["rviz2", "-d", words["rviz_config_file"], *frame, *clock],
-            name="rviz2",
-            condition=IfCondition(LaunchConfiguration("use_rviz")),
-        )
-    ]
+def rviz() -> IncludeLaunchDescription:
+    """Return RViz where it is wanted, or the page in its place."""
+    file = PathJoinSubstitution([FindPackageShare("arm_viewer"), "launch", "rviz.launch.py"])
+    return IncludeLaunchDescription(
+        PythonLaunchDescriptionSource(file),
+        launch_arguments={"page_is_open": moved_by("page")},
+    )
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the state publisher, what publishes joint states, and RViz."""
+    """Return the state publisher, the source of joint states, and RViz."""
     table = {
         "robot_description": (None, "text of the URDF", None),
         "sliders": (
             "page",
-            f"that move the joints: the page's in the browser; gui: of {SLIDERS}, which comes "
-            "with a ROS 2 installation, or else the page's",
+            f"sliders that move the joints: page: in the browser; gui: {SLIDERS} of a ROS 2 "
+            "installation, or the page's without it",
             ["page", "gui", "none"],
         ),
-        "use_jsp": ("true", "publish joint states where no sliders do", SWITCH),
+        "use_jsp": ("true", "publish joint states if there are no sliders", SWITCH),
         "use_rviz": (
             "true" if shutil.which("rviz2") else "false",
-            "start RViz; it comes with a ROS 2 installation",
+            "start RViz; where it is not installed, the page in its place",
             SWITCH,
         ),
         "rviz_config_file": (
             PathJoinSubstitution([FindPackageShare("arm_description"), "config/rviz/arm.rviz"]),
-            "what RViz shows",
+            "RViz configuration file",
             None,
         ),
-        "fixed_frame": ("", "from where RViz looks, unless its file's is right", None),
-        "use_sim_time": ("false", "the nodes' clock is a simulation's", SWITCH),
+        "fixed_frame": ("", "RViz's fixed frame; empty for the one in its file", None),
+        "use_sim_time": ("false", "use simulation time", SWITCH),
     }
     return LaunchDescription(
         [
@@ -115,6 +106,6 @@ def generate_launch_description() -> LaunchDescription:
             ),
             Node(package=SLIDERS, executable=SLIDERS, condition=IfCondition(moved_by(SLIDERS))),
             page(),
-            OpaqueFunction(function=rviz),
+            rviz(),
         ]
     )

@@ -24,9 +24,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _simulation(process: NodeProcess, arguments: list[str]) -> AbstractContextManager[None]:
-    # This process draws nothing; MuJoCo would load a window library all the same, in 50 ms.
+    # This process draws nothing. Without this setting MuJoCo loads a window library, in 50 ms.
     os.environ.setdefault("MUJOCO_GL", "disabled")
-    # Imported once the environment is prepared: message packages are found through it.
+    # Imported only after the environment is prepared, because it locates the message packages.
     from arm_gazebo.ros.simulation_process import simulation_process
 
     return simulation_process(process, arguments)

@@ -1,6 +1,6 @@
-"""The camera process: renders what the simulation sends it and publishes the pictures.
+"""The camera process: renders the states that the simulation sends and publishes the images.
 
-It is started by the simulation, never by hand, and ends with it.
+The simulation starts it; nobody starts it by hand. It ends when the simulation ends.
 """
 
 import argparse
@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, GazeboError
 from arm_gazebo.feed.channel import CameraEnd
-from arm_gazebo.feed.parent_process import add_parent_arguments, follow_parent
-from arm_node.discovery import answers_held_back
+from arm_gazebo.feed.child_process import add_parent_arguments, follow_parent
+from arm_node.printable import printable_message
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 if TYPE_CHECKING:
     from arm_gazebo.camera.pipeline import CameraPipeline
@@ -36,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         follow_parent(arguments.parent)
         channel = CameraEnd(arguments.socket)
     except GazeboError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"{printable_message(str(error))}\n")
         return EXIT_USAGE
     application = partial(_application, settings, channel)
     try:
@@ -62,7 +63,7 @@ def _application(
     from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
     from arm_gazebo.ros.camera_publisher import CameraPublisher
 
-    with answers_held_back():
+    with prompt_discovery():
         node = Node("camera")
     publishers = [CameraPublisher(node, sensor) for sensor in settings.cameras]
     pipeline = CameraPipeline(
@@ -79,11 +80,13 @@ def _application(
 
 
 def _render(pipeline: "CameraPipeline", channel: CameraEnd, process: NodeProcess) -> None:
-    """Render until the simulation ends or the process is told to; in a thread of its own."""
+    """Render until the simulation ends or the process is told to stop; runs in its own thread."""
     exit_code = 0
     try:
         while not process.stopping and (messages := channel.receive()) is not None:
             pipeline.handle(messages)
+            # Repeated while nothing arrives, because the simulation may have missed the last one.
+            channel.tell_progress(camera.progress() for camera in pipeline.statistics)
     except BackendError as error:
         logger.error("%s", error)
         exit_code = EXIT_BACKEND
@@ -91,6 +94,8 @@ def _render(pipeline: "CameraPipeline", channel: CameraEnd, process: NodeProcess
         logger.critical("%s", error)
         exit_code = EXIT_FAILED
     except Exception:
+        # The thread's last frame. An OpenGL driver may raise anything; the simulation starts this
+        # process again by its exit code.
         logger.critical("rendering failed", exc_info=True)
         exit_code = EXIT_FAILED
     finally:

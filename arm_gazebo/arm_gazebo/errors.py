@@ -1,34 +1,37 @@
 """The errors of this package.
 
 GazeboError
-├── SensorError     a sensor's description
-├── CameraError     a camera's process
-│   └── BackendError  an OpenGL library that starts but does not draw
-├── OrphanError     the simulation ended before its child process was there
-├── WindowError     a window cannot be opened where the simulation runs
-├── WorldError      a world file that is missing, or neither MJCF nor SDF
-├── ModelError      a robot that cannot be made into a model
-│   └── MeshError   a mesh file that cannot be used
-├── TimingError     a control rate or a physics step that cannot be
-├── SettingsError   a parameter of the simulation node that makes no sense
-└── RefusedError    a request about the running world that cannot be met; see `refusal`
+├── SensorError     invalid sensor description
+├── CameraError     the camera process cannot work
+│   └── BackendError  an OpenGL library starts but does not draw
+├── OrphanError     the simulation ended before its child process started
+├── WindowError     a window is requested but there is no display
+├── WorldError      a world file is missing, or is neither MJCF nor SDF
+├── ModelError      a robot cannot be converted to a model
+│   └── MeshError   a mesh file cannot be used
+├── TimingError     invalid control rate or physics step
+├── BatchError      copies of a simulation cannot be made or commanded so
+├── RecordingError  a recording cannot be written, read or run again
+├── FaultError      a fault that is asked for does not exist here
+├── SimSettingsError   invalid parameter of the simulation node
+└── RequestError    a request to the running world is refused; see `refusal`
 """
 
 
 class GazeboError(Exception):
-    """Root of what this package raises; the message is a sentence for the user."""
+    """Base class of this package's errors; the message is a sentence for the user."""
 
 
 class SensorError(GazeboError):
-    """A sensor is described wrongly; the message names the sensor, the element and the line."""
+    """A sensor description is invalid; the message names the sensor, the element and the line."""
 
 
 class CameraError(GazeboError):
-    """A camera's process cannot do its work."""
+    """The camera process cannot do its work."""
 
 
 class BackendError(CameraError):
-    """An OpenGL library started in this process, but no picture comes out of it."""
+    """An OpenGL library started in this process but does not draw."""
 
 
 class OrphanError(GazeboError):
@@ -36,7 +39,7 @@ class OrphanError(GazeboError):
 
 
 class WindowError(GazeboError):
-    """A window is asked for and there is no display; the message names the fix."""
+    """A window is requested but there is no display; the message names the fix."""
 
 
 class WorldError(GazeboError):
@@ -55,5 +58,17 @@ class TimingError(GazeboError):
     """The control rate is not positive, or a fixed physics step does not divide its period."""
 
 
-class SettingsError(GazeboError):
-    """A parameter of the simulation node makes no sense; the message names it and what would."""
+class SimSettingsError(GazeboError):
+    """A parameter of the simulation node is invalid; the message names it and the valid values."""
+
+
+class BatchError(GazeboError):
+    """Copies of a simulation cannot be made or commanded so; the message says why."""
+
+
+class RecordingError(GazeboError):
+    """A recording of a run cannot be written, read or run again; the message says why."""
+
+
+class FaultError(GazeboError):
+    """A fault that is asked for cannot be; the message says what can."""

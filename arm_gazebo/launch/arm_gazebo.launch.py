@@ -1,9 +1,10 @@
-"""The main job: the simulated arm with its controllers, the state publisher, the user's node.
+"""The main launch file: the simulated arm, its controllers, the state publisher, the user's node.
 
-The simulation starts the controllers itself, which saves a process and its discovery;
+The simulation itself starts the controllers, which saves a process and its discovery.
 arm_control.launch.py starts them from outside, with the spawner.
 """
 
+from arm_control.course import COURSE_ARGUMENT, take_course
 from launch_py import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
@@ -11,9 +12,11 @@ from launch_py import (
     Notified,
     ReadyPanel,
 )
+from launch_py.actions import OpaqueFunction
 from launch_py.conditions import IfCondition, UnlessCondition
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node, ParameterValue
+from launch_py.substitution import Text
 from launch_py.substitutions import (
     EqualsSubstitution,
     IfElseSubstitution,
@@ -21,17 +24,17 @@ from launch_py.substitutions import (
     PathJoinSubstitution,
 )
 
-OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=ros1"
+OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=ros1 replace:=true"
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
 
 
-def by_interface(ros2: str, ros1: str) -> IfElseSubstitution:
-    """Return one of two texts, as the argument `interface` says."""
+def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
+    """Return one of two texts, selected by the argument `interface`."""
     return IfElseSubstitution(IS_ROS1, if_value=ros1, else_value=ros2)
 
 
 def panels() -> list[ReadyPanel]:
-    """Return what the user is told, one for each interface."""
+    """Return the panels shown to the user, one for each interface."""
     return [
         ReadyPanel(
             title="The arm is up",
@@ -51,12 +54,32 @@ def panels() -> list[ReadyPanel]:
             topics=[
                 ("/arm/j0p_controller/command", "std_msgs/msg/Float64; likewise j1p, j2p, j3p"),
                 ("/arm/joint_states", "sensor_msgs/msg/JointState, 50 Hz"),
-                ("/arm/videocamera", "sensor_msgs/msg/Image"),
+                ("/camera/image_raw", "sensor_msgs/msg/Image, 800x800"),
             ],
             commands=[("its own pose", OWN_POSE)],
             condition=IfCondition(IS_ROS1),
         ),
     ]
+
+
+def controller_node() -> Node:
+    """Return the controller node without a pose."""
+    return Node(
+        package="arm_controller",
+        executable="arm_controller_node",
+        namespace=LaunchConfiguration("namespace"),
+        parameters=[
+            {
+                "print_period": 0.0,
+                "command_topic": ParameterValue(
+                    by_interface("position_controller/commands", "{joint}p_controller/command"),
+                    value_type=str,
+                ),
+            }
+        ],
+        ready=Notified(),
+        condition=IfCondition(LaunchConfiguration("controller_node")),
+    )
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -65,6 +88,8 @@ def generate_launch_description() -> LaunchDescription:
     single = ",".join(f"j{i}p_controller" for i in range(4))
     return LaunchDescription(
         [
+            DeclareLaunchArgument("course", **COURSE_ARGUMENT),
+            OpaqueFunction(function=take_course),
             DeclareLaunchArgument(
                 "interface",
                 default_value="ros2",
@@ -72,9 +97,14 @@ def generate_launch_description() -> LaunchDescription:
                 description="one controller of all joints, or as in ROS 1 one for each under /arm",
             ),
             DeclareLaunchArgument(
+                "robot_name",
+                default_value="arm",
+                description="with interface:=ros1, the namespace of all nodes of the robot",
+            ),
+            DeclareLaunchArgument(
                 "namespace",
-                default_value=by_interface("", "arm"),
-                description="of all nodes of the robot",
+                default_value=by_interface("", LaunchConfiguration("robot_name")),
+                description="namespace of all nodes of the robot",
             ),
             DeclareLaunchArgument(
                 "spawn",
@@ -82,29 +112,19 @@ def generate_launch_description() -> LaunchDescription:
                     "joint_state_broadcaster,position_controller",
                     f"joint_state_broadcaster,{single}",
                 ),
-                description="controllers to start with the simulation, with commas",
+                description="controllers to start with the simulation, separated by commas",
+            ),
+            DeclareLaunchArgument(
+                "controller_node",
+                default_value="true",
+                description="start arm_controller_node too, without a pose",
+                choices=["true", "false"],
             ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(world),
                 launch_arguments={"spawn": LaunchConfiguration("spawn")},
             ),
-            Node(
-                package="arm_controller",
-                executable="arm_controller_node",
-                namespace=LaunchConfiguration("namespace"),
-                parameters=[
-                    {
-                        "print_period": 0.0,
-                        "command_topic": ParameterValue(
-                            by_interface(
-                                "position_controller/commands", "{joint}p_controller/command"
-                            ),
-                            value_type=str,
-                        ),
-                    }
-                ],
-                ready=Notified(),
-            ),
+            controller_node(),
             *panels(),
         ]
     )

@@ -1,17 +1,14 @@
 """Any robot in any world: the simulation with its controllers, and the state publisher."""
 
-import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from launch_py import (
     Action,
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
-    ExecuteProcess,
     IncludeLaunchDescription,
     LaunchDescription,
     LogInfo,
@@ -27,27 +24,27 @@ from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
 
 MODEL_PATH = "GZ_SIM_RESOURCE_PATH"
-"""Where Gazebo's users say where their models are."""
+"""The environment variable with Gazebo's model folders."""
 ROBOT_ARGUMENTS = {
     "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
     "controllers": (
         "",
         "parameter file of the controller manager and its controllers, where ${name} or "
-        "$(var name) is an argument of the model; without one a position controller is made up",
+        "$(var name) is an argument of the model; by default a position controller",
     ),
     "spawn": (
         "auto",
-        "controllers to start with the simulation, with commas; auto starts those whose joints "
-        "are free, in the file's order, and leaves out what cannot start",
+        "controllers to start with the simulation, separated by commas; auto starts those whose "
+        "joints are not claimed yet, in the file's order, and leaves out those that cannot start",
     ),
     "package_path": (
         "",
-        "folders for package:// and $(find ...), besides the model's own package and its "
-        "neighbours, with colons",
+        "folders for package:// and $(find ...), separated by colons; searched after the model's "
+        "own package and before its neighbours and the installed packages",
     ),
-    "namespace": ("", "of all nodes of the robot"),
+    "namespace": ("", "namespace of all nodes of the robot"),
     "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
-    "pose": ("", 'of the root in the world, in m and rad: "[x, y, z, roll, pitch, yaw]"'),
+    "pose": ("", 'pose of the root in the world, in m and rad: "[x, y, z, roll, pitch, yaw]"'),
     "robots": (
         "",
         "YAML file of several robots in one world, instead of a model: NAMESPACE: {model: FILE, "
@@ -60,25 +57,47 @@ SIMULATION_ARGUMENTS = {
         "empty",
         "empty, objects, shapes, pick_and_place_demo, house, or a MuJoCo XML or SDF file",
     ),
-    "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible"),
-    "physics_step": ("0.0", "in s; 0 chooses one of at most 2 ms that fits the control rate"),
+    "real_time_factor": ("1.0", "ratio of simulation time to wall time; 0 is as fast as possible"),
+    "physics_step": ("0.0", "step in s; 0 chooses one up to 2 ms that divides the control period"),
+    "paused": ("false", "start paused; `arm sim play` continues", ["true", "false"]),
+    "lockstep": (
+        "",
+        "stamped topics, or nodes by their ~/tick_done, that answer each control period before the "
+        "next one begins",
+    ),
+    "lockstep_timeout": ("10.0", "s of wall time without an answer that pause the simulation"),
     "hold_joints": ("true", "joints that no controller claims hold their position"),
-    "self_collide": ("false", "links of the robot touch each other"),
-    "strict": ("false", "a missing mesh is an error, not a box and a warning"),
-    "render_backend": ("auto", "of the cameras", ["auto", "egl", "osmesa", "raycast"]),
-    "headless": ("true", "false opens a window on the simulation", ["true", "false"]),
+    "position_proportional_gain": (
+        "0.0",
+        "as gz_ros2_control's, from 0 to 1: a position command is approached at this fraction of "
+        "the distance in each control period; 0 moves joints as fast as they can",
+    ),
+    "self_collide": ("false", "links of the robot collide with each other"),
+    "strict": ("false", "a missing mesh is an error instead of a box and a warning"),
+    "render_backend": (
+        "auto",
+        "render backend of the cameras",
+        ["auto", "egl", "osmesa", "raycast"],
+    ),
+    "headless": ("true", "false opens a window", ["true", "false"]),
+    "reset_clock": ("true", "a reset sets the clock to zero", ["true", "false"]),
+    "record_run": ("", "file to record the run to, for `arm sim replay`"),
 }
 
 NODE_ARGUMENTS = {
     "log_level": (
         "info",
-        "from which on the simulation logs",
+        "log level of the simulation",
         ["info", "warn", "error", "fatal"],
     ),
-    "use_sim_time": ("true", "the state publisher's clock is the simulation's", ["true", "false"]),
-    "use_robot_state_pub": ("true", "publish where the links are", ["true", "false"]),
-    "viewer": ("false", "open the page in the browser, to see and move it", ["true", "false"]),
-    "use_rviz": ("false", "start RViz; it comes with a ROS 2 installation", ["true", "false"]),
+    "use_sim_time": ("true", "the state publisher uses simulation time", ["true", "false"]),
+    "use_robot_state_pub": ("true", "publish the links' transforms on /tf", ["true", "false"]),
+    "viewer": ("false", "serve the browser page that shows and moves it", ["true", "false"]),
+    "use_rviz": (
+        "false",
+        "start RViz; the browser page replaces it if it is not installed",
+        ["true", "false"],
+    ),
 }
 
 
@@ -97,7 +116,7 @@ def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
 
 @contextmanager
 def usage_errors() -> Iterator[None]:
-    """Say what an argument names wrongly as the packages say it, and no more."""
+    """Turn errors of the packages about arguments into usage errors without a traceback."""
     from arm_description.errors import DescriptionError
     from arm_gazebo.errors import GazeboError
 
@@ -108,7 +127,7 @@ def usage_errors() -> Iterator[None]:
 
 
 def take_gz_args(context: LaunchContext) -> None:
-    """Let Gazebo's words stand for the arguments of this file that nobody has given."""
+    """Set the arguments of this file that the user has not given from Gazebo's options."""
     from arm_gazebo.launching.gz_arguments import launch_arguments
 
     with usage_errors():
@@ -118,16 +137,16 @@ def take_gz_args(context: LaunchContext) -> None:
 
 
 def simulate(context: LaunchContext) -> list[Action]:
-    """Return the nodes of a robot, or of several, and what was made up for them."""
+    """Return the nodes of a robot, or of several, and messages about added defaults."""
     with usage_errors():
         return nodes(context.launch_configurations)
 
 
 def nodes(words: Mapping[str, str]) -> list[Action]:
-    """Return them after a look at what the arguments name, before anything starts."""
-    # Here, so that --show-args needs nothing but this file.
+    """Check the arguments before anything starts, and return the nodes."""
+    # Imported here, so that --show-args needs only this file.
     from arm_gazebo.launching.robot_setup import set_up_robot
-    from arm_gazebo.model.world_path import find_world
+    from arm_gazebo.launching.world_path import find_world
     from arm_gazebo.window.display import check_display
 
     if words["headless"] == "false":
@@ -147,7 +166,6 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
     place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
     return [
         *(LogInfo(msg=remark) for remark in setup.remarks),
-        files_findable(setup.package_path),
         simulation({**setup.parameters(), **place}, [setup.controllers], words["namespace"]),
         state_publisher(setup.description, words["namespace"]),
     ]
@@ -174,18 +192,12 @@ def simulate_several(path: str) -> list[Action]:
             settings[name]["pose"] = list(robot.pose)
         settings[name] |= setup.parameters()
         others += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
-        others.append(files_findable(setup.package_path))
         others.append(state_publisher(setup.description, name))
     return [simulation({"robots": list(settings), **settings}, controllers), *others]
 
 
-def files_findable(folders: Iterable[Path]) -> AppendEnvironmentVariable:
-    """Return what lets the page, too, find the meshes of a robot that is not installed."""
-    return AppendEnvironmentVariable(MODEL_PATH, os.pathsep.join(map(str, folders)))
-
-
 def simulation(settings: dict[str, Any], controllers: list[Any], namespace: str = "") -> Node:
-    """Return the node that simulates; `settings` are what its arguments do not tell."""
+    """Return the simulation node; `settings` are parameters that are not launch arguments."""
     every = {**settings, **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS}}
     return Node(
         package="arm_gazebo",
@@ -199,7 +211,7 @@ def simulation(settings: dict[str, Any], controllers: list[Any], namespace: str 
 
 
 def state_publisher(description: str, namespace: str) -> Node:
-    """Return the node that publishes where a robot's links are."""
+    """Return the node that publishes the transforms of a robot's links."""
     use_sim_time = LaunchConfiguration("use_sim_time")
     return Node(
         package="arm_description",
@@ -220,13 +232,14 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "gz_args",
                 default_value="",
-                description='Gazebo\'s words for the same: "-r -v 4 objects.sdf"',
+                description='the same as Gazebo\'s options: "-r -v 4 objects.sdf"',
             ),
             OpaqueFunction(function=take_gz_args),
             DeclareLaunchArgument(
                 "resource_path",
                 default_value="",
-                description="folders for model://, before GZ_SIM_RESOURCE_PATH's own, with colons",
+                description="folders for model://, separated by colons, before "
+                "GZ_SIM_RESOURCE_PATH",
             ),
             AppendEnvironmentVariable(
                 MODEL_PATH, LaunchConfiguration("resource_path"), prepend=True
@@ -250,13 +263,13 @@ def generate_launch_description() -> LaunchDescription:
                 ),
                 condition=IfCondition(LaunchConfiguration("viewer")),
             ),
-            ExecuteProcess(
-                cmd=[
-                    *("rviz2", "-d", LaunchConfiguration("rviz_config_file")),
-                    *("--ros-args", "-p", ["use_sim_time:=", LaunchConfiguration("use_sim_time")]),
-                ],
-                name="rviz2",
-                condition=IfCondition(LaunchConfiguration("use_rviz")),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(
+                    PathJoinSubstitution(
+                        [FindPackageShare("arm_viewer"), "launch", "rviz.launch.py"]
+                    )
+                ),
+                launch_arguments={"page_is_open": LaunchConfiguration("viewer")},
             ),
         ]
     )

@@ -1,12 +1,13 @@
 """Build ROS 2 interface packages from pip wheels, without CMake and colcon.
 
-The way from a ``.msg`` file to something that ``import`` finds:
+The steps from a ``.msg`` file to an importable module:
 
 1. ``generation``: the rosidl generators of the wheels write C, C++ and Python.
-2. ``translation_unit``: their many small C files are gathered into few, then compiled.
+2. ``translation_unit``: their many small C files are merged into a few, then compiled.
 3. ``library``: three shared libraries per package are linked.
-4. ``share_folder``: the definitions and the ament index markers are laid out.
+4. ``lazy_imports``: importing a package imports only the classes that are used.
+5. ``share_folder``: the definitions and the ament index markers are laid out.
 
-``package_build`` puts these in order for one package, ``parallel_build`` runs all packages on
-all cores, ``command`` and ``backend`` tie the whole to setuptools and pip.
+``package_build`` orders these steps for one package, ``parallel_build`` builds all packages on all
+cores, ``command`` and ``backend`` connect the build to setuptools and pip.
 """

@@ -1,4 +1,4 @@
-"""What pip calls: setuptools' own hooks, after a look at whether the build can work at all."""
+"""The hooks that pip calls: setuptools' own, after checks that the build is possible."""
 
 import platform
 import sys
@@ -16,21 +16,21 @@ get_requires_for_build_sdist = build_meta.get_requires_for_build_sdist
 prepare_metadata_for_build_wheel = build_meta.prepare_metadata_for_build_wheel
 
 _PROJECT = Path(__file__).parent.parent / "pyproject.toml"
-# The generators ask for any EmPy; the next major version may not run their templates.
+# The generators accept any EmPy, but the next major version may not run their templates.
 _BUILD_ONLY = ["empy>=4.2,<5"]
 _NOT_EDITABLE = (
     "arm_interfaces cannot be installed editable, because its modules are compiled and not in the "
-    "source tree; install it without -e, and again after a change of a definition"
+    "source tree; install it without -e, and again after changing a definition"
 )
 
 _Settings = Mapping[str, str | list[str] | None] | None
 
 
 def get_requires_for_build_wheel(config_settings: _Settings = None) -> list[str]:
-    """Check for the compilers, then ask for what the packages need at run time.
+    """Check for the compilers, then require the packages' run-time dependencies.
 
-    The generators, headers and libraries come in the same wheels as the run time, and must be of
-    the same version, so that one list serves both.
+    The generators, headers and libraries are in the same wheels as the run time and must have the
+    same version, so one list serves both.
     """
     _check_machine()
     project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
@@ -43,7 +43,7 @@ def build_wheel(
     config_settings: _Settings = None,
     metadata_directory: str | None = None,
 ) -> str:
-    """Build the wheel; an error of the build is one message instead of a traceback."""
+    """Build the wheel; a build error becomes one message instead of a traceback."""
     try:
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
     except BuildError as error:
@@ -60,12 +60,12 @@ def build_editable(
     config_settings: _Settings = None,
     metadata_directory: str | None = None,
 ) -> str:
-    """Refuse; pip looks for this hook before it asks for the requirements of it."""
+    """Refuse; pip looks for this hook before it calls the one for its requirements."""
     raise SystemExit(_NOT_EDITABLE)
 
 
 def _check_machine() -> None:
-    """End with one sentence where the ROS 2 wheels or the compilers are missing."""
+    """Exit with one sentence if the ROS 2 wheels or the compilers are missing."""
     if sys.platform != "linux" or platform.machine() != "x86_64":
         raise SystemExit(
             "arm_interfaces needs the ROS 2 wheels, which exist for Linux on x86_64 only; "

@@ -1,4 +1,4 @@
-"""The setuptools commands that make the interface packages."""
+"""The setuptools commands that build the interface packages."""
 
 import sys
 from pathlib import Path
@@ -9,7 +9,7 @@ from setuptools.command.egg_info import egg_info
 
 from interface_build import share_folder
 from interface_build.interface_package import InterfacePackage, find_packages
-from interface_build.progress import Progress
+from interface_build.progress import BuildProgress
 from interface_build.scratch import scratch_folder
 from interface_build.toolchain import find_toolchain
 
@@ -26,10 +26,10 @@ class Build(build):
 
 
 class EggInfo(egg_info):
-    """Keeps setuptools' notes outside the source tree."""
+    """Keeps setuptools' metadata outside the source tree."""
 
     def initialize_options(self) -> None:
-        """Set the folder for the notes."""
+        """Set the folder for the metadata."""
         super().initialize_options()
         self.egg_base = str(scratch_folder("egg_info"))
 
@@ -37,15 +37,15 @@ class EggInfo(egg_info):
 class BuildInterfaces(build_ext):
     """Generates, compiles and links all interface packages.
 
-    The extensions that setup.py names carry no sources: they only tell setuptools that the wheel
-    belongs to one Python version and platform.
+    The extensions in setup.py have no sources: they only tell setuptools that the wheel is for one
+    Python version and platform.
     """
 
     def run(self) -> None:
-        """Build into ``build_lib`` and announce the files for ``share``.
+        """Build into ``build_lib`` and register the files for ``share``.
 
         Raises:
-            BuildError: a tool is missing, or refused its input.
+            BuildError: a tool is missing or failed.
         """
         packages = find_packages(_DEFINITIONS)
         _build_packages(packages, Path(self.build_lib))
@@ -57,13 +57,14 @@ class BuildInterfaces(build_ext):
 
 def _build_packages(packages: tuple[InterfacePackage, ...], target: Path) -> None:
     """Build all packages, each into its folder below ``target``."""
-    # The generators are there for a wheel only, and setuptools loads this module for an sdist too.
+    # The generators are only installed for a wheel, but setuptools loads this module for an sdist
+    # too.
     from interface_build.package_build import PackageBuild
     from interface_build.parallel_build import build_all
     from interface_build.ros_prefix import find_ros_prefix
     from interface_build.work_folder import WorkFolder
 
-    progress = Progress(sys.stderr)
+    progress = BuildProgress(sys.stderr)
     toolchain = find_toolchain()
     prefix = find_ros_prefix()
     count = sum(len(package.interfaces) for package in packages)

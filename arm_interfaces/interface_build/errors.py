@@ -1,14 +1,14 @@
-"""What can go wrong in a build.
+"""The errors of a build.
 
 BuildError
 |-- MissingToolError    a compiler or a header is not installed
-|-- MissingRosError     the ROS 2 wheels are not where the build looks
+|-- MissingRosError     the ROS 2 wheels were not found
 `-- CompileError        the compiler or the linker refused its input
 """
 
 
 class BuildError(Exception):
-    """Root of all errors that a build raises on purpose; the message is for the user."""
+    """Root of this package's errors; the message is for the user."""
 
 
 class MissingToolError(BuildError):
@@ -16,7 +16,7 @@ class MissingToolError(BuildError):
 
 
 class MissingRosError(BuildError):
-    """The ROS 2 wheels are not where the build looks."""
+    """The ROS 2 wheels were not found."""
 
 
 class CompileError(BuildError):

@@ -1,13 +1,14 @@
 """Call the rosidl generators of the wheels as functions.
 
-Their command line does not work there: each wheel carries its entry points twice, which the
-command rejects. A generator reads its arguments from a JSON file and keeps its template engine in
-a global, so it must have a process, not only a thread, for itself.
+Their command line does not work: each wheel contains its entry points twice, which the command
+rejects. A generator reads its arguments from a JSON file and keeps its template engine in a global,
+so each needs its own process, not only a thread.
 """
 
 import contextlib
 import io
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -32,12 +33,14 @@ _CONVERTERS = {
     "action": convert_action_to_idl,
 }
 
-# rmw_fastrtps serialises by the first, but registers a type at create_publisher by the second.
+CACHES = {"parse_cache": parse_cache.install, "template_cache": template_cache.install}
+
+# rmw_fastrtps serialises with the first, but create_publisher registers a type with the second.
 _TYPE_SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"]
 
 
 def describe(package: InterfacePackage, work: WorkFolder, prefix: RosPrefix) -> None:
-    """Write the IDL files and the type descriptions, which everything else builds upon."""
+    """Write the IDL files and the type descriptions, which all other steps need."""
     _install_caches()
     work.create()
     with contextlib.redirect_stdout(io.StringIO()):
@@ -125,7 +128,7 @@ def _generate(
     work: WorkFolder,
     prefix: RosPrefix,
 ) -> None:
-    """Run one generator quietly with the templates of its own name."""
+    """Run one generator silently with its templates."""
     _install_caches()
     arguments["template_dir"] = str(prefix.template_folder(name))
     with contextlib.redirect_stdout(io.StringIO()):
@@ -133,13 +136,18 @@ def _generate(
 
 
 def _install_caches() -> None:
-    """Save repeated work of the generators in this worker process."""
-    parse_cache.install()
-    template_cache.install()
+    """Cache repeated work of the generators in this worker process.
+
+    ARM_WITHOUT switches the caches off by name, like the workarounds of the suite.
+    """
+    off = {word.strip() for word in os.environ.get("ARM_WITHOUT", "").split(",")}
+    for name, install in CACHES.items():
+        if off.isdisjoint({name, "all"}):
+            install()
 
 
 def _arguments(package: InterfacePackage, work: WorkFolder, output: Path) -> dict[str, object]:
-    """Return what every generator wants to know."""
+    """Return the arguments that every generator needs."""
     return {
         "package_name": package.name,
         "output_dir": str(output),
@@ -150,7 +158,7 @@ def _arguments(package: InterfacePackage, work: WorkFolder, output: Path) -> dic
 
 
 def _write_arguments(work: WorkFolder, name: str, arguments: dict[str, object]) -> str:
-    """Store the arguments where the generator reads them; return the path."""
+    """Write the arguments to the file that the generator reads; return its path."""
     path = work.arguments / f"{name}.json"
     path.write_text(json.dumps(arguments), encoding="utf-8")
     return str(path)
@@ -159,7 +167,7 @@ def _write_arguments(work: WorkFolder, name: str, arguments: dict[str, object]) 
 def _write_visibility_headers(
     package: InterfacePackage, work: WorkFolder, prefix: RosPrefix
 ) -> None:
-    """Fill in the three export headers, which CMake would write otherwise."""
+    """Write the three export headers, which CMake would write otherwise."""
     folder = work.generated / "msg"
     folder.mkdir(exist_ok=True)
     for generator in ("rosidl_generator_c", *_TYPE_SUPPORTS):

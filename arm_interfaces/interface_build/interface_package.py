@@ -1,4 +1,4 @@
-"""The interface definitions of one ROS package, as they stand in the source tree."""
+"""The interface definitions of one ROS package in the source tree."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,7 +36,7 @@ class Interface:
 
 @dataclass(frozen=True, slots=True)
 class InterfacePackage:
-    """A ROS package that holds nothing but definitions."""
+    """A ROS package that contains only definitions."""
 
     name: str
     root: Path
@@ -57,7 +57,7 @@ class InterfacePackage:
 def find_packages(folder: Path) -> tuple[InterfacePackage, ...]:
     """Read every package below ``folder``, the largest first.
 
-    A large package that starts last would leave the other cores idle at the end.
+    A large package that started last would leave the other cores idle at the end.
     """
     roots = sorted(path.parent.resolve() for path in folder.glob("*/package.xml"))
     packages = [InterfacePackage(root.name, root, _find_interfaces(root)) for root in roots]

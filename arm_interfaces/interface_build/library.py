@@ -1,11 +1,11 @@
 """Link the three shared libraries of a package.
 
-``rosidl_typesupport_c`` opens the type supports at run time, by the library names
-``lib<package>__rosidl_typesupport_{fastrtps,introspection}_c.so``, and looks on no path of ours.
-The dynamic loader returns a library that is already loaded under the same soname, so the
-extension module, which Python finds by its path, names both as needed and thereby loads them.
-All code lies in the first; the second is empty, because a symbol lookup in it goes on into what
-it needs.
+``rosidl_typesupport_c`` opens the type supports at run time by their library names
+``lib<package>__rosidl_typesupport_{fastrtps,introspection}_c.so``, but does not search the
+package's folder. The dynamic loader returns a library that is already loaded under the same soname,
+so the extension module, which Python finds by its path, lists both as needed and thereby loads
+them. All code is in the first; the second is empty, because a symbol lookup in it continues in the
+libraries that it needs.
 """
 
 import sysconfig
@@ -40,7 +40,7 @@ class LibraryNames:
 
     @property
     def code(self) -> str:
-        """The library that holds everything, found as the Fast DDS type support."""
+        """The library with all code, found as the Fast DDS type support."""
         return f"lib{self.package}__rosidl_typesupport_fastrtps_c.so"
 
     @property
@@ -86,7 +86,7 @@ def link_libraries(
 
 
 def _code_flags(names: LibraryNames, prefix: RosPrefix) -> list[str]:
-    """Link with those libraries of the wheels that the objects refer to."""
+    """Return flags that link the wheels' libraries that the objects use."""
     folder = prefix.library_folder
     messages = sorted(
         path.name for path in folder.glob("lib*__rosidl_*.so") if not path.stem.endswith("_cpp")
@@ -102,7 +102,7 @@ def _code_flags(names: LibraryNames, prefix: RosPrefix) -> list[str]:
 
 
 def _flags(soname: str, folder: Path, needed: list[str]) -> list[str]:
-    """Link with libraries in the same folder, whether or not a symbol asks for them."""
+    """Return flags that link libraries in the same folder, even without undefined symbols."""
     return [
         f"-Wl,-soname,{soname}",
         f"-L{folder}",

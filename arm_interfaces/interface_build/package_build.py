@@ -1,4 +1,4 @@
-"""The steps that turn one interface package into an importable one."""
+"""The build steps of one interface package."""
 
 import functools
 import shutil
@@ -11,6 +11,7 @@ import numpy as np
 
 from interface_build import generation, library
 from interface_build.interface_package import InterfacePackage
+from interface_build.lazy_imports import make_lazy
 from interface_build.ros_prefix import RosPrefix
 from interface_build.toolchain import Toolchain
 from interface_build.translation_unit import TranslationUnit, find_units
@@ -18,11 +19,11 @@ from interface_build.work_folder import WorkFolder
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class BuildStep:
     """Work for one process.
 
     Attributes:
-        label: what the user reads when it is done.
+        label: text for the user when it is done.
         run: a picklable function without arguments.
     """
 
@@ -32,10 +33,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class PackageBuild:
-    """All that the build of one package needs to know; sent to the worker processes.
+    """The inputs for the build of one package; sent to the worker processes.
 
     Attributes:
-        package: what to build.
+        package: the package to build.
         work: folder for intermediate files.
         prefix: the ROS 2 wheels.
         toolchain: the compilers.
@@ -48,20 +49,20 @@ class PackageBuild:
     toolchain: Toolchain
     target: Path
 
-    def stages(self) -> list[list[Step]]:
-        """List the stages; the steps of a stage may run side by side."""
+    def stages(self) -> list[list[BuildStep]]:
+        """Return the stages; the steps of a stage may run in parallel."""
         name = self.package.name
         return [
-            [Step(f"described {name}", self._describe)],
+            [BuildStep(f"described {name}", self._describe)],
             [
-                Step(f"generated {name} {label}", functools.partial(self._generate, label))
+                BuildStep(f"generated {name} {label}", functools.partial(self._generate, label))
                 for label in generation.GENERATORS
             ],
             [
-                Step(f"compiled {name} {unit.name}", functools.partial(self._compile, unit))
+                BuildStep(f"compiled {name} {unit.name}", functools.partial(self._compile, unit))
                 for unit in find_units(self.package, self.work)
             ],
-            [Step(f"finished {name}", self._finish)],
+            [BuildStep(f"finished {name}", self._finish)],
         ]
 
     @property
@@ -84,7 +85,7 @@ class PackageBuild:
         unit.compile(self.toolchain, self._includes)
 
     def _finish(self) -> None:
-        """Link, and copy the Python modules beside the libraries."""
+        """Link, copy the Python modules beside the libraries, and make their imports lazy."""
         library.link_libraries(
             self.package, self.work, self.prefix, self.toolchain, self._includes, self.target
         )
@@ -92,3 +93,7 @@ class PackageBuild:
             copy = self.target / module.relative_to(self.work.generated)
             copy.parent.mkdir(exist_ok=True)
             shutil.copyfile(module, copy)
+        for kind in self.package.kinds:
+            classes = self.target / kind / "__init__.py"
+            lazy = make_lazy(classes.read_text(encoding="utf-8"), f"{self.package.name}.{kind}")
+            classes.write_text(lazy, encoding="utf-8")

@@ -5,31 +5,31 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 
-from interface_build.package_build import PackageBuild, Step
+from interface_build.package_build import BuildStep, PackageBuild
 
-# Beyond this the longest single step decides, and each C++ compiler takes 200 MB.
-_MOST_WORKERS = 8
+# With more workers the longest step dominates, and each C++ compiler takes 200 MB.
+_MAX_WORKERS = 8
 
 
 def build_all(builds: Sequence[PackageBuild], report: Callable[[str, int, int], None]) -> None:
     """Run all stages of all builds.
 
-    The worker processes are forked: a spawned one would start Python, and with the ROS wheels
-    start it twice, for steps of a tenth of a second.
+    The worker processes are forked: spawning would start Python, with the ROS wheels even twice,
+    for steps of a tenth of a second.
 
     Args:
-        builds: the longest first.
-        report: called after each step with its label, the steps done and the steps in all.
+        builds: the builds, the longest first.
+        report: called after each step with its label, the completed steps and the total.
 
     Raises:
-        BuildError: a step failed; those that run are finished, the others are dropped.
+        BuildError: a step failed; running steps are finished, the others are dropped.
     """
     stages = [build.stages() for build in builds]
     total = sum(len(stage) for build in stages for stage in build)
     done = 0
     with _create_pool() as pool:
         try:
-            running: dict[Future[None], tuple[Step, int]] = {}
+            running: dict[Future[None], tuple[BuildStep, int]] = {}
             for index, build in enumerate(stages):
                 _submit(pool, build.pop(0), index, running)
             while running:
@@ -42,22 +42,22 @@ def build_all(builds: Sequence[PackageBuild], report: Callable[[str, int, int], 
                     stage_over = all(other != index for _, other in running.values())
                     if stage_over and stages[index]:
                         _submit(pool, stages[index].pop(0), index, running)
-        except BaseException:
+        except BaseException:  # Also after Ctrl-C, no further step of the build starts.
             pool.shutdown(cancel_futures=True)
             raise
 
 
 def _create_pool() -> ProcessPoolExecutor:
     """Start one worker per core that this process may use."""
-    workers = min(len(os.sched_getaffinity(0)), _MOST_WORKERS)
+    workers = min(len(os.sched_getaffinity(0)), _MAX_WORKERS)
     return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("fork"))
 
 
 def _submit(
     pool: ProcessPoolExecutor,
-    steps: Sequence[Step],
+    steps: Sequence[BuildStep],
     index: int,
-    running: dict[Future[None], tuple[Step, int]],
+    running: dict[Future[None], tuple[BuildStep, int]],
 ) -> None:
     """Hand the steps of one stage to the pool."""
     for step in steps:

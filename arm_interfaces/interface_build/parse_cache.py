@@ -1,7 +1,7 @@
-"""Let the rosidl generators share one parse of each IDL file.
+"""Make the rosidl generators share one parse of each IDL file.
 
-Each generator parses every file anew with a slow Earley parser, which is a quarter of the whole
-generation. Their templates only read the result, so that one parse serves all of them.
+Each generator parses every file again with a slow Earley parser, which takes a quarter of the whole
+generation. Their templates only read the result, so one parse serves all of them.
 """
 
 import functools
@@ -22,13 +22,13 @@ _READERS = (
 
 
 def install() -> None:
-    """Put the cache before the parser in every generator; for a worker process of ours only."""
+    """Replace the parser in every generator by a caching one; only for a worker process."""
     for module in _READERS:
         setattr(module, _NAME, _parse)
 
 
 def _parse(locator: IdlLocator) -> IdlFile:
-    """Parse a file, or return what came out the last time."""
+    """Return the parse of a file, from the cache if possible."""
     return _parse_once(Path(locator.basepath), Path(locator.relative_path))
 
 

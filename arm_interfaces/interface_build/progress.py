@@ -1,20 +1,20 @@
-"""Say how far the build is; pip shows it with ``-v``."""
+"""Report the progress of the build; pip shows it with ``-v``."""
 
 from typing import TextIO
 
 
-class Progress:
+class BuildProgress:
     """Writes one line per step to a stream."""
 
     def __init__(self, stream: TextIO) -> None:
-        """Write to ``stream``, flushing each line so that a pipe shows it at once."""
+        """Write to ``stream``, flushing each line so that it passes a pipe immediately."""
         self._stream = stream
 
     def say(self, sentence: str) -> None:
-        """Write a line of its own."""
+        """Write a line."""
         self._stream.write(f"arm_interfaces: {sentence}\n")
         self._stream.flush()
 
     def report(self, label: str, done: int, total: int) -> None:
-        """Write what was done and how far that is."""
+        """Write the completed step and the percentage."""
         self.say(f"[{100 * done // total:3d} %] {label}")

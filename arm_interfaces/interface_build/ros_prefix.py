@@ -1,4 +1,4 @@
-"""Where the ROS 2 wheels put their headers, libraries and templates."""
+"""Finds the headers, libraries and templates of the ROS 2 wheels."""
 
 import importlib.util
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from interface_build.errors import MissingRosError
 
 @dataclass(frozen=True, slots=True)
 class RosPrefix:
-    """The folder that holds ``include``, ``lib`` and ``share`` of the wheels."""
+    """The folder with ``include``, ``lib`` and ``share`` of the wheels."""
 
     root: Path
 
@@ -26,7 +26,7 @@ class RosPrefix:
         }
 
     def include_folders(self) -> list[Path]:
-        """List the include folders; most packages keep one level more: ``<p>/<p>/x.h``."""
+        """List the include folders; most packages have one more level: ``<p>/<p>/x.h``."""
         include = self.root / "include"
         nested = [path for path in sorted(include.iterdir()) if (path / path.name).is_dir()]
         return [include, *nested]
@@ -38,12 +38,12 @@ class RosPrefix:
 
 
 def find_ros_prefix() -> RosPrefix:
-    """Find the prefix by a package that is certainly in it.
+    """Find the prefix from the path of a package in it.
 
-    ``sys.prefix`` would be wrong: in pip's build isolation the wheels lie in an overlay.
+    ``sys.prefix`` would be wrong: with pip's build isolation the wheels are in an overlay.
 
     Raises:
-        MissingRosError: the wheels are not installed, or are laid out in another way.
+        MissingRosError: the wheels are not installed, or have another layout.
     """
     spec = importlib.util.find_spec("rosidl_runtime_c")
     for location in (spec and spec.submodule_search_locations) or ():
@@ -53,6 +53,6 @@ def find_ros_prefix() -> RosPrefix:
             if headers.is_dir() and templates.is_dir():
                 return RosPrefix(folder)
     raise MissingRosError(
-        "arm_interfaces needs the ROS 2 wheels to build and does not find them; "
-        "install it by 'pip install' with build isolation, which fetches them"
+        "arm_interfaces needs the ROS 2 wheels to build, but they were not found; "
+        "install it with 'pip install' and build isolation, which downloads them"
     )

@@ -1,4 +1,4 @@
-"""What goes to ``share``: recorders and command line tools read definitions there."""
+"""The files for ``share``, where recorders and command-line tools read definitions."""
 
 from pathlib import Path
 
@@ -8,11 +8,11 @@ _INDEX = "share/ament_index/resource_index"
 
 
 def data_files(package: InterfacePackage, work: Path) -> list[tuple[str, list[str]]]:
-    """List the files by the folder that they go to, as setuptools wants them.
+    """List the files by their destination folder, in setuptools' form.
 
     Args:
-        package: whose files they are.
-        work: a folder for the files that are made here.
+        package: the package.
+        work: a folder for generated files.
     """
     share = f"share/{package.name}"
     definitions = [
@@ -34,7 +34,7 @@ def data_files(package: InterfacePackage, work: Path) -> list[tuple[str, list[st
 
 
 def _list_interfaces(package: InterfacePackage) -> str:
-    """List the definition files, one per line, which is what ``interface list`` reads."""
+    """List the definition files, one per line, for ``interface list``."""
     return "\n".join(interface.source for interface in package.interfaces)
 
 

@@ -1,8 +1,8 @@
-"""Let EmPy find the end of each template expression once instead of once per interface.
+"""Make EmPy find the end of each template expression once instead of once per interface.
 
-EmPy walks through a template character by character in Python, and does so anew for each file
-that it makes; a third of the generation goes there. Where an expression ends depends on the text
-and the position only, so that the answer can be kept.
+EmPy scans a template character by character in Python, and again for each file that it writes; this
+takes a third of the generation. The end of an expression depends only on the text and the position,
+so it can be cached.
 """
 
 import functools
@@ -15,22 +15,22 @@ _SEARCHES = ("complex", "next")
 
 @functools.cache
 def install() -> None:
-    """Keep the answers in this process; do nothing with an EmPy that works in another way."""
+    """Cache the results in this process; do nothing for another version of EmPy."""
     if em.__version__.startswith("4."):
         for name in _SEARCHES:
-            setattr(em.Scanner, name, _remembered(getattr(em.Scanner, name)))
+            setattr(em.Scanner, name, _cached(getattr(em.Scanner, name)))
 
 
-def _remembered(search: Callable[..., int]) -> Callable[..., int]:
+def _cached(search: Callable[..., int]) -> Callable[..., int]:
     """Wrap a search so that it runs once per text, position and arguments."""
-    answers: dict[object, int] = {}
+    results: dict[object, int] = {}
 
     @functools.wraps(search)
     def look_up(scanner: em.Scanner, *arguments: object, **options: object) -> int:
         position = scanner.head + scanner.pointer
-        question = (scanner.buffer, position, arguments, *options.items())
-        if question not in answers:
-            answers[question] = search(scanner, *arguments, **options)
-        return answers[question]
+        key = (scanner.buffer, position, arguments, *options.items())
+        if key not in results:
+            results[key] = search(scanner, *arguments, **options)
+        return results[key]
 
     return look_up

@@ -1,4 +1,4 @@
-"""The C and C++ compilers, and how they are called."""
+"""Finds and runs the C and C++ compilers."""
 
 import os
 import shlex
@@ -44,7 +44,7 @@ class Toolchain:
         )
 
     def link(self, objects: Sequence[Path], target: Path, flags: Sequence[str]) -> None:
-        """Link a shared library without symbols for a debugger.
+        """Link a shared library without debug symbols.
 
         Raises:
             CompileError: with the first lines that the linker wrote.
@@ -53,10 +53,10 @@ class Toolchain:
 
 
 def find_toolchain() -> Toolchain:
-    """Find the compilers (``CC`` and ``CXX`` win over gcc and g++) and ``Python.h``.
+    """Find the compilers (``CC`` and ``CXX`` override gcc and g++) and ``Python.h``.
 
     Raises:
-        MissingToolError: with one sentence that names what is missing and the remedy.
+        MissingToolError: one is missing; the message says how to install it.
     """
     toolchain = Toolchain(
         c=tuple(shlex.split(os.environ.get("CC", "gcc"))),
@@ -76,15 +76,15 @@ def find_toolchain() -> Toolchain:
 
 
 def python_header() -> Path:
-    """Return where ``Python.h`` of this interpreter should be."""
+    """Return the expected path of this interpreter's ``Python.h``."""
     return Path(sysconfig.get_path("include")) / "Python.h"
 
 
 def _run(command: Sequence[str], target: Path) -> None:
-    """Run a compiler that writes ``target``; raise what it said if it fails."""
+    """Run a compiler that writes ``target``; raise an error with its output if it fails."""
     result = subprocess.run(
         [*command, "-o", str(target)], capture_output=True, text=True, errors="replace", check=False
     )
     if result.returncode:
-        said = "\n".join(result.stderr.splitlines()[:_SHOWN_LINES])
-        raise CompileError(f"{command[0]} could not make {target.name}:\n{said}")
+        output = "\n".join(result.stderr.splitlines()[:_SHOWN_LINES])
+        raise CompileError(f"{command[0]} could not build {target.name}:\n{output}")

@@ -1,7 +1,7 @@
-"""Gather the many small generated files into few that compile fast.
+"""Merge the many small generated files into a few that compile fast.
 
-A generated file has a hundred lines of its own and ten thousand of headers. Fifteen of them in
-one translation unit compile almost as fast as one: a third of the time over the whole build.
+A generated file has a hundred lines and includes ten thousand lines of headers. Fifteen of them in
+one translation unit compile almost as fast as one; the whole build takes a third of the time.
 """
 
 import math
@@ -14,20 +14,20 @@ from interface_build.interface_package import InterfacePackage
 from interface_build.toolchain import Toolchain
 from interface_build.work_folder import WorkFolder
 
-_LARGEST_BATCH = 20
+_MAX_BATCH = 20
 
 
 @dataclass(frozen=True, slots=True)
 class CodeKind:
-    """One sort of generated file.
+    """One kind of generated file.
 
     Attributes:
-        name: the sort, for progress lines and object names.
+        name: name of the kind, for progress lines and object names.
         pattern: file name, with ``{}`` for the interface in snake case.
-        in_introspection: it comes from the introspection generator.
-        merged: several may share a translation unit. The descriptions may not: all of them
-            define static names of the types that they refer to.
-        optimisation: data and code that runs once need none.
+        in_introspection: whether the introspection generator writes it.
+        merged: whether several may share a translation unit. Descriptions may not, because each
+            defines static names of the types that it uses.
+        optimisation: compiler flag; data and code that runs once need none.
     """
 
     name: str
@@ -53,11 +53,11 @@ class TranslationUnit:
     """Generated files that are compiled in one step.
 
     Attributes:
-        kind: what sort of files they are.
-        sources: paths as the generated code would include them, ``<package>/msg/...``.
-        source_folder: where these paths start.
+        kind: kind of the files.
+        sources: paths as in includes, ``<package>/msg/...``.
+        source_folder: folder that these paths are relative to.
         objects: folder for the object files.
-        name: distinguishes this unit among those of its kind.
+        name: unique name among the units of its kind.
     """
 
     kind: CodeKind
@@ -68,7 +68,7 @@ class TranslationUnit:
 
     @property
     def object_files(self) -> list[Path]:
-        """What compiling makes, to be linked."""
+        """The object files to link."""
         count = 1 if self.kind.merged else len(self.sources)
         return [self.objects / f"{self.name}_{index}.o" for index in range(count)]
 
@@ -82,7 +82,8 @@ class TranslationUnit:
             files = [self._write_merged()]
         else:
             files = [self.source_folder / source for source in self.sources]
-        # First where the sources lie: both generated folders hold files of the same path.
+        # The sources' folder comes first, because both generated folders have files with the same
+        # path.
         folders = (self.source_folder, *includes)
         for file, target in zip(files, self.object_files, strict=True):
             toolchain.compile(file, target, folders, self.kind.optimisation)
@@ -121,6 +122,6 @@ def _batches(kind: CodeKind, package: InterfacePackage) -> list[tuple[str, ...]]
         f"{package.name}/{interface.kind}/{kind.pattern.format(snake_case(interface.name))}"
         for interface in package.interfaces
     )
-    count = math.ceil(len(paths) / _LARGEST_BATCH)
+    count = math.ceil(len(paths) / _MAX_BATCH)
     size = math.ceil(len(paths) / count)
     return [paths[start : start + size] for start in range(0, len(paths), size)]

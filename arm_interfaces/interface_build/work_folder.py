@@ -1,4 +1,4 @@
-"""Where the intermediate files of one package lie during a build."""
+"""The folders for the intermediate files of one package."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,27 +21,27 @@ class WorkFolder:
 
     @property
     def generated(self) -> Path:
-        """Output of all generators but one."""
+        """Output of all generators except one."""
         return self.root / "generated" / self.package
 
     @property
     def introspection(self) -> Path:
-        """Output of the introspection generator, some of whose files have names used above."""
+        """Output of the introspection generator, whose file names partly repeat the others'."""
         return self.root / "introspection" / self.package
 
     @property
     def arguments(self) -> Path:
-        """The argument files that the generators take."""
+        """The argument files of the generators."""
         return self.root / "arguments" / self.package
 
     @property
     def objects(self) -> Path:
-        """What the compiler makes."""
+        """The object files."""
         return self.root / "objects" / self.package
 
     @property
     def include_folders(self) -> tuple[Path, Path]:
-        """What goes before the wheels' own include folders."""
+        """The include folders that precede the wheels'."""
         return self.generated.parent, self.introspection.parent
 
     def create(self) -> None:

@@ -1,4 +1,4 @@
-"""The process environment that rclpy from pip needs, set by the process itself."""
+"""Sets the environment variables that rclpy from pip needs, within the process."""
 
 import importlib.util
 import os
@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import MutableMapping
 from pathlib import Path
 
-from arm_node.torn_ports import remove_torn_ports
+from arm_node.workarounds.torn_ports import remove_torn_ports
 
 INTERFACE_PACKAGES = (
     "tf2_msgs",
@@ -15,15 +15,15 @@ INTERFACE_PACKAGES = (
     "controller_manager_msgs",
     "simulation_interfaces",
 )
-"""Interface packages that the rclpy wheels lack and the distribution arm-interfaces brings."""
+"""Interface packages that the rclpy wheels lack and the distribution arm-interfaces provides."""
 
 
 LAST_DOMAIN = 232
-"""The ports of a higher DDS domain would be beyond the last one."""
+"""Higher DDS domains would need port numbers that do not exist."""
 
 
 class UnusableEnvironmentError(Exception):
-    """ROS cannot start in this environment; the message says the fix."""
+    """ROS cannot start in this environment; the message says how to fix it."""
 
 
 class MissingInterfacesError(UnusableEnvironmentError):
@@ -31,20 +31,19 @@ class MissingInterfacesError(UnusableEnvironmentError):
 
 
 class InvalidDomainError(UnusableEnvironmentError):
-    """ROS_DOMAIN_ID is no domain."""
+    """ROS_DOMAIN_ID is not a valid domain."""
 
 
 def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
-    """Make rclpy usable in this process, whoever started it.
+    """Make rclpy usable in this process, however it was started.
 
-    Must run before rclpy is imported. Adds this Python's prefix to AMENT_PREFIX_PATH (the wheels
-    do not set it and ament_index then refuses every look-up), and gives ROS_LOG_DIR a value where
-    the process has no HOME (rclpy would refuse to start). Removes what would keep it from starting;
-    see `torn_ports`.
+    Must run before rclpy is imported. Adds this Python's prefix to AMENT_PREFIX_PATH, which the
+    wheels do not set and ament_index needs for every look-up. Sets ROS_LOG_DIR if the process has
+    no HOME, because rclpy would not start. Removes files that would hang rclpy; see `torn_ports`.
 
     Raises:
         MissingInterfacesError: an interface package of arm-interfaces is not installed.
-        InvalidDomainError: ROS_DOMAIN_ID is no number from 0 to 232.
+        InvalidDomainError: ROS_DOMAIN_ID is not a number from 0 to 232.
     """
     _check_domain(environ.get("ROS_DOMAIN_ID", ""))
     prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
@@ -64,7 +63,7 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
 
 
 def _check_domain(text: str) -> None:
-    # Of '1e1' ROS would take the 1, and of '-1' that it is not set.
+    # ROS would read '1e1' as 1, and treat '-1' as unset.
     word = text.strip()
     if word and not (word.isascii() and word.isdigit() and int(word) <= LAST_DOMAIN):
         raise InvalidDomainError(

@@ -1,4 +1,4 @@
-"""A thread that spins an executor, outlives what its callbacks raise, and ends in order."""
+"""A thread that spins an executor, survives exceptions of callbacks, and stops cleanly."""
 
 import logging
 import math
@@ -16,29 +16,29 @@ logger = logging.getLogger("arm_node")
 
 
 class _SpinningThread(threading.Thread):
-    """Told from others by its class."""
+    """A thread that `is_spinning` recognises."""
 
 
 def is_spinning() -> bool:
-    """Return whether any executor has a thread that is alive, as after a `stop` in vain."""
+    """Return whether an executor's thread is alive, for example after a `stop` that failed."""
     return any(isinstance(thread, _SpinningThread) for thread in threading.enumerate())
 
 
 class ExecutorThread:
-    """Spins an executor in a thread of its own, from `start` to `stop`.
+    """Spins an executor in a separate thread, from `start` to `stop`.
 
-    Executor.shutdown does not wait for a spinning thread, but takes away at once what that thread
-    waits for. So the thread goes first, and only then the executor is shut down.
+    Executor.shutdown does not wait for a spinning thread, but destroys what that thread waits for.
+    So the thread is joined before the executor is shut down.
     """
 
     def __init__(self, name: str, executor: Executor, longest_wait_s: float | None = None) -> None:
         """Prepare the thread.
 
         Args:
-            name: of the thread.
-            executor: to spin; one with several threads serves on while a callback blocks, what is
-                in other callback groups.
-            longest_wait_s: how long to wait for work at a time; None: until there is some.
+            name: name of the thread.
+            executor: the executor to spin; one with several threads serves other callback groups
+                while a callback blocks.
+            longest_wait_s: maximum wait for work at a time; None waits until there is some.
         """
         self.executor = executor
         self._longest_wait_s = longest_wait_s
@@ -51,20 +51,20 @@ class ExecutorThread:
         self._thread.start()
 
     def stop(self) -> None:
-        """Serve no more, and wait for the callback that is running, 5 s at most.
+        """Stop spinning, and wait up to 5 s for the running callback.
 
-        A second time does nothing.
+        A second call does nothing.
         """
         if self._stopping.is_set():
             return
         self._stopping.set()
         if self._thread.ident is not None:
-            # `wake` would not do: the executor goes back to sleep where it finds no work.
+            # `wake` is not enough: without work, the executor goes back to sleep.
             self.executor.create_task(_do_nothing)
             self._thread.join(JOIN_TIMEOUT_S)
             if self._thread.is_alive():
                 logger.warning(
-                    "a callback in thread '%s' does not end: left alone after %g s",
+                    "a callback in thread '%s' is still running after %g s and is abandoned",
                     self._thread.name,
                     JOIN_TIMEOUT_S,
                 )
@@ -78,11 +78,11 @@ class ExecutorThread:
             except ExternalShutdownException:
                 return
             except Exception as error:
-                # A callback raised. One bad message must not end the process: say it, go on.
+                # A callback raised. One bad message must not end the process, so log it and go on.
                 self._report(error)
 
     def _report(self, error: Exception) -> None:
-        """Log the traceback, but the same failure at the same place at most every 10 s."""
+        """Log the traceback; log the same failure at the same place at most every 10 s."""
         last = traceback.extract_tb(error.__traceback__)[-1]
         place = (type(error), last.filename, last.lineno)
         now = time.monotonic()
@@ -92,4 +92,4 @@ class ExecutorThread:
 
 
 def _do_nothing() -> None:
-    """Give the executor something to do, so that `spin_once` returns."""
+    """Do nothing; the task makes `spin_once` return."""

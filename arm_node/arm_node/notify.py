@@ -1,7 +1,8 @@
-"""Tells whoever supervises this process how it is, in the protocol of sd_notify(3).
+"""Reports this process's status to its supervisor, with the protocol of sd_notify(3).
 
-A supervisor (launch_py, systemd) names a datagram socket in NOTIFY_SOCKET; without one nothing
-is sent. Known messages: READY=1, STOPPING=1, STATUS=one line for people.
+A supervisor (launch_py, systemd) names a datagram socket in NOTIFY_SOCKET; without one, nothing is
+sent. Known messages: READY=1, STOPPING=1, STATUS=one line for users; launch_py also shows
+X_REMARK=one line when everything is ready.
 """
 
 import contextlib
@@ -11,7 +12,7 @@ from collections.abc import Mapping
 
 
 def notify(message: str, environ: Mapping[str, str] = os.environ) -> None:
-    """Send a message to the supervisor, if there is one that listens; never blocks or fails."""
+    """Send a message to the supervisor, if there is one; never blocks or fails."""
     address = environ.get("NOTIFY_SOCKET", "")
     if not address:
         return

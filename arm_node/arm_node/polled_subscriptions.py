@@ -1,8 +1,8 @@
-"""Subscriptions whose messages are fetched, instead of delivered by an executor.
+"""Subscriptions that are polled instead of served by an executor.
 
-For every message rclpy's executor builds a wait set of all subscriptions anew, which for the topics
-of a robot costs 20 times what taking the message does. Whoever need not react at once looks now and
-then: the middleware has noted when each message came.
+For every message, rclpy's executor rebuilds a wait set of all subscriptions, which for the topics
+of a robot costs 20 times as much as taking the message. A reader that need not react at once can
+poll instead; the middleware records when each message arrived.
 """
 
 from collections.abc import Iterator
@@ -16,14 +16,14 @@ from rclpy.subscription import Subscription
 
 
 class PolledSubscriptions(CallbackGroup):
-    """Makes subscriptions of a node that its executor leaves alone.
+    """Creates subscriptions of a node that its executor does not serve.
 
-    They have no QoS events: Fast DDS wakes whoever waits for one while there is a message to be
-    fetched, so the executor would never sleep.
+    They have no QoS events: Fast DDS wakes a thread that waits for events while messages are
+    pending, so the executor would never sleep.
     """
 
     def __init__(self, node: Node) -> None:
-        """Make them on this node."""
+        """Use this node for the subscriptions."""
         super().__init__()
         self._node = node
 
@@ -41,7 +41,7 @@ class PolledSubscriptions(CallbackGroup):
 
     @staticmethod
     def take(subscription: Subscription, limit: int) -> Iterator[tuple[bytes, dict[str, Any]]]:
-        """Yield the messages that have come, at most some, each with what is known of its way."""
+        """Yield up to `limit` pending messages, each with its metadata."""
         handle, message_class = subscription.handle, subscription.msg_type
         with handle:
             for _ in range(limit):
@@ -51,7 +51,7 @@ class PolledSubscriptions(CallbackGroup):
                 yield taken
 
     def can_execute(self, entity: Any) -> bool:
-        """Return whether the executor may serve it."""
+        """Return False: the executor must not serve it."""
         return False
 
     def beginning_execution(self, entity: Any) -> bool:
@@ -59,8 +59,8 @@ class PolledSubscriptions(CallbackGroup):
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Take notice of an end."""
+        """Do nothing."""
 
 
 def _not_called(_: bytes) -> None:
-    """Satisfy rclpy, which wants a callback."""
+    """Do nothing; rclpy requires a callback."""

@@ -1,10 +1,10 @@
-"""Start, run and orderly end of a process that holds rclpy nodes.
+"""Starts, runs and shuts down a process with rclpy nodes.
 
-The main thread only waits for signals; the executor spins in a thread of its own. rclpy's own
-signal handlers are off: they raise inside whatever callback runs, and an exit in the middle of
-`spin` can abort the interpreter. Order of the end: the application's own teardown (its loop
-thread joined, while services still answer), executor, nodes, context. A supervisor is told when
-the process is ready (see `arm_node.notify`).
+The main thread only waits for signals; the executor spins in a separate thread. rclpy's own signal
+handlers are off: they raise inside the running callback, and an exit in the middle of `spin` can
+abort the interpreter. Shutdown order: the application's teardown (it joins its loop thread while
+services still answer), executor, nodes, context. A supervisor is told when the process is ready
+(see `arm_node.notify`).
 """
 
 import gc
@@ -12,16 +12,23 @@ import logging
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
+from itertools import pairwise
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from arm_node.discovery import answers_held_back
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
-from arm_node.local_profile import use_local_profile
 from arm_node.notify import notify
+from arm_node.parameter_values import ParameterValueError
+from arm_node.printable import first_line, printable, printable_message
 from arm_node.stop_event import StopEvent
+from arm_node.user_file import MAX_TEXT_BYTES, check_file
+from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.local_profile import use_local_profile
+from arm_node.workarounds.private_files import hide_shared_memory, made_private
+from arm_node.workarounds.switch import switched_off
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -30,7 +37,10 @@ SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
 
 SIGNAL_INTERVAL_S = 0.5
-"""A signal that another thread got, as after SIGSTOP and SIGCONT, does not wake the main thread."""
+"""A signal that another thread receives, as after SIGSTOP, does not wake the main thread."""
+
+FILE_ARGUMENTS = ("--params-file", "--log-config-file")
+"""ROS arguments that a file follows."""
 
 EXIT_OK = 0
 EXIT_FAILED = 1
@@ -38,14 +48,14 @@ EXIT_USAGE = 2
 
 
 class NodeProcess:
-    """The running process as its application sees it: an executor and a way to end.
+    """The running process, as passed to its application: an executor and a way to stop.
 
     `executor` is a SingleThreadedExecutor; add nodes to it. Every method may be called from any
     thread.
     """
 
     def __init__(self, stop: StopEvent) -> None:
-        """Make the executor; `stop` is set to end the process."""
+        """Create the executor; `stop` is set to end the process."""
         from rclpy.executors import SingleThreadedExecutor
 
         from arm_node.executor_thread import ExecutorThread
@@ -57,16 +67,16 @@ class NodeProcess:
 
     @property
     def stopping(self) -> bool:
-        """Whether the end has been asked for, by a signal or by `stop`."""
+        """Whether shutdown was requested, by a signal or by `stop`."""
         return self._stop.is_set()
 
     def stop(self, exit_code: int = EXIT_OK) -> None:
-        """Ask the process to end with this exit code; the first failure wins."""
+        """Request shutdown with this exit code; the first failure wins."""
         self.exit_code = self.exit_code or exit_code
         self._stop.set()
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Block until the end is asked for; return whether it was, within the time-out."""
+        """Block until shutdown is requested; return whether it was within the time-out."""
         if timeout_s is not None:
             return self._stop.wait(timeout_s)
         while not self._stop.wait(SIGNAL_INTERVAL_S):
@@ -74,25 +84,25 @@ class NodeProcess:
         return True
 
     def start_spinning(self) -> None:
-        """Spin the executor in a thread of its own until `join_spinning`."""
+        """Spin the executor in a separate thread until `join_spinning`."""
         self._spinning.start()
 
     def join_spinning(self) -> None:
-        """Stop the executor and join its thread: a thread still spinning at exit aborts.
+        """Stop the executor and join its thread; a thread that spins at exit aborts the process.
 
-        The application may call it at the end of its teardown, before it destroys nodes itself.
+        The application may call it in its teardown before it destroys nodes itself.
         """
         self._spinning.stop()
 
     def destroy_nodes(self) -> None:
-        """Stop the executor and destroy the nodes that it has, unless a callback hangs.
+        """Stop the executor and destroy its nodes, unless a callback hangs.
 
-        A node left to the exit of the process is taken down while threads of DDS still use it,
-        which now and then is a segmentation fault.
+        A node that is not destroyed before the process exits is freed while DDS threads still use
+        it, which sometimes causes a segmentation fault.
         """
         from arm_node.executor_thread import is_spinning
 
-        nodes = self.executor.get_nodes()  # Before it is shut down: then it forgets them.
+        nodes = self.executor.get_nodes()  # Before the shutdown, which removes them.
         self.join_spinning()
         if not is_spinning():
             for node in nodes:
@@ -100,7 +110,7 @@ class NodeProcess:
 
 
 Application = Callable[[NodeProcess], AbstractContextManager[None]]
-"""Builds the nodes before it yields, tears them down after; runs in the main thread."""
+"""Creates the nodes before it yields, tears them down afterwards; runs in the main thread."""
 
 
 def run_process(
@@ -110,26 +120,26 @@ def run_process(
 ) -> int:
     """Run an application until SIGINT, SIGTERM, SIGHUP or its own `stop`; return the exit code.
 
-    A SIGHUP that is ignored already, as under nohup, stays so.
+    If SIGHUP is ignored, as under nohup, it stays ignored. If ROS cannot start in this environment,
+    one sentence goes to stderr and the exit code is 2.
 
     Args:
-        application: builds the nodes, see `Application`.
-        argv: ROS arguments of the process, the program's name first; default sys.argv.
-        user_errors: errors whose message is for the user: one FATAL line, no traceback, exit 1.
-            What rclpy refuses (a parameter's type, a name, a topic of two types) is as well.
-
-    An environment in which ROS cannot start is one sentence on stderr and exit code 2.
+        application: creates the nodes, see `Application`.
+        argv: ROS arguments of the process, after the program's name; default sys.argv.
+        user_errors: errors with messages for the user: one FATAL line, no traceback, exit code 1.
+            Refusals by rclpy (a parameter's type, a name, a topic with two types) are handled the
+            same way.
     """
-    # What is made at the start stays: collecting it again and again would cost start-up time, and
-    # later a pause in the middle of a control period.
+    # Objects made at the start stay alive: collecting them repeatedly would cost start-up time, and
+    # later cause a pause in the middle of a control period.
     gc.disable()
-    # Before the imports below, which take some tenths of a second: Ctrl-C is heard from now on.
+    # Before the imports below, which take some tenths of a second, so that Ctrl-C works now.
     with _signals_set(StopEvent()) as stop:
         try:
             prepare_environment()
             use_local_profile(os.environ)
         except UnusableEnvironmentError as error:
-            sys.stderr.write(f"{error}\n")
+            sys.stderr.write(f"{printable_message(str(error))}\n")
             return EXIT_USAGE
         return _run_with_ros(application, argv, user_errors, stop)
 
@@ -146,17 +156,25 @@ def _run_with_ros(
     from rclpy.utilities import try_shutdown
 
     sys.setswitchinterval(SWITCH_INTERVAL_S)
+    words = list(sys.argv if argv is None else argv)
     try:
-        rclpy.init(
-            args=list(sys.argv if argv is None else argv),
-            signal_handler_options=SignalHandlerOptions.NO,
-        )
+        # rcl opens the files by itself: a FIFO blocks it for good.
+        for flag, file in pairwise(words):
+            if flag in FILE_ARGUMENTS:
+                check_file(file, MAX_TEXT_BYTES)
+        with made_private():  # The log file.
+            rclpy.init(args=words, signal_handler_options=SignalHandlerOptions.NO)
+    except OSError as error:
+        problem = printable(f"cannot read {error.filename}: {error.strerror}")
+        sys.stderr.write(f"cannot start ROS: {problem}\n")
+        return EXIT_USAGE
     except rclpy_implementation.UnknownROSArgsError as error:
-        sys.stderr.write(f"cannot start ROS: unknown words after --ros-args: {error}\n")
+        unknown = printable(str(error))
+        sys.stderr.write(f"cannot start ROS: unknown arguments after --ros-args: {unknown}\n")
         return EXIT_USAGE
     except Exception as error:
-        # rcl raises half a dozen unrelated types here, all of them about the arguments given.
-        sys.stderr.write(f"cannot start ROS: {first_line(error)}\n")
+        # rcl raises half a dozen unrelated types here, all caused by the given arguments.
+        sys.stderr.write(f"cannot start ROS: {printable(first_line(error))}\n")
         return EXIT_USAGE
     try:
         exit_code = _run_initialised(application, user_errors, stop)
@@ -164,16 +182,17 @@ def _run_with_ros(
         try_shutdown()
     _leave_hanging_callbacks(exit_code)
     if exit_code != EXIT_OK:
-        # A node that was refused half made is not the executor's, but stands in reference cycles.
+        # A node that failed during construction is not in the executor, but is kept by reference
+        # cycles.
         gc.collect()
     return exit_code
 
 
 def _leave_hanging_callbacks(exit_code: int) -> None:
-    """Exit at once where a callback does not end.
+    """Exit immediately if a callback does not return.
 
-    Python's own teardown would end its thread as soon as that comes back from rclpy, in the midst
-    of C++, which aborts the process.
+    Python's own teardown would end the callback's thread as soon as it returns from rclpy, inside
+    C++ code, which aborts the process.
     """
     from arm_node.executor_thread import is_spinning
 
@@ -188,22 +207,29 @@ def _run_initialised(
     application: Application, user_errors: tuple[type[Exception], ...], stop: StopEvent
 ) -> int:
     from arm_node.log_bridge import bridge_logging
+    from arm_node.workarounds.parameter_types import refuse_unknown_parameter_types
 
+    refuse_unknown_parameter_types()
+    # rclpy's second message about an invalid node name; the first one is logged below.
+    warnings.filterwarnings("ignore", "Failed to fini rosout publisher", RuntimeWarning)
     process = NodeProcess(stop)
     with bridge_logging():
+        if off := switched_off():
+            logging.getLogger("arm_node").info("%s", off)
         try:
             with application(process):
+                hide_shared_memory()
                 process.start_spinning()
                 gc.freeze()
                 gc.enable()
                 notify("READY=1")
                 process.wait()
                 notify("STOPPING=1")
-        except user_errors as error:
+        except (ParameterValueError, *user_errors) as error:
             logging.getLogger("arm_node").critical("%s", error)
             process.stop(EXIT_FAILED)
         except _refusals() as error:
-            logging.getLogger("arm_node").critical("cannot make the node: %s", first_line(error))
+            logging.getLogger("arm_node").critical("cannot create the node: %s", first_line(error))
             process.stop(EXIT_FAILED)
         finally:
             process.destroy_nodes()
@@ -211,16 +237,16 @@ def _run_initialised(
 
 
 def run_node(
-    node_class: Callable[[], "Node"],
+    make_node: Callable[[NodeProcess], "Node"],
     argv: Sequence[str] | None = None,
     user_errors: tuple[type[Exception], ...] = (),
 ) -> int:
-    """Run one node that needs nothing but an executor; see `run_process`."""
+    """Run one node, which may stop its process when its work is done; see `run_process`."""
 
     @contextmanager
     def application(process: NodeProcess) -> Iterator[None]:
-        with answers_held_back():
-            node = node_class()
+        with prompt_discovery():
+            node = make_node(process)
         process.executor.add_node(node)
         yield
 
@@ -228,23 +254,17 @@ def run_node(
 
 
 def _refusals() -> tuple[type[Exception], ...]:
-    """Return what rclpy raises where parameters, names or topics given to a node cannot be."""
+    """Return the exceptions of rclpy for invalid parameters, names and topics."""
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.qos_overriding_options import InvalidQosOverridesError
 
-    # A RuntimeError is what rcl itself refuses, and a QoS policy of no such value.
+    # rcl's own refusals and invalid QoS policies are RuntimeErrors.
     return (ParameterException, NameValidationException, InvalidQosOverridesError, RuntimeError)
-
-
-def first_line(error: BaseException) -> str:
-    """Return the first line of an error's message: rcl appends C source positions to it."""
-    text = str(error).strip()
-    return text.splitlines()[0] if text else type(error).__name__
 
 
 @contextmanager
 def _signals_set(stop: StopEvent) -> Iterator[StopEvent]:
-    """Let the signals that mean the end set an event, and nothing else."""
+    """Make the terminating signals set an event and do nothing else."""
 
     def ask_to_stop(_number: int, _frame: FrameType | None) -> None:
         stop.set()

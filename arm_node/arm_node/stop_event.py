@@ -8,12 +8,12 @@ MS_PER_S = 1000.0
 
 
 class StopEvent:
-    """What `threading.Event` is, for a signal handler too; once set, it stays so.
+    """Like `threading.Event`, but safe in signal handlers; once set, it stays set.
 
-    Python runs a handler in the main thread, between two steps of whatever that does. Within
+    Python runs a handler in the main thread, between two steps of the code there. Within
     `threading.Event.wait` that may be while it holds the event's lock, and `set` in the handler
-    then waits for that lock for ever. Here a pipe takes the lock's place: `set` writes to it, and
-    nobody reads, so it is readable for all who wait, now and later.
+    would then wait for that lock for ever. Here a pipe replaces the lock: `set` writes to it, and
+    no thread reads from it, so it is readable for all waiting threads, now and later.
 
     Every method may be called from any thread and from a signal handler.
     """
@@ -30,7 +30,7 @@ class StopEvent:
         return self._is_set
 
     def set(self) -> None:
-        """Wake all who wait; a second time does nothing."""
+        """Wake all waiting threads; a second call does nothing."""
         if not self._is_set:
             self._is_set = True
             os.write(self._writable, b"\0")

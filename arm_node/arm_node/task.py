@@ -1,4 +1,4 @@
-"""A process that does one thing over ROS and ends: a node, and a function beside its executor."""
+"""A process that performs one task over ROS and ends: a node, and a function beside it."""
 
 import logging
 import threading
@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from arm_node.discovery import answers_held_back
 from arm_node.process import EXIT_FAILED, NodeProcess, run_process
+from arm_node.workarounds.discovery import prompt_discovery
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 Task = Callable[["Node", NodeProcess], int]
-"""Does the work and returns the exit code; on a thread of its own, while the executor spins."""
+"""Does the work and returns the exit code; runs on its own thread while the executor spins."""
 
 
 def run_task(
@@ -24,21 +24,21 @@ def run_task(
 ) -> int:
     """Run a task until it returns, and return its exit code.
 
-    A signal does not end it: `NodeProcess.stopping` and `NodeProcess.wait` tell the task, which
-    then returns soon. The executor serves its node until it has.
+    A signal does not end it: the task checks `NodeProcess.stopping` or `NodeProcess.wait` and must
+    return soon. The executor serves its node until then.
 
     Args:
-        node_name: name of the node made for the task.
+        node_name: name of the task's node.
         task: see `Task`.
-        argv: ROS arguments of the process, the program's name first; default sys.argv.
-        user_errors: errors whose message is for the user: one FATAL line, no traceback, exit 1.
+        argv: ROS arguments of the process, after the program's name; default sys.argv.
+        user_errors: errors with messages for the user: one FATAL line, no traceback, exit code 1.
     """
 
     @contextmanager
     def application(process: NodeProcess) -> Iterator[None]:
         from rclpy.node import Node
 
-        with answers_held_back():
+        with prompt_discovery():
             node = Node(node_name)
         process.executor.add_node(node)
         worker = threading.Thread(
@@ -60,6 +60,6 @@ def _work(
     except user_errors as error:
         logging.getLogger(node.get_logger().name).critical("%s", error)
     except Exception:
-        # The thread's last frame: whatever went wrong must end the process, and be seen.
+        # The thread's outermost frame: any error must be logged and end the process.
         logging.getLogger(node.get_logger().name).exception("the task failed")
     process.stop(code)

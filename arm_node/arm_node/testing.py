@@ -1,4 +1,4 @@
-"""What tests with nodes in several processes need."""
+"""Helpers for tests with nodes in several processes."""
 
 import time
 from typing import Any
@@ -8,65 +8,66 @@ from type_description_interfaces.srv import GetTypeDescription
 
 ASK_AGAIN_S = 0.5
 NO_TYPE_HASH = f"RIHS01_{0:064}"
-"""Well-formed, so that nobody complains of it in the log."""
+"""A well-formed hash, so that nodes do not log an error about it."""
 PROCESS_BYTES = 12
-"""So much of an end point's gid names its participant (DDSI-RTPS 2.5, 9.3.1)."""
+"""How many bytes of an end point's gid identify its participant (DDSI-RTPS 2.5, 9.3.1)."""
 
 
-class Acquaintance:
-    """Tells whether the processes that read a topic know of all that a node has.
+class DiscoveryCheck:
+    """Tells whether discovery is complete: the readers of a topic know all end points of a node.
 
-    What is sent before that may be lost, best-effort messages and answers alike. A process hears of
-    another's end points in their order: one who answers a client knows all that was made before
-    that client. Every node answers for its process, by `get_type_description`.
+    Messages and answers that are sent earlier may be lost, even with reliable QoS. A process
+    discovers another's end points in the order of their creation: if it answers a client, it knows
+    everything created before that client. Every node answers for its process, by
+    `get_type_description`.
 
-    Make one when the node has all that matters, and look at `complete` until it is true, while an
+    Create a check after the node's end points, and poll `complete` until it is true, while an
     executor spins the node.
     """
 
     def __init__(self, node: Node, topic: str, no_mangle: bool = False) -> None:
-        """Ask whoever reads the topic.
+        """Ask the subscribers of a topic.
 
         Args:
-            node: whose end points are to be known.
-            topic: fully qualified.
-            no_mangle: whether the topic is named as DDS has it.
+            node: the node whose end points must be discovered.
+            topic: fully qualified name.
+            no_mangle: whether the topic is given by its DDS name.
         """
         self._node = node
         self._topic = topic
         self._no_mangle = no_mangle
-        self._questions: dict[bytes, _Question] = {}
+        self._queries: dict[bytes, _Query] = {}
 
     @classmethod
-    def with_server(cls, node: Node, service: str) -> "Acquaintance":
-        """Ask whoever serves a service, by its fully qualified name."""
+    def with_server(cls, node: Node, service: str) -> "DiscoveryCheck":
+        """Ask the server of a service, by its fully qualified name."""
         return cls(node, f"rq{service}Request", no_mangle=True)
 
     @property
     def complete(self) -> bool:
-        """Whether there are readers, and the processes of all have answered; asks them, too."""
+        """Whether there are subscribers and all their processes have answered; also asks them."""
         readers = self._node.get_subscriptions_info_by_topic(self._topic, self._no_mangle)
         processes = {bytes(reader.endpoint_gid)[:PROCESS_BYTES]: reader for reader in readers}
         answered = [self._answered(process, reader) for process, reader in processes.items()]
         return bool(answered) and all(answered)
 
     def close(self) -> None:
-        """Destroy its clients; where the executor spins, on its thread."""
-        for question in self._questions.values():
-            self._node.destroy_client(question.client)
-        self._questions.clear()
+        """Destroy its clients; if the executor spins, call it on its thread."""
+        for query in self._queries.values():
+            self._node.destroy_client(query.client)
+        self._queries.clear()
 
     def _answered(self, process: bytes, reader: Any) -> bool:
-        if process not in self._questions:
+        if process not in self._queries:
             if "UNKNOWN" in reader.node_name:
-                return False  # Its name comes by a topic of its own, later.
+                return False  # Its name arrives later, on another topic.
             name = f"{reader.node_namespace.rstrip('/')}/{reader.node_name}/get_type_description"
-            self._questions[process] = _Question(self._node.create_client(GetTypeDescription, name))
-        return self._questions[process].answered()
+            self._queries[process] = _Query(self._node.create_client(GetTypeDescription, name))
+        return self._queries[process].answered()
 
 
-class _Question:
-    """Put again and again, for an answer may be lost, too."""
+class _Query:
+    """A request that is repeated, because its answer may be lost as well."""
 
     def __init__(self, client: Any) -> None:
         self.client = client

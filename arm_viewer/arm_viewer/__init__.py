@@ -1,1 +1,1 @@
-"""The page: robots, cameras, sliders and plots in a browser; an ordinary ROS node."""
+"""The browser page: robots, cameras, sliders and plots, served by an ordinary ROS node."""

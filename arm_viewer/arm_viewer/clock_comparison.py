@@ -1,4 +1,4 @@
-"""Compares the simulation's time with the wall's."""
+"""Compare simulation time with wall time."""
 
 from collections import deque
 
@@ -6,19 +6,19 @@ from arm_viewer.snapshot import SimulationTime
 
 WINDOW_S = 10.0
 FACTOR_WINDOW_S = 2.0
-"""The factor is that of fewer seconds than the lag, so that a pause shows soon."""
+"""The factor uses a shorter window than the lag, so that a pause shows soon."""
 
 
 class ClockComparison:
-    """The readings of both clocks in the last seconds; one thread at a time."""
+    """Recent readings of both clocks; use it from one thread at a time."""
 
     def __init__(self) -> None:
         self._readings: deque[tuple[float, float]] = deque()
 
     def add(self, wall_s: float, time_s: float) -> None:
-        """Add a reading, later on the wall than all before.
+        """Add a reading, with a later wall time than all before.
 
-        Where the simulation's time goes back it was reset, and the comparison begins anew.
+        If simulation time goes back, the simulation was reset, and the comparison restarts.
         """
         if self._readings and time_s < self._readings[-1][1]:
             self._readings.clear()
@@ -31,7 +31,7 @@ class ClockComparison:
         self._readings.clear()
 
     def result(self) -> SimulationTime | None:
-        """Return how the simulation keeps up, or None before the first reading."""
+        """Return the real-time factor and lag, or None before the first reading."""
         if not self._readings:
             return None
         last_wall_s, last_s = self._readings[-1]

@@ -1,13 +1,18 @@
 """The errors of this package; each message says what is wrong, where, and what exists.
 
 ViewerError
-├── PageError     the page cannot be served: the port is taken, or no port
-└── PictureError  an image message that cannot be drawn
+├── ConfigError   a file is not an RViz configuration
+├── PageError     the page cannot be served: the port is taken or invalid
+└── PictureError  an image message cannot be drawn
 """
 
 
 class ViewerError(Exception):
-    """Root of this package's errors; the message is a sentence for the user."""
+    """Base class of this package's errors; the message is a sentence for the user."""
+
+
+class ConfigError(ViewerError):
+    """A file is not an RViz configuration, or cannot be read; the message names it."""
 
 
 class PageError(ViewerError):
@@ -15,4 +20,4 @@ class PageError(ViewerError):
 
 
 class PictureError(ViewerError):
-    """An image that cannot be drawn; the message names its encoding and what can be drawn."""
+    """An image cannot be drawn; the message names its encoding and the supported ones."""

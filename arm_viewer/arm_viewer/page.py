@@ -1,8 +1,7 @@
-"""The page: its parts, where they stand, and what keeps them up to date.
+"""Build the page from its panels, and keep it up to date.
 
-All that changes the page happens in viser's event loop: viser wakes the senders of its messages by
-asyncio's events, which other threads must not set (a message from elsewhere sometimes ends in
-"deque mutated during iteration").
+Change the page only in viser's event loop: viser wakes its message senders with asyncio events,
+which other threads must not set (doing so sometimes raises "deque mutated during iteration").
 """
 
 import asyncio
@@ -11,40 +10,49 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from viser import GuiApi, GuiTabHandle, ViserServer
+from viser import GuiApi, GuiTabHandle
 
-from arm_viewer.page_look import PANEL_WIDTH_PX, apply_look
+from arm_viewer.page_look import LEFT_PANEL_WIDTH_PX, apply_look
+from arm_viewer.page_server import PageServer
 from arm_viewer.panels.camera_panel import CameraPanel
 from arm_viewer.panels.clock_panel import ClockPanel
+from arm_viewer.panels.config_panel import ConfigPanel
 from arm_viewer.panels.controller_panel import ControllerPanel
-from arm_viewer.panels.graph_panel import GraphPanel
+from arm_viewer.panels.graph_panel import GraphPanel, TopicPanel
 from arm_viewer.panels.joint_panel import JointPanel
 from arm_viewer.panels.panel import Panel
 from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
-from arm_viewer.panels.topic_panel import TopicPanel
 from arm_viewer.requests import Send
+from arm_viewer.rviz_config import PageConfig
+from arm_viewer.scene.first_view import FirstView
 from arm_viewer.scene.frames import Frames
 from arm_viewer.snapshot import Snapshot
 
 TICK_S = 1.0 / 30.0
 
-Places = Mapping[str, tuple[Panel, ...]]
-"""What stands under each tab."""
+Tabs = Mapping[str, tuple[Panel, ...]]
+"""The panels of each tab, by title."""
 
 
 @contextmanager
-def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send) -> Iterator[None]:
-    """Fill the page, and keep it up to date until the end.
+def page_running(
+    server: PageServer,
+    latest: Callable[[], Snapshot],
+    send: Send,
+    config: PageConfig | None = None,
+) -> Iterator[None]:
+    """Build the page, and keep it up to date while the context lasts.
 
     Args:
         server: serves the page.
-        latest: gives the newest snapshot.
-        send: takes what the user wants.
+        latest: returns the newest snapshot.
+        send: takes the user's requests.
+        config: what the page shows first.
     """
     loop = server.get_event_loop()
-    panels = asyncio.run_coroutine_threadsafe(_build(server, send), loop).result()
+    panels = asyncio.run_coroutine_threadsafe(_build(server, send, config), loop).result()
     ended = threading.Event()
     updates = asyncio.run_coroutine_threadsafe(_update(server, panels, latest, ended), loop)
     try:
@@ -54,14 +62,18 @@ def page_running(server: ViserServer, latest: Callable[[], Snapshot], send: Send
         updates.result()
 
 
-async def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
+async def _build(server: PageServer, send: Send, config: PageConfig | None) -> tuple[Panel, ...]:
     apply_look(server)
     gui = server.gui
     frames = Frames(server.scene)
     status = StatusPanel()
     status.build(gui)
+    joints = JointPanel(send)
+    server.take_typed_number = joints.take_typed
+    view = FirstView(server)
+    robots = RobotPanel(server.scene, frames, view)
     main = {
-        "Robot": (JointPanel(send), RobotPanel(server.scene, frames)),
+        "Robot": (joints, robots, ConfigPanel(server, robots, view, config)),
         "Control": (ClockPanel(), ControllerPanel(send)),
         "System": (GraphPanel(), TopicPanel(send)),
     }
@@ -70,27 +82,27 @@ async def _build(server: ViserServer, send: Send) -> tuple[Panel, ...]:
     above, below = gui.add_panel(), gui.add_panel()
     above.dock_left()
     below.dock_below(above)
-    above.set_width(PANEL_WIDTH_PX)
+    above.set_width(LEFT_PANEL_WIDTH_PX)
     return (
         status,
-        *_placed(main, gui, gui.add_tab_group().add_tab),
-        *_placed(cameras, gui, above.add_tab),
-        *_placed(plots, gui, below.add_tab),
+        *_build_tabs(main, gui, gui.add_tab_group().add_tab),
+        *_build_tabs(cameras, gui, above.add_tab),
+        *_build_tabs(plots, gui, below.add_tab),
     )
 
 
-def _placed(
-    places: Places, gui: GuiApi, add_tab: Callable[[str], GuiTabHandle]
+def _build_tabs(
+    tabs: Tabs, gui: GuiApi, add_tab: Callable[[str], GuiTabHandle]
 ) -> tuple[Panel, ...]:
-    for title, panels in places.items():
+    for title, panels in tabs.items():
         with add_tab(title):
             for panel in panels:
                 panel.build(gui)
-    return tuple(panel for panels in places.values() for panel in panels)
+    return tuple(panel for panels in tabs.values() for panel in panels)
 
 
 async def _update(
-    server: ViserServer,
+    server: PageServer,
     panels: Sequence[Panel],
     latest: Callable[[], Snapshot],
     ended: threading.Event,
@@ -103,5 +115,5 @@ async def _update(
                 with server.atomic():
                     panel.update(snapshot)
             except Exception:
-                # The page's last frame: one part that fails must not stop the others.
+                # The page's top-level handler: a panel that fails must not stop the others.
                 logging.getLogger(__name__).exception("%s failed", type(panel).__name__)

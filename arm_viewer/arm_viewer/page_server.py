@@ -1,4 +1,4 @@
-"""viser's server, for this machine only: its address, its gate, its orderly start and end."""
+"""viser's server, restricted to this machine: its address, its request gate, start and end."""
 
 import errno
 import http
@@ -14,38 +14,49 @@ import viser
 import websockets.asyncio.server
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import InvalidHandshake
+from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from arm_viewer.errors import PageError
+from arm_viewer.front.served_page import served_page
 from arm_viewer.request_gate import SECURITY_HEADERS, reason_to_refuse
+from arm_viewer.typed_numbers import PATH, Take, serve_typed_numbers
 
 HOST = "127.0.0.1"
+
+MAX_PATH = 255
+"""Longest path of a request; no file of the page has a longer name."""
+MAX_REASON = 200
+
+PAGES = ("/", "/index.html")
 
 Handler = Callable[[ServerConnection], Awaitable[None]]
 Answer = Callable[[ServerConnection, Request], Response | None]
 
 
 class PageServer(viser.ViserServer):
-    """Serves the page on 127.0.0.1, to the page itself and to programs that are no browser.
+    """Serves the page on 127.0.0.1, to the page itself and to programs other than browsers.
 
-    Everything else is viser's, thread rules included.
+    Everything else is inherited from viser, including its thread rules.
     """
 
     def __init__(self, port: int, label: str | None = None) -> None:
         """Serve.
 
         Args:
-            port: of TCP; 0 takes any free one, which `get_port` then tells.
+            port: TCP port; 0 takes any free one, which `get_port` returns.
             label: title of the page's panel.
 
         Raises:
-            PageError: the port is taken or may not be used, or the installed viser cannot be
-                guarded.
+            PageError: the port is taken or not permitted, or requests to the installed version of
+                viser cannot be checked.
         """
-        # viser prints boxes about itself by rich's own console, and has no switch against it.
+        self.take_typed_number: Take = _no_joints
+        """Handles a number typed beside a slider; called in viser's event loop."""
+        # viser prints boxes about itself on rich's console, and has no option to switch them off.
         rich.reconfigure(quiet=True)
         listener = _listen(port)
-        with _viser_serves_on(listener) as guarded:
+        with _viser_serves_on(listener, self._take) as guarded:
             super().__init__(HOST, port, label=label, verbose=False)
         if not guarded:
             self.stop()
@@ -61,8 +72,15 @@ class PageServer(viser.ViserServer):
         return f"http://{HOST}:{self.get_port()}"
 
     def request_share_url(self, verbose: bool = True) -> str | None:
-        """Open no tunnel to the outside, whoever asks for it: a client may, by a message."""
+        """Refuse to open a tunnel to the outside, which any client could request by a message."""
         return None
+
+    def _take(self, slider: str, text: str) -> str:
+        return self.take_typed_number(slider, text)
+
+
+def _no_joints(slider: str, text: str) -> str:
+    return "the page has no joints yet"
 
 
 @contextmanager
@@ -78,14 +96,14 @@ def page_server(port: int, label: str | None = None) -> Iterator[PageServer]:
 def _listen(port: int) -> socket.socket:
     """Return a socket that listens on the port.
 
-    viser would bind by itself, and silently take the next port where this one is taken.
+    viser itself would silently take the next port if this one is taken.
     """
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
-        # Connections of the page that ran here before may still be dying away.
+        # Connections of a page that ran here before may still be in TIME_WAIT.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind((HOST, port))
-        # Two that start at once may both bind, but only one may listen.
+        # Two pages that start at the same time may both bind, but only one can listen.
         listener.listen()
     except OverflowError:
         listener.close()
@@ -106,13 +124,15 @@ def _refusal_to_bind(port: int, error: OSError) -> str:
 
 
 @contextmanager
-def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
-    """Put the gate before what viser starts to serve in the context, and let it use the socket.
+def _viser_serves_on(listener: socket.socket, take: Take) -> Iterator[list[socket.socket]]:
+    """Make the server that viser starts in this context use the socket and the request gate.
+
+    Connections to PATH carry typed numbers; viser handles all others.
 
     viser calls `websockets.asyncio.server.serve` in a thread that its constructor waits for, and
-    leaves no parameter for `process_request` or `sock`; so `serve` has them in place for the
-    while. The list that is handed out holds the socket once that has happened: an empty one means
-    that viser has other ways by now, and serves unguarded.
+    has no parameter for `process_request` or `sock`, so `serve` is replaced for the duration of the
+    context. The returned list contains the socket once viser has called it. An empty list means
+    that this version of viser serves in another way and is not guarded.
     """
     guarded: list[socket.socket] = []
 
@@ -121,11 +141,25 @@ def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
     ) -> serve:
         guarded.append(listener)
         gate = partial(_answer, process_request)
-        # Every request is worth a line to websockets, but not to the user.
+        # websockets logs every request, which does not interest the user.
         logger = logging.getLogger(f"{__name__}.requests")
         logger.setLevel(logging.WARNING)
         logger.addFilter(_as_sentence)
-        return serve(handler, sock=listener, process_request=gate, logger=logger, **options)
+
+        async def handle(connection: ServerConnection) -> None:
+            try:
+                if connection.request is not None and connection.request.path == PATH:
+                    await serve_typed_numbers(connection, take)
+                else:
+                    await handler(connection)
+            except Exception as error:
+                # The connection's top-level handler: viser raises any kind of error if a client
+                # sends anything but a message of the page.
+                reason = f"{type(error).__name__}: {error}"[:MAX_REASON]
+                logger.warning("closing a connection with an unreadable message: %s", reason)
+                await connection.close(CloseCode.INVALID_DATA, "not a message of the page")
+
+        return serve(handle, sock=listener, process_request=gate, logger=logger, **options)
 
     websockets.asyncio.server.serve = serve_guarded
     try:
@@ -135,7 +169,7 @@ def _viser_serves_on(listener: socket.socket) -> Iterator[list[socket.socket]]:
 
 
 def _as_sentence(record: logging.LogRecord) -> bool:
-    """Say what is wrong with a request, which is not ours to mend, without a traceback."""
+    """Replace the traceback of an invalid request, which is the client's fault, by a sentence."""
     error = record.exc_info[1] if record.exc_info else None
     if isinstance(error, InvalidHandshake):
         record.msg = f"{record.getMessage()}: {error.__cause__ or error}"
@@ -145,12 +179,22 @@ def _as_sentence(record: logging.LogRecord) -> bool:
 
 
 def _answer(inner: Answer, connection: ServerConnection, request: Request) -> Response | None:
-    """Refuse a request, or give viser's own answer (None: open the WebSocket)."""
+    """Refuse a request, or return viser's own response (None to open the WebSocket)."""
     headers = request.headers
     reason = reason_to_refuse(headers.get_all("Host"), headers.get_all("Origin"))
     if reason is not None:
         return connection.respond(http.HTTPStatus.FORBIDDEN, f"{reason}\n")
+    if len(request.path.partition("?")[0]) > MAX_PATH:
+        return connection.respond(http.HTTPStatus.REQUEST_URI_TOO_LONG, "the path is too long\n")
+    is_page = request.path.partition("?")[0] in PAGES
+    if is_page and "Accept-Encoding" in request.headers:
+        # The page is modified below, and compression gains nothing on the same machine.
+        del request.headers["Accept-Encoding"]
     response = inner(connection, request)
     if response is not None:
+        if is_page:
+            response.body = served_page(bytes(response.body).decode()).encode()
+            del response.headers["Content-Length"]
+            response.headers["Content-Length"] = str(len(response.body))
         response.headers.update(SECURITY_HEADERS)
     return response

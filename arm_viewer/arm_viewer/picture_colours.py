@@ -1,4 +1,4 @@
-"""Images of ROS as what a browser shows: red, green and blue of 8 bits each."""
+"""Convert ROS images to what a browser shows: 8-bit RGB."""
 
 from typing import Any
 
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from arm_viewer.errors import PictureError
 from arm_viewer.snapshot import Picture
 
-MOST_PIXELS_WIDE = 480
-"""Wider images are made smaller: they are shown in a column, and encoding them takes its time."""
+MAX_PIXELS_WIDE = 480
+"""Wider images are shrunk, because they are shown in a narrow column and encoding takes time."""
 
 _CHANNELS = {
     "rgb8": (np.uint8, 3),
@@ -25,14 +25,14 @@ _CHANNELS = {
 }
 """Type and number of a pixel's values, by encoding."""
 _DISTANCES = ("16UC1", "32FC1")
-"""Encodings of depth images: shown as colours, near red and far blue, unknown black."""
+"""Encodings of depth images, shown with near points red, far points blue and unknown ones black."""
 
 
 def colours(picture: Picture) -> NDArray[np.uint8]:
-    """Return the image (h, w, 3), at most MOST_PIXELS_WIDE wide.
+    """Return the image (h, w, 3), at most MAX_PIXELS_WIDE wide.
 
     Raises:
-        PictureError: an encoding that is not known, or less data than there are pixels.
+        PictureError: the encoding is unknown, or there is too little data.
     """
     pixels = _shrunk(_pixels(picture))
     encoding = picture.encoding
@@ -67,7 +67,7 @@ def _pixels(picture: Picture) -> NDArray[Any]:
 
 
 def _shrunk(pixels: NDArray[Any]) -> NDArray[Any]:
-    every = -(-pixels.shape[1] // MOST_PIXELS_WIDE)
+    every = -(-pixels.shape[1] // MAX_PIXELS_WIDE)
     return pixels[::every, ::every]
 
 

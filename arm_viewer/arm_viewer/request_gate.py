@@ -1,10 +1,10 @@
-"""Which requests the page answers: those of the page itself, and of programs that are no browser.
+"""Decide which requests the page accepts: its own, and those of programs other than browsers.
 
-The page drives an arm, and every web site that the user visits may open connections to this
-machine. Two headers that a site's scripts cannot change tell it apart. A browser sends with every
-WebSocket the Origin that asked for it: it must be the page's own. A site may also let its own name
-point here ("DNS rebinding") and so become the same origin: its name then stands in Host, so Host
-must be a name of this machine.
+The page drives an arm, and every web site that the user visits could open connections to this
+machine. Two headers that a site's scripts cannot change identify such a site. A browser sends the
+Origin with every WebSocket request, and it must be the page's own. A site may also point its own
+name to this machine ("DNS rebinding") and so become the same origin. Its name is then in the Host
+header, so Host must be a name of this machine.
 """
 
 from urllib.parse import urlsplit
@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 
 SECURITY_HEADERS = {
-    # Everything comes from the page itself, and nobody shows it in a frame to lure clicks.
+    # All content comes from the page itself, and no site may embed it in a frame (clickjacking).
     "Content-Security-Policy": (
         "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
         "connect-src 'self' data: blob:; frame-ancestors 'none'"
@@ -21,18 +21,18 @@ SECURITY_HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
-"""Sent along with the page."""
+"""Headers of every response."""
 
 
 def reason_to_refuse(hosts: list[str], origins: list[str]) -> str | None:
-    """Return in a sentence why a request is refused, or None where it may pass.
+    """Return why a request is refused, in a sentence, or None to accept it.
 
-    The port is not compared with the server's: a tunnel (`ssh -L`) may have another one at its
-    user's end.
+    The port is not compared with the server's, because a tunnel (`ssh -L`) may have another one at
+    the user's end.
 
     Args:
-        hosts: values of its Host headers.
-        origins: values of its Origin headers.
+        hosts: values of the request's Host headers.
+        origins: values of the request's Origin headers.
     """
     if len(hosts) != 1 or not _is_loopback(hosts[0]):
         return (
@@ -52,4 +52,4 @@ def _is_loopback(host: str) -> bool:
 
 
 def _listed(values: list[str]) -> str:
-    return ", ".join(map(repr, values)) or "a host that is not named"
+    return ", ".join(map(repr, values)) or "an unnamed host"

@@ -1,4 +1,4 @@
-"""What the page asks of the ROS thread: frozen data, put into a queue by any thread."""
+"""Requests from the page to the ROS thread: frozen data that any thread may put into the queue."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class MoveJoints:
-    """Command joints of a robot, by whatever controllers are active on them.
+    """Command joints of a robot through their active controllers.
 
     Attributes:
-        namespace: the robot's, as `Description.namespace`.
-        positions: in rad or m, by joint.
+        namespace: namespace of the robot, as in `Description.namespace`.
+        positions: positions in rad or m, by joint.
     """
 
     namespace: str
@@ -22,7 +22,7 @@ class SwitchControllers:
     """Activate and deactivate controllers of one manager, all or none.
 
     Attributes:
-        manager: absolute name of its node.
+        manager: absolute name of the manager's node.
         activate: names of inactive controllers.
         deactivate: names of active controllers.
     """
@@ -34,11 +34,11 @@ class SwitchControllers:
 
 @dataclass(frozen=True, slots=True)
 class Configure:
-    """Configure a controller that is loaded and no more.
+    """Configure a controller that is only loaded.
 
     Attributes:
-        manager: absolute name of its manager's node.
-        controller: its name.
+        manager: absolute name of the manager's node.
+        controller: name of the controller.
     """
 
     manager: str
@@ -47,18 +47,18 @@ class Configure:
 
 @dataclass(frozen=True, slots=True)
 class MeasureRates:
-    """Measure the rates of all topics from now on, or no more."""
+    """Start or stop measuring the rates of all topics."""
 
     wanted: bool
 
 
 @dataclass(frozen=True, slots=True)
 class ShowPictures:
-    """Subscribe to these image topics, and to no others."""
+    """Subscribe to exactly these image topics."""
 
     topics: frozenset[str]
 
 
 Request = ShowPictures | MoveJoints | SwitchControllers | Configure | MeasureRates
 Send = Callable[[Request], None]
-"""Hands a request to the ROS thread; never blocks, may be called from any thread."""
+"""Passes a request to the ROS thread without blocking; any thread may call it."""

@@ -1,6 +1,6 @@
-"""What the page knows of the robots at one moment: plain, frozen data without ROS.
+"""The state of the robots and of the graph at one moment: frozen data without ROS.
 
-The ROS thread makes a new snapshot in every tick; whoever has one may keep it, in any thread.
+The ROS thread creates a new snapshot in every tick. Any thread may keep one.
 SI units: m, rad, s. `received_s` is a time of `time.monotonic`.
 """
 
@@ -12,39 +12,41 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.robot import Robot
-from arm_viewer.drawing.node_graph import NodeTopics
+from arm_description.urdf.robot import Robot
+from arm_node.drawing.node_graph import NodeTopics
+from arm_node.rigid_transform import RigidTransform
 
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A robot as a topic describes it.
+    """A robot description from a topic.
 
     Attributes:
         topic: such as "/left/robot_description".
-        namespace: what stands before robot_description, without a slash at the end: "/left", "".
-        robot: None where the description is none.
-        problem: why it is none; empty where it is one.
+        namespace: the topic's namespace without a trailing slash, such as "/left" or "".
+        robot: the parsed robot; None if the description is invalid.
+        problem: why it is invalid; empty if it is valid.
+        initial: initial joint positions in the description, in rad or m.
     """
 
     topic: str
     namespace: str
     robot: Robot | None
     problem: str = ""
+    initial: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
 
 @dataclass(frozen=True, slots=True)
 class Transform:
-    """Where a frame is in its parent: m, and the unit quaternion (x, y, z, w)."""
+    """The pose of a frame in its parent."""
 
     parent: str
-    position: tuple[float, float, float]
-    rotation: tuple[float, float, float, float]
+    pose: RigidTransform
 
 
 @dataclass(frozen=True, slots=True)
 class JointReading:
-    """One joint in the last message that named it; NaN for what the message did not say."""
+    """One joint's values in the last message that named it; NaN for missing values."""
 
     position: float
     velocity: float
@@ -53,7 +55,7 @@ class JointReading:
 
 @dataclass(frozen=True, slots=True)
 class JointStates:
-    """The newest joint states of a topic, by joint."""
+    """The latest joint states of a topic, by joint."""
 
     joints: Mapping[str, JointReading]
     received_s: float
@@ -61,7 +63,7 @@ class JointStates:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """An image as it was sent: rows of `step` bytes in `data`, as sensor_msgs/msg/Image says."""
+    """An image as received: rows of `step` bytes in `data`, as in sensor_msgs/msg/Image."""
 
     encoding: str
     width: int
@@ -73,14 +75,14 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class CameraView:
-    """What a camera sees, as sensor_msgs/msg/CameraInfo says.
+    """The intrinsics of a camera from sensor_msgs/msg/CameraInfo, in pixels.
 
-    A point (x, y, z) of the frame is seen at the pixel u = fx x / z + cx, v = fy y / z + cy.
+    A point (x, y, z) of the frame appears at the pixel u = fx x / z + cx, v = fy y / z + cy.
 
     Attributes:
-        frame: the optical one: z looks forward, x to the picture's right, y to its lower edge.
-        width: of the picture, in pixels, as everything that follows.
-        height: likewise.
+        frame: the optical frame: z points forward, x to the image's right, y down.
+        width: width of the image.
+        height: height of the image.
         focal_lengths: fx and fy.
         centre: cx and cy.
     """
@@ -93,7 +95,7 @@ class CameraView:
 
 
 class MarkerShape(Enum):
-    """What a marker is, in a cube with sides of 1 that its scale stretches."""
+    """The shape of a marker, in a unit cube that the marker's scale stretches."""
 
     BOX = "box"
     BALL = "ball"
@@ -104,14 +106,14 @@ class MarkerShape(Enum):
 
 @dataclass(frozen=True, slots=True)
 class MarkerLook:
-    """What a marker looks like, wherever it is.
+    """The look of a marker without its pose.
 
     Attributes:
-        shape: what it is.
-        scale: along its axes; m for a box, a ball and a cylinder.
-        rgba: colour, each 0 to 1.
-        mesh_uri: of a mesh.
-        points: of triangles: three times x, y, z in float32 for each, before the scale.
+        shape: shape of the marker.
+        scale: scale along its axes; in m for a box, a ball and a cylinder.
+        rgba: colour, each component 0 to 1.
+        mesh_uri: URI of a mesh.
+        points: corners of triangles, three times x, y, z in float32 for each, unscaled.
     """
 
     shape: MarkerShape
@@ -123,25 +125,24 @@ class MarkerLook:
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """A shape of the world, and where it is in its frame: m, and a unit quaternion."""
+    """A shape of the world with its pose in a frame."""
 
     look: MarkerLook
     frame: str
-    position: tuple[float, float, float]
-    rotation: tuple[float, float, float, float]
+    pose: RigidTransform
 
 
 @dataclass(frozen=True, slots=True)
-class Controller:
+class ListedController:
     """A controller as its manager lists it.
 
     Attributes:
         manager: absolute name of the manager's node.
-        name: of the controller.
+        name: name of the controller.
         type: such as "position_controllers/JointGroupPositionController".
         state: "active", "inactive", "unconfigured" or "finalized".
-        claimed: the command interfaces that it holds: "j0/position".
-        joints: its parameter `joints`, in its order; empty where it has none.
+        claimed: its claimed command interfaces, such as "j0/position".
+        joints: its parameter `joints`, in order; empty if it has none.
     """
 
     manager: str
@@ -153,19 +154,19 @@ class Controller:
 
     @property
     def namespace(self) -> str:
-        """The manager's namespace: "/left", or "" for the root's."""
+        """The manager's namespace: "/left", or "" for the root namespace."""
         return self.manager.rpartition("/")[0]
 
 
 @dataclass(frozen=True, slots=True)
 class SimulationTime:
-    """What /clock says, and how it keeps up with the clock on the wall.
+    """Simulation time from /clock compared with wall time.
 
     Attributes:
-        time_s: the simulation's time.
-        factor: simulated over wall time in the last two seconds; 0 where it stands still.
-        lag_s: how much less than the wall's the simulation's time grew in `measured_s`.
-        measured_s: the wall's seconds that were looked at: ten, fewer at first.
+        time_s: simulation time.
+        factor: real-time factor over the last two seconds; 0 while the simulation is paused.
+        lag_s: how far simulation time fell behind wall time within `measured_s`.
+        measured_s: length of the measurement in wall time: ten seconds, less at first.
     """
 
     time_s: float
@@ -179,11 +180,11 @@ class Topic:
     """A topic of the graph.
 
     Attributes:
-        name: absolute.
-        types: usually one.
-        publishers: how many there are.
-        subscriptions: how many there are, besides the page's own.
-        rate_hz: messages in a second; NaN where that is not measured.
+        name: absolute name.
+        types: types of the topic, usually one.
+        publishers: number of publishers.
+        subscriptions: number of subscriptions except the page's own.
+        rate_hz: messages per second; NaN if not measured.
     """
 
     name: str
@@ -195,28 +196,40 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """All of it. A mapping's keys are topics, but for `transforms`: child frames."""
+    """The whole state. Mappings are keyed by topic, except `transforms`, by child frame."""
 
     made_s: float = 0.0
     descriptions: Mapping[str, Description] = field(default_factory=lambda: MappingProxyType({}))
     transforms: Mapping[str, Transform] = field(default_factory=lambda: MappingProxyType({}))
     joint_states: Mapping[str, JointStates] = field(default_factory=lambda: MappingProxyType({}))
+    hardware_positions: Mapping[str, Mapping[str, float]] = field(
+        default_factory=lambda: MappingProxyType({})
+    )
+    """Positions of joints, by namespace, where a controller manager knows them and nobody publishes
+    joint states."""
+    lost: frozenset[str] = frozenset()
+    """The topics of descriptions and joint states that are no longer published."""
     image_topics: tuple[str, ...] = ()
     pictures: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
-    """The newest of the topics that the page wants to see."""
+    """The latest images of the topics that the page shows."""
     cameras: Mapping[str, CameraView] = field(default_factory=lambda: MappingProxyType({}))
     markers: Mapping[str, Marker] = field(default_factory=lambda: MappingProxyType({}))
-    """The world's shapes, by a name of their own."""
+    """The world's shapes, by unique name."""
     displayed: frozenset[str] = frozenset()
     """The namespaces in which the page itself publishes the joint states."""
-    controllers: tuple[Controller, ...] = ()
+    controllers: tuple[ListedController, ...] = ()
     refusal: str = ""
-    """Why the last switch of controllers was refused; empty where it was not."""
+    """Why the last switch of controllers was refused; empty if it succeeded."""
     commands: Mapping[str, Mapping[str, float]] = field(
         default_factory=lambda: MappingProxyType({})
     )
-    """What active controllers were told last, by namespace and command interface "j0/position"."""
+    """The last commands to active controllers, by namespace and interface such as "j0/position"."""
     time: SimulationTime | None = None
-    """None where nobody publishes /clock."""
+    """None if /clock has no publisher."""
     topics: tuple[Topic, ...] = ()
     nodes: tuple[NodeTopics, ...] = ()
+
+
+def frame_name(frame_id: str) -> str:
+    """Return the name of a frame without a leading slash, which tf2 also ignores."""
+    return frame_id.removeprefix("/")

@@ -1,4 +1,4 @@
-"""The page in the browser, beside whatever runs."""
+"""Start the browser page for whatever is running."""
 
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified, ReadyPanel
 from launch_py.ros import Node, ParameterValue
@@ -6,17 +6,22 @@ from launch_py.substitutions import LaunchConfiguration
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the page's node."""
+    """Return the description with the page's node."""
     port = LaunchConfiguration("viewer_port")
     return LaunchDescription(
         [
             DeclareLaunchArgument(
-                "viewer_port", default_value="8080", description="of the page, on 127.0.0.1"
+                "viewer_port", default_value="8080", description="port of the page on 127.0.0.1"
+            ),
+            DeclareLaunchArgument(
+                "display_config",
+                default_value="",
+                description="RViz configuration that the page shows first",
             ),
             DeclareLaunchArgument(
                 "publish_joint_states",
                 default_value="false",
-                description="by the page's sliders, for a robot that is not there",
+                description="publish joint states from the page's sliders, without a running robot",
                 choices=["true", "false"],
             ),
             Node(
@@ -25,6 +30,9 @@ def generate_launch_description() -> LaunchDescription:
                 parameters=[
                     {
                         "port": ParameterValue(port, value_type=int),
+                        "display_config": ParameterValue(
+                            LaunchConfiguration("display_config"), value_type=str
+                        ),
                         "publish_joint_states": LaunchConfiguration("publish_joint_states"),
                     }
                 ],

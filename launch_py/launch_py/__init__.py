@@ -1,42 +1,47 @@
-"""A launcher and supervisor: what `ros2 launch` does, and start when ready, restart, full stop.
+"""A launcher and supervisor: `ros2 launch` plus readiness, restarts and a complete shutdown.
 
-The names are those of ROS 2's `launch` and `launch_ros` packages, so most launch files port by
-changing their imports: `launch` becomes `launch_py`, `launch_ros` becomes `launch_py.ros`. Not here
-are XML and YAML launch files, composable and lifecycle nodes, and the event handlers other than
-those of a process's start, lines and end, and of the shutdown.
+The names are those of ROS 2's `launch` and `launch_ros` packages. Launch files that import from
+those run unchanged (see `ros_imports`). In new files `launch` is `launch_py`, and `launch_ros` is
+`launch_py.ros`. Composable and lifecycle nodes are not supported. Event handlers exist for a
+process's start, output and exit, and for the shutdown.
 """
 
-from launch_py.actions import (
-    Action,
-    AppendEnvironmentVariable,
-    DeclareLaunchArgument,
-    EmitEvent,
-    ExecuteProcess,
-    GroupAction,
-    IncludeLaunchDescription,
-    LogInfo,
-    OpaqueFunction,
-    ReadyPanel,
-    RegisterEventHandler,
-    SetEnvironmentVariable,
-    SetLaunchConfiguration,
-    Shutdown,
-    TimerAction,
-    UnsetEnvironmentVariable,
-)
-from launch_py.errors import LaunchError
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description import LaunchDescription
-from launch_py.readiness import (
-    ActionAvailable,
-    HttpOk,
-    LogLine,
-    Notified,
-    ProcessExited,
-    ServiceAvailable,
-    TopicPublished,
-)
-from launch_py.restart_policy import RestartPolicy
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from launch_py.actions import (
+        Action,
+        AppendEnvironmentVariable,
+        DeclareLaunchArgument,
+        EmitEvent,
+        ExecuteProcess,
+        GroupAction,
+        IncludeLaunchDescription,
+        LogInfo,
+        OpaqueFunction,
+        ReadyPanel,
+        RegisterEventHandler,
+        SetEnvironmentVariable,
+        SetLaunchConfiguration,
+        Shutdown,
+        TimerAction,
+        UnsetEnvironmentVariable,
+    )
+    from launch_py.errors import LaunchError
+    from launch_py.launch_context import LaunchContext
+    from launch_py.launch_description import LaunchDescription
+    from launch_py.plan.readiness import (
+        ActionAvailable,
+        Finished,
+        HttpOk,
+        LogLine,
+        Notified,
+        ProcessExited,
+        ServiceAvailable,
+        TopicPublished,
+    )
+    from launch_py.plan.restart_policy import RestartPolicy
 
 __all__ = [
     "Action",
@@ -45,6 +50,7 @@ __all__ = [
     "DeclareLaunchArgument",
     "EmitEvent",
     "ExecuteProcess",
+    "Finished",
     "GroupAction",
     "HttpOk",
     "IncludeLaunchDescription",
@@ -67,3 +73,23 @@ __all__ = [
     "TopicPublished",
     "UnsetEnvironmentVariable",
 ]
+
+_PUBLIC_MODULES = (
+    "actions",
+    "errors",
+    "launch_context",
+    "launch_description",
+    "plan.readiness",
+    "plan.restart_policy",
+)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name on its first use, so that importing one module does not load all."""
+    if name in __all__:
+        for module_name in _PUBLIC_MODULES:
+            module = import_module(f"launch_py.{module_name}")
+            if hasattr(module, name):
+                globals()[name] = getattr(module, name)
+                return globals()[name]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

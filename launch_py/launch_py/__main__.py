@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Sequence
 
-from launch_py.command_line import run
+from launch_py.command.command_line import run
 from launch_py.standard_streams import open_closed_streams
 
 

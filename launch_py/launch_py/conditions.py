@@ -3,38 +3,34 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
 
 from launch_py.errors import SubstitutionError
-from launch_py.substitution import Text, describe_text, perform_text
-from launch_py.truth import parse_truth
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+from launch_py.substitution import LaunchScope, Text, describe_text, perform_text
+from launch_py.typed_values import parse_boolean
 
 
 class Condition(ABC):
-    """Decides whether an action is taken."""
+    """Decides whether an action is expanded."""
 
     @abstractmethod
-    def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds."""
+    def evaluate(self, context: LaunchScope) -> bool:
+        """Return whether the condition holds."""
 
 
 class IfCondition(Condition):
-    """Holds where the text is true, 1, yes or on."""
+    """Holds if the text is true, 1, yes or on."""
 
     def __init__(self, predicate_expression: Text) -> None:
         self.predicate_expression = predicate_expression
 
-    def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds.
+    def evaluate(self, context: LaunchScope) -> bool:
+        """Return whether the condition holds.
 
         Raises:
-            SubstitutionError: the text is neither a word for true nor one for false.
+            SubstitutionError: the text means neither true nor false.
         """
         text = perform_text(context, self.predicate_expression)
-        truth = parse_truth(text)
+        truth = parse_boolean(text)
         if truth is None:
             raise SubstitutionError(
                 f"a condition on {describe_text(self.predicate_expression)} needs true or false, "
@@ -44,29 +40,30 @@ class IfCondition(Condition):
 
 
 class UnlessCondition(IfCondition):
-    """Holds where the text is false, 0, no or off."""
+    """Holds if the text is false, 0, no or off."""
 
-    def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds; see `IfCondition.evaluate`."""
+    def evaluate(self, context: LaunchScope) -> bool:
+        """Return whether the condition holds; see `IfCondition.evaluate`."""
         return not super().evaluate(context)
 
 
 class LaunchConfigurationEquals(Condition):
-    """Holds where a launch configuration is this text, or for None, where there is none.
+    """Holds if a launch configuration has this value; None means that it is not set.
 
-    ROS calls it deprecated: `IfCondition(EqualsSubstitution(LaunchConfiguration(name), text))` says
-    it as well, but compares numbers and true words by value, and needs the configuration.
+    ROS deprecates it in favour of
+    `IfCondition(EqualsSubstitution(LaunchConfiguration(name), text))`, which compares numbers and
+    booleans by value and requires the configuration to be set.
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: Text | None) -> None:
         self.launch_configuration_name = launch_configuration_name
         self.expected_value = expected_value
 
-    def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds.
+    def evaluate(self, context: LaunchScope) -> bool:
+        """Return whether the condition holds.
 
         Raises:
-            LaunchError: the expected text has no value.
+            LaunchError: a substitution in the expected value has no value.
         """
         expected = self.expected_value
         text = None if expected is None else perform_text(context, expected)
@@ -74,8 +71,8 @@ class LaunchConfigurationEquals(Condition):
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
-    """Holds where a launch configuration is not this text, or for None, where there is one."""
+    """Holds if a launch configuration does not have this value; None means that it is set."""
 
-    def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds; see `LaunchConfigurationEquals.evaluate`."""
+    def evaluate(self, context: LaunchScope) -> bool:
+        """Return whether the condition holds; see `LaunchConfigurationEquals.evaluate`."""
         return not super().evaluate(context)

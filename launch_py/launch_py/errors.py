@@ -5,7 +5,7 @@ LaunchError
 +-- LaunchFileError        a launch file that cannot be read or does not make sense
 +-- SubstitutionError      a substitution that has no value
 +-- NotFoundError          a package, executable or program that does not exist
-+-- ParameterError         a node parameter that cannot be passed on
++-- NodeParameterError     a node parameter that cannot be passed on
 +-- StartError             a process that could not be started
 """
 
@@ -14,11 +14,11 @@ from contextlib import contextmanager
 
 
 class LaunchError(Exception):
-    """Root of the errors of launch_py."""
+    """Base class of launch_py's errors."""
 
 
 class UsageError(LaunchError):
-    """What was typed on the command line does not fit what exists."""
+    """The command line is wrong: an unknown argument, package, file or choice."""
 
 
 class LaunchFileError(LaunchError):
@@ -33,7 +33,7 @@ class NotFoundError(LaunchError):
     """A package, an executable or a program does not exist."""
 
 
-class ParameterError(LaunchError):
+class NodeParameterError(LaunchError):
     """A node parameter cannot be passed on."""
 
 
@@ -42,11 +42,11 @@ class StartError(LaunchError):
 
 
 @contextmanager
-def blaming(describe: Callable[[], str]) -> Iterator[None]:
-    """Turn whatever a mistake of a launch file raises inside into a sentence.
+def errors_attributed_to(describe: Callable[[], str]) -> Iterator[None]:
+    """Turn any exception that the launch file's own code raises into a LaunchFileError.
 
     Args:
-        describe: returns whom to blame; asked only then.
+        describe: returns the subject of the error message; called only after an exception.
 
     Raises:
         LaunchFileError: something other than a LaunchError was raised.
@@ -56,7 +56,8 @@ def blaming(describe: Callable[[], str]) -> Iterator[None]:
     except LaunchError:
         raise
     except Exception as error:
-        # An error class of somebody's own comes with a sentence; KeyError and the like do not.
-        own = type(error).__module__ != "builtins"
-        text = str(error) if own and str(error) else f"{type(error).__name__}: {error}"
+        # The launch file is user code and may raise anything.
+        # A custom exception carries a sentence; a KeyError needs its type to be understood.
+        is_custom = type(error).__module__ != "builtins"
+        text = str(error) if is_custom and str(error) else f"{type(error).__name__}: {error}"
         raise LaunchFileError(f"{describe()}: {text}") from error

@@ -4,45 +4,44 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from launch_py.actions.action import Action, check_actions
+from launch_py.action import Action, check_actions, deferred_step, steps_at_event
 from launch_py.errors import LaunchFileError
 from launch_py.events import ProcessEvent, ProcessIO
-from launch_py.plan import FarewellStep, ListeningStep, Step, Trigger, TriggerKind
+from launch_py.launch_context import LaunchContext
+from launch_py.plan.steps import OutputHandlerStep, ShutdownHandlerStep, Step, Trigger, TriggerKind
 
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
-
-HandlerFunction = Callable[[Any, "LaunchContext"], Iterable[Action] | Action | None]
+HandlerFunction = Callable[[Any, LaunchContext], Iterable[Action] | Action | None]
 Reaction = Iterable[Action] | Action | HandlerFunction
 LineFunction = Callable[[ProcessIO], Iterable[Action] | Action | None]
 Target = Action | str | Callable[[Action], bool] | None
 
 
 class EventHandler(ABC):
-    """What follows an event; see `RegisterEventHandler`.
+    """Actions that follow an event; see `RegisterEventHandler`.
 
     Attributes:
-        actions: those that are known before the event happens.
+        actions: the actions that are known before the event happens.
     """
 
     actions: list[Action]
 
     @abstractmethod
     def expand(self, context: LaunchContext) -> None:
-        """Add to the plan what waits for the event."""
+        """Add the steps that wait for the event to the plan."""
 
 
-class ProcessEventHandler(EventHandler):
-    """Actions that follow something that a process does.
+class _ProcessEventHandler(EventHandler):
+    """Actions that follow an event of a process.
 
-    The process is that of `target_action`, or of this name; without it, or with a function
-    `function(action)` that decides, it is any process, each once.
+    `target_action` is an action, the name of a process, or a function `function(action)` that
+    returns whether to handle that action's events. Without it the handler handles every process,
+    once each.
 
-    Given as a list, for one process, the actions are expanded with the launch file, so mistakes in
-    them show before anything starts. Given as a function `function(event, context)`, or for any
-    process, they are asked for when the event happens.
+    A list of actions for a single process is expanded with the launch file, so mistakes in it show
+    before anything starts. A function `function(event, context)`, or any actions for several
+    processes, are expanded when the event happens.
     """
 
     kind: TriggerKind
@@ -54,23 +53,23 @@ class ProcessEventHandler(EventHandler):
         self.actions = [] if callable(reaction) else check_actions(reaction, name)
 
     def expand(self, context: LaunchContext) -> None:
-        """Expand the actions; they wait for the event."""
+        """Expand the actions, which wait for the event."""
         target = self.target_action
         if not isinstance(target, Action | str):
             scope = context.scoped()
             context.plan.add_for_each(lambda name: self._step(scope.scoped(), name))
             return
         inner = context.scoped()
-        inner.event = None  # Not the one that is waited for.
+        inner.event = None  # The awaited event has not happened yet.
         inner.after = (*context.after, Trigger(self.kind, target))
         if self.function is not None:
-            inner.plan.add(inner.deferred(self.function))
+            inner.plan.add(deferred_step(inner, self.function))
         with inner.plan.detached():
             for action in self.actions:
                 action.visit(inner)
 
     def _step(self, scope: LaunchContext, name: str) -> Step:
-        """Return what asks for the actions at the event of one of any processes."""
+        """Return the step that expands the actions at the event of the process `name`."""
 
         def react(event: Any, context: LaunchContext) -> Iterable[Action] | Action | None:
             if not _concerns(self.target_action, event):
@@ -78,11 +77,11 @@ class ProcessEventHandler(EventHandler):
             return self.actions if self.function is None else self.function(event, context)
 
         scope.after = (*scope.after, Trigger(self.kind, name))
-        return scope.deferred(react)
+        return deferred_step(scope, react)
 
 
-class OnProcessStart(ProcessEventHandler):
-    """What follows when a process has been started."""
+class OnProcessStart(_ProcessEventHandler):
+    """Actions that follow the start of a process."""
 
     kind = TriggerKind.STARTED
 
@@ -90,12 +89,12 @@ class OnProcessStart(ProcessEventHandler):
         super().__init__(target_action, on_start)
 
 
-class OnProcessExit(ProcessEventHandler):
-    """What follows when a process has ended and will not be restarted.
+class OnProcessExit(_ProcessEventHandler):
+    """Actions that follow the exit of a process that will not be restarted.
 
-    Also while everything stops: then messages are said and functions called, each for at most 5 s
-    and one after the other, while processes are not started and timers not waited for. An end by
-    a second Ctrl-C or SIGQUIT, or without the launcher, leaves them out.
+    During the shutdown, messages are still printed and functions called, one after the other and
+    each for at most 5 s; no process is started and no timer is waited for. The actions are skipped
+    after a second Ctrl-C or SIGQUIT, and if the launcher itself is killed.
     """
 
     kind = TriggerKind.EXITED
@@ -105,10 +104,10 @@ class OnProcessExit(ProcessEventHandler):
 
 
 class OnProcessIO(EventHandler):
-    """What follows each line that a process writes, until everything is to stop.
+    """Actions that follow each line that a process writes, until the shutdown begins.
 
     The functions are called as `function(event)` and return actions, or None. The event's text is
-    one line, as bytes and with its newline. `target_action` is as in `ProcessEventHandler`.
+    one line, as bytes and with its newline. `target_action` is as in `_ProcessEventHandler`.
     """
 
     def __init__(
@@ -124,14 +123,14 @@ class OnProcessIO(EventHandler):
         self.actions = []
 
     def expand(self, context: LaunchContext) -> None:
-        """Listen to the process."""
+        """Add the step that watches the process's output to the plan."""
         target = self.target_action
         context.plan.add(
-            ListeningStep(
+            OutputHandlerStep(
                 after=context.after,
                 delay_s=context.delay_s,
                 processes=(target,) if isinstance(target, Action | str) else None,
-                expand=context.at_event(self._react),
+                expand=steps_at_event(context, self._react),
             )
         )
 
@@ -143,12 +142,13 @@ class OnProcessIO(EventHandler):
 
 
 class OnShutdown(EventHandler):
-    """What is said and called when everything is to stop, before the first process is asked to.
+    """Actions that follow the beginning of the shutdown, before the first process is stopped.
 
-    The actions, also those of a function `function(event, context)`, are expanded only then. No
-    process can be among them, and functions are called as by `OnProcessExit`, each for at most 5 s.
-    Where everything has ended by itself the event's reason is "idle"; an end by SIGQUIT, or without
-    the launcher, leaves them out, and a second Ctrl-C waits for none of them.
+    The actions, and those that a function `function(event, context)` returns, are expanded only
+    then. They cannot start a process, and functions are called as by `OnProcessExit`, each for at
+    most 5 s. The event's reason is "idle" if all processes have ended by themselves. The actions
+    are skipped after SIGQUIT and if the launcher itself is killed; a second Ctrl-C does not wait
+    for them.
     """
 
     def __init__(self, *, on_shutdown: Reaction) -> None:
@@ -157,12 +157,12 @@ class OnShutdown(EventHandler):
         self.function = on_shutdown if callable(on_shutdown) else lambda _event, _context: known
 
     def expand(self, context: LaunchContext) -> None:
-        """Wait for the shutdown."""
+        """Add the step that waits for the shutdown to the plan."""
         context.plan.add(
-            FarewellStep(
+            ShutdownHandlerStep(
                 after=context.after,
                 delay_s=context.delay_s,
-                expand=context.at_event(self.function),
+                expand=steps_at_event(context, self.function),
             )
         )
 
@@ -177,7 +177,7 @@ def _check_target(target: Target, handler: str) -> Target:
 
 
 def _concerns(target: Target, event: ProcessEvent) -> bool:
-    """Return whether an event of any process is one of the target's, where a function decides."""
+    """Return whether the handler handles this event; only a function as target decides here."""
     if target is None or isinstance(target, Action | str):
         return True
-    return event.action is not None and target(event.action)
+    return isinstance(event.action, Action) and target(event.action)

@@ -1,29 +1,27 @@
-"""What event handlers are told, named as in ROS 2's `launch.events`."""
+"""The events that event handlers receive, named as in ROS 2's `launch.events`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from launch_py.actions.action import Action
+from launch_py.launch_description_entity import LaunchDescriptionEntity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessEvent:
-    """Something that happened to a process.
+    """An event of a process.
 
     Attributes:
         action: the action that describes the process, as in `event.action == my_node`.
-        process_name: what it is called.
+        process_name: the process's name.
         cmd: the words of its command line.
-        cwd: the folder that it was given to run in, None for that of the launcher.
-        env: all its environment variables; none where it could not be started.
-        pid: its process id, 0 where it could not be started.
+        cwd: its working folder, None for the launcher's.
+        env: all its environment variables; empty if it could not be started.
+        pid: its process id, 0 if it could not be started.
     """
 
-    action: Action | None
+    action: LaunchDescriptionEntity | None
     process_name: str
     cmd: tuple[str, ...]
     cwd: str | None
@@ -33,7 +31,7 @@ class ProcessEvent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessStarted(ProcessEvent):
-    """The process runs."""
+    """The process has started."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,17 +50,17 @@ class ProcessIO(ProcessEvent):
 
     @property
     def from_stdout(self) -> bool:
-        """Whether it came on stdout, as all does of a process on a pseudo terminal."""
+        """Whether the line was written to stdout; always true on a pseudo terminal."""
         return self.fd == 1
 
     @property
     def from_stderr(self) -> bool:
-        """Whether it came on stderr."""
+        """Whether the line was written to stderr."""
         return self.fd == 2
 
 
 @dataclass(frozen=True, slots=True)
 class Shutdown:
-    """Everything is to stop; see `EmitEvent` and `OnShutdown`."""
+    """The shutdown begins; see `EmitEvent` and `OnShutdown`."""
 
     reason: str = "the launch file asks for it"

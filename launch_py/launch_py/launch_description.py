@@ -1,15 +1,16 @@
-"""The list of actions that a launch file returns."""
+"""The list of actions that a launch file returns, and the plan that it expands to."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 
-from launch_py.actions.action import Action, check_actions
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
-    from launch_py.survey import Survey
+from launch_py.action import Action, check_actions
+from launch_py.errors import UsageError, errors_attributed_to
+from launch_py.launch_context import LaunchContext
+from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.near_names import describe_known
+from launch_py.plan.steps import LaunchPlan
 
 
 class LaunchDescription:
@@ -31,7 +32,57 @@ class LaunchDescription:
         for entity in self.entities:
             entity.visit(context)
 
-    def survey(self, survey: Survey, context: LaunchContext) -> None:
+    def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
         """Let all actions add to the survey."""
         for entity in self.entities:
             entity.survey(survey, context)
+
+
+def survey_description(
+    description: LaunchDescription, environ: Mapping[str, str], path: Path | None = None
+) -> LaunchSurvey:
+    """Return what the description declares and contains, without expanding it.
+
+    Raises:
+        LaunchFileError: an entry has the wrong type.
+    """
+    survey = LaunchSurvey()
+    context = LaunchContext(base_environment=environ).included(path, {})
+    with errors_attributed_to(lambda: _name(path)):
+        description.survey(survey, context)
+    return survey
+
+
+def expand_description(
+    description: LaunchDescription,
+    arguments: Mapping[str, str],
+    environ: Mapping[str, str],
+    path: Path | None = None,
+) -> LaunchPlan:
+    """Return the plan of a description.
+
+    Args:
+        description: the actions.
+        arguments: values of launch arguments, as typed.
+        environ: the environment variables to expand it with.
+        path: the launch file it comes from.
+
+    Raises:
+        LaunchError: the description is invalid, or an argument is not declared.
+    """
+    survey = survey_description(description, environ, path)
+    for name in arguments:
+        if name not in survey.arguments:
+            known = describe_known(name, survey.arguments, "its arguments are")
+            raise UsageError(f"{_name(path)} has no launch argument {name!r}; {known}")
+    context = LaunchContext(base_environment=environ).included(path, {})
+    context.launch_configurations.update(arguments)
+    context.plan.surveyed_actions = survey.actions
+    context.plan.surveyed_names = survey.process_names
+    with errors_attributed_to(lambda: _name(path)):
+        description.visit(context)
+        return context.plan.finish(context.warnings)
+
+
+def _name(path: Path | None) -> str:
+    return path.name if path else "the launch description"

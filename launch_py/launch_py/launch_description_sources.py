@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
-from launch_py.near_names import describe_known
-from launch_py.substitution import Text, describe_text, perform_text
+from launch_py.launch_description import LaunchDescription
+from launch_py.near_names import describe_missing_file
+from launch_py.ros_imports import MissingRosNameError, ros_imports
+from launch_py.substitution import LaunchScope, Text, describe_text, perform_text
+from launch_py.system.packages import launch_files
 
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
-    from launch_py.launch_description import LaunchDescription
+FRONTEND_ENDINGS = (".xml", ".launch", ".yaml", ".yml")
+"""What XML and YAML launch files end with; .launch is XML."""
 
 
 class LaunchDescriptionSource:
-    """A launch file somewhere."""
+    """The location of a launch file."""
 
     def __init__(self, location: Text) -> None:
         self.location = location
 
-    def path(self, context: LaunchContext) -> Path:
+    def path(self, context: LaunchScope) -> Path:
         """Return the file's absolute path.
 
         Raises:
-            LaunchError: the location has no value.
+            LaunchError: a substitution in the location has no value.
         """
         return Path(os.path.abspath(perform_text(context, self.location)))
 
@@ -40,51 +42,79 @@ class PythonLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file of any kind that can be read; Python is the only one."""
+    """A launch file in any supported format, told by its ending; see `read_launch_file`."""
+
+
+class _FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
+    """An XML or YAML launch file."""
+
+
+class XMLLaunchDescriptionSource(_FrontendLaunchDescriptionSource):
+    """An XML launch file."""
+
+
+class YAMLLaunchDescriptionSource(_FrontendLaunchDescriptionSource):
+    """A YAML launch file."""
 
 
 def read_launch_file(path: Path) -> LaunchDescription:
-    """Run a launch file and return its description.
+    """Read a launch file and return its description; the file's ending tells its format.
 
     Raises:
         NotFoundError: there is no such file.
-        LaunchFileError: it is not Python, has no `generate_launch_description`, or fails.
+        LaunchFileError: the file is not Python, XML or YAML, or is invalid.
     """
-    from launch_py.launch_description import LaunchDescription
+    if not os.path.isfile(path):
+        siblings = launch_files(path.parent) if os.path.isdir(path.parent) else []
+        holds = f"{path.parent} holds"
+        raise NotFoundError(describe_missing_file("launch file", path, siblings, holds))
+    if path.suffix == ".py":
+        return _read_python(path)
+    if path.suffix in FRONTEND_ENDINGS:
+        # Imported by name, because its actions include files, which are read here.
+        return import_module("launch_py.frontend.elements").read_description(path)
+    raise LaunchFileError(
+        f"{path} does not end like a launch file: .py, {', '.join(FRONTEND_ENDINGS)}"
+    )
 
-    if not path.is_file():
-        siblings = [p.name for p in path.parent.glob("*.py")] if path.parent.is_dir() else []
-        known = describe_known(path.name, siblings, f"{path.parent} holds")
-        raise NotFoundError(f"no launch file {path}; {known}")
-    if path.suffix != ".py":
-        raise LaunchFileError(
-            f"{path} is not a Python launch file; XML and YAML launch files are not supported"
-        )
+
+def _read_python(path: Path) -> LaunchDescription:
+    """Run a Python launch file; see `read_launch_file`."""
     module = ModuleType(path.name.replace(".", "_"))
     module.__file__ = str(path)
     try:
         # Compiled by hand: an import would leave a __pycache__ in the installed share folder.
-        exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
-        generate = getattr(module, "generate_launch_description", None)
-        if generate is None:
-            raise LaunchFileError(f"{path} does not define generate_launch_description()")
-        description = generate()
+        with ros_imports():
+            exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
+            generate = getattr(module, "generate_launch_description", None)
+            if generate is None:
+                raise LaunchFileError(f"{path} does not define generate_launch_description()")
+            description = generate()
     except LaunchError:
         raise
+    except MissingRosNameError as error:
+        raise LaunchFileError(f"{_where(error, path)}: {error}") from error
     except Exception as error:
-        # A SyntaxError's text names file and line once more.
+        # A launch file is user code and may raise anything.
+        # The text of a SyntaxError would repeat the file and the line.
         what = error.msg if isinstance(error, SyntaxError) else error
         raise LaunchFileError(f"{_where(error, path)}: {type(error).__name__}: {what}") from error
     if not isinstance(description, LaunchDescription):
+        kind = type(description)
+        if kind.__module__.partition(".")[0] == "launch":
+            raise LaunchFileError(
+                f"{path} imports the `launch` of an installed ROS 2: start it with `ros2 launch`, "
+                "or import from launch_py"
+            )
         raise LaunchFileError(
             f"generate_launch_description() of {path} returns "
-            f"{type(description).__name__}, not LaunchDescription"
+            f"{kind.__name__}, not LaunchDescription"
         )
     return description
 
 
 def _where(error: BaseException, path: Path) -> str:
-    """Return file and line in the launch file where an error came from."""
+    """Return the launch file and the line that raised an error."""
     if isinstance(error, SyntaxError) and error.filename == str(path):
         return f"{path}, line {error.lineno}"
     line = None

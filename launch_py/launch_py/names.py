@@ -4,12 +4,12 @@ import re
 
 from launch_py.errors import LaunchFileError
 
-# As ROS has them: no part begins with a digit, and nowhere are two underscores together.
+# ROS's rules: no part starts with a digit, and no name has two underscores in a row.
 FULL_NAME = re.compile(r"(?!.*__)(?:/[A-Za-z_]\w*)+", re.ASCII)
 
 
 def join_names(namespace: str, name: str) -> str:
-    """Return `name` resolved in `namespace`, with a leading slash; "" where both are empty."""
+    """Return `name` resolved in `namespace`, with a leading slash; "" if both are empty."""
     if name.startswith("/"):
         return "/" + name.strip("/") if name.strip("/") else ""
     parts = [part for part in (namespace.strip("/"), name.strip("/")) if part]
@@ -17,15 +17,15 @@ def join_names(namespace: str, name: str) -> str:
 
 
 def graph_name(namespace: str, name: str) -> str:
-    """Return the full name of a topic, service or action that is called `name` in `namespace`.
+    """Return the full name of the topic, service or action `name` in `namespace`.
 
     Raises:
-        LaunchFileError: ROS allows no such name.
+        LaunchFileError: ROS does not allow the name.
     """
     full = join_names(namespace, name) if name else ""
     if not FULL_NAME.fullmatch(full):
         raise LaunchFileError(
-            f"{name!r} is no name of a topic, service or action: it takes letters, digits and "
-            "single underscores, in parts that are parted by slashes and begin with no digit"
+            f"{name!r} is not a valid name of a topic, service or action: use letters, digits "
+            "and single underscores, and separate parts by slashes; a part begins with no digit"
         )
     return full

@@ -1,29 +1,33 @@
-"""Says what the user may have meant when a name does not exist."""
+"""Suggests what the user may have meant when a name does not exist.
 
+`arm_node.names` holds the same function: launch_py imports no arm_* package.
+"""
+
+import os
 from collections.abc import Iterable
 
 MAX_LISTED = 15
-"""More names than this are not listed in an error message: nobody would read them."""
+"""An error message lists at most this many names: nobody would read more."""
 
-NEAR = 0.7
-"""How like a name must be to be meant, 1 for the same: 'grops' is 0.67 like 'ros2'."""
+MIN_SIMILARITY = 0.7
+"""The lowest similarity of a suggestion, where 1 means equal: 'grops' is 0.67 like 'ros2'."""
 
 
 def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> str:
     """Return the second half of an error about an unknown name.
 
     Args:
-        name: what was asked for.
-        known: what exists, in any order.
+        name: the unknown name.
+        known: the names that exist, in any order.
         noun: introduces the list, as in "the robot has".
 
     Returns:
-        "did you mean 'a' or 'b'?" where something is near, else the list of what exists.
+        "did you mean 'a' or 'b'?" if a name is similar, else the list of names that exist.
     """
     import difflib
 
     names = sorted(set(known))
-    near = difflib.get_close_matches(name, names, n=3, cutoff=NEAR)
+    near = difflib.get_close_matches(name, names, n=3, cutoff=MIN_SIMILARITY)
     near = near or [n for n in names if sorted(n) == sorted(name)][:3]
     near = near or [n for n in names if _holds(n, name) or _holds(name, n)][:3]
     if near:
@@ -31,8 +35,24 @@ def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> s
     if not names:
         return f"{noun} none"
     if len(names) > MAX_LISTED:
-        return f"none of the {len(names)} is named like it"
+        return f"none of the {len(names)} has a similar name"
     return f"{noun} {', '.join(names)}"
+
+
+def describe_missing_file(
+    what: str, path: str | os.PathLike[str], siblings: Iterable[str], noun: str
+) -> str:
+    """Return the error about a path that is not a regular file.
+
+    Args:
+        what: what the file would be: "launch file".
+        path: the path.
+        siblings: the files that exist where it was searched.
+        noun: introduces them, as for `describe_known`.
+    """
+    if os.path.exists(path):
+        return f"{path} is not a regular file, so it is not a {what}"
+    return f"no {what} {path}; {describe_known(os.path.basename(path), siblings, noun)}"
 
 
 def _holds(name: str, part: str) -> bool:

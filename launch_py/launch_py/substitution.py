@@ -1,49 +1,131 @@
-"""Values of a launch file that are known only when it is expanded."""
+"""Substitutions, which get their value when a launch file is expanded, and their scope."""
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from os import PathLike
-from typing import TYPE_CHECKING, cast
+from pathlib import Path
+from typing import Any, Self, cast
 
 from launch_py.errors import LaunchFileError
+from launch_py.names import join_names
 
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+
+@dataclass(slots=True)
+class LaunchScope:
+    """What a launch file has set so far: arguments, environment, namespace, remappings.
+
+    Groups and includes work on a copy (`scoped`), so what they set does not leak into the actions
+    that follow.
+    """
+
+    launch_configurations: dict[str, str] = field(default_factory=dict)
+    base_environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
+    environment: dict[str, str | None] = field(default_factory=dict)
+    """Variables that the launch file sets, None for those that it unsets."""
+    namespace: str = ""
+    parameters: list[dict[str, Any] | str] = field(default_factory=list)
+    """Parameters of all nodes in this scope, before the nodes' own: dicts, and paths of files."""
+    remappings: list[tuple[str, str]] = field(default_factory=list)
+    event: object = None
+    """The event that is being handled, if any; see `LocalSubstitution`."""
+    launch_file: Path | None = None
+    included_files: tuple[Path, ...] = ()
+    """The launch files that include this scope, outermost first."""
+    fixed_arguments: frozenset[str] = frozenset()
+    """Arguments whose values an enclosing include sets."""
+    warnings: list[str] = field(default_factory=list)
+    """Warnings for the user; all copies share this list."""
+
+    def scoped(self) -> Self:
+        """Return a copy; changes to it do not affect this scope."""
+        return replace(
+            self,
+            launch_configurations=dict(self.launch_configurations),
+            environment=dict(self.environment),
+            parameters=list(self.parameters),
+            remappings=list(self.remappings),
+        )
+
+    def bare(self) -> Self:
+        """Return a copy without any of the settings made so far."""
+        return replace(
+            self,
+            launch_configurations={},
+            environment={},
+            namespace="",
+            parameters=[],
+            remappings=[],
+        )
+
+    def included(self, path: Path | None, arguments: Mapping[str, str]) -> Self:
+        """Return the scope of a file that is included here with these arguments."""
+        inner = self.scoped()
+        inner.launch_configurations.update(arguments)
+        inner.fixed_arguments = self.fixed_arguments | arguments.keys()
+        inner.launch_file = path
+        if path is not None:
+            inner.included_files = (*self.included_files, path)
+        return inner
+
+    def perform_substitution(self, value: Text) -> str:
+        """Return the text that `value` stands for in this scope."""
+        return perform_text(self, value)
+
+    def environment_variable(self, name: str) -> str | None:
+        """Return a variable as a process started here would see it."""
+        if name in self.environment:
+            return self.environment[name]
+        return self.base_environment.get(name)
+
+    def complete_environment(self) -> dict[str, str]:
+        """Return all environment variables that are set in this scope."""
+        merged = {**self.base_environment, **self.environment}
+        return {name: value for name, value in merged.items() if value is not None}
+
+    def set_environment_variable(self, name: str, value: str | None) -> None:
+        """Set a variable for the processes that follow in this scope; None unsets it."""
+        self.environment[name] = value
+
+    def push_namespace(self, namespace: str) -> None:
+        """Append a namespace to this scope's namespace; an absolute one replaces it."""
+        self.namespace = join_names(self.namespace, namespace)
 
 
 class Substitution(ABC):
-    """A text that depends on the launch context."""
+    """A text whose value depends on the scope."""
 
     is_costly = False
-    """Whether performing it takes time or does something, so that a mere survey should not."""
+    """Whether performing it takes time or has side effects; surveys skip costly substitutions."""
 
     @abstractmethod
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the text.
 
         Raises:
-            SubstitutionError: it has no value in this context.
+            SubstitutionError: the substitution has no value in this scope.
         """
 
     def describe(self) -> str:
-        """Return how it is written in a launch file, for messages."""
+        """Return the substitution as messages show it, about as a launch file writes it."""
         return f"{type(self).__name__}(...)"
 
 
 Text = str | PathLike[str] | Substitution | Iterable["str | PathLike[str] | Substitution"]
-"""What every text of a launch file may be; the parts of an iterable are joined."""
+"""What a launch file may pass as a text; the parts of an iterable are joined."""
 
 Pairs = Mapping[str, Text] | Iterable[tuple[Text, Text]]
-"""A dict, or what its `items()` gives."""
+"""A dict, or pairs as its `items()` returns them."""
 
 
-def perform_text(context: LaunchContext, value: Text) -> str:
-    """Return the text that `value` stands for in this context.
+def perform_text(context: LaunchScope, value: Text) -> str:
+    """Return the text that `value` stands for in this scope.
 
     Raises:
-        LaunchFileError: something other than text, path or substitution is in it.
+        LaunchFileError: a part of it is not a text, a path or a substitution.
         SubstitutionError: a substitution has no value.
     """
     if isinstance(value, str):
@@ -60,7 +142,7 @@ def perform_text(context: LaunchContext, value: Text) -> str:
 
 
 def describe_text(value: Text) -> str:
-    """Return how `value` is written in a launch file, without performing it."""
+    """Return `value` as messages show it, without performing it."""
     if isinstance(value, str):
         return value
     if isinstance(value, Substitution):
@@ -69,7 +151,7 @@ def describe_text(value: Text) -> str:
         return str(value.__fspath__())
     if isinstance(value, Iterable) and not isinstance(value, bytes):
         return "".join(describe_text(part) for part in value)
-    return repr(value)  # A mistake, of which a message is about to be made.
+    return repr(value)  # The value has the wrong type; an error message is about to show it.
 
 
 def is_costly(value: Text) -> bool:
@@ -82,21 +164,21 @@ def is_costly(value: Text) -> bool:
 
 
 def keep_pairs(pairs: Pairs | None) -> tuple[tuple[Text, Text], ...]:
-    """Return the pairs as a value that can be looked at twice, unlike what `zip` gives."""
+    """Return the pairs as a tuple, because an iterator such as `zip` can be read only once."""
     items = pairs.items() if isinstance(pairs, Mapping) else pairs or ()
     return tuple(cast("Iterable[tuple[Text, Text]]", items))
 
 
-def perform_pairs(context: LaunchContext, pairs: Pairs, of: str) -> tuple[tuple[str, str], ...]:
+def perform_pairs(context: LaunchScope, pairs: Pairs, of: str) -> tuple[tuple[str, str], ...]:
     """Return the pairs with both sides performed; see `perform_text`.
 
     Args:
         context: the scope.
         pairs: the pairs.
-        of: what they are given for, for the error.
+        of: the argument that takes the pairs, for the error message.
 
     Raises:
-        LaunchFileError: what is given is no pair, or a side of it is no text.
+        LaunchFileError: an item is not a pair, or a side of it is not a text.
         SubstitutionError: a substitution has no value.
     """
     performed: list[tuple[str, str]] = []

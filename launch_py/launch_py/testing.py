@@ -1,4 +1,4 @@
-"""Fakes for tests of launch files and of what is built on the supervisor."""
+"""Fakes for tests of launch files and of code that uses the supervisor."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Unpack
 
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
 from launch_py.errors import StartError
-from launch_py.plan import ProcessStep, StopDelays
-from launch_py.readiness import Probe
-from launch_py.screen.screen import ReadySummary
+from launch_py.output.screen import ReadySummary
+from launch_py.plan.readiness import ProbedCondition
+from launch_py.plan.steps import ProcessStep, StopDelays
 from launch_py.supervision.child_process import ChildSpec
 
 
-class ManualClock:
-    """A clock that stands still until it is told to advance; call it for the time in seconds."""
+class FakeClock:
+    """A clock that only a test advances; call it for the time in seconds."""
 
     def __init__(self, now_s: float = 0.0) -> None:
         self.now_s = now_s
@@ -29,12 +29,12 @@ class ManualClock:
 
 
 def fake_process(name: str, **options: Unpack[ProcessOptions]) -> ExecuteProcess:
-    """Return a process for a `FakeRunner`: its command does not matter."""
+    """Return a process for a `FakeRunner`, which ignores its command."""
     return ExecuteProcess(cmd=["true"], name=name, **options)
 
 
 class FakeChild:
-    """A process that only exists in a test: it writes and ends when the test says so."""
+    """A fake process: it writes lines and exits when the test says so."""
 
     def __init__(
         self,
@@ -47,40 +47,40 @@ class FakeChild:
         self.spec = spec
         self.killed = False
         self.stop_delays: StopDelays | None = None
-        """What it was asked to stop with, None while it was not."""
+        """The delays that `stop` was called with, None before that."""
         self._on_line = on_line
         self._on_end = on_end
 
     def write(self, text: str, stream: str = "stdout") -> None:
-        """Let it write a line."""
+        """Make the process write a line."""
         self._on_line(stream, text)
 
     def end(self, exit_code: int = 0) -> None:
-        """Let it end."""
+        """Make the process exit."""
         self._on_end(exit_code)
 
     def stop(self, delays: StopDelays) -> None:
-        """Note that it is asked to end."""
+        """Record the request to stop."""
         self.stop_delays = delays
 
     def kill(self) -> None:
-        """End as by SIGKILL."""
+        """Exit as after SIGKILL."""
         self.killed = True
         self._on_end(137)
 
     def reap(self) -> None:
-        """Do nothing: it ends when the test says so."""
+        """Do nothing: the process exits when the test says so."""
 
 
 class FakeRunner:
-    """Starts fake processes and remembers them by name, the newest run of each."""
+    """Starts fake processes and keeps the latest run of each by name."""
 
     def __init__(self, cannot_start: Sequence[str] = ()) -> None:
         self.children: dict[str, FakeChild] = {}
         self.started: list[str] = []
-        """The names in the order of their starts, restarts included."""
-        self.watched: dict[Probe, Callable[[], None]] = {}
-        self.doomed: dict[Probe, Callable[[str], None]] = {}
+        """The names in the order of the starts, restarts included."""
+        self.watched: dict[ProbedCondition, Callable[[], None]] = {}
+        self.doomed: dict[ProbedCondition, Callable[[str], None]] = {}
         self.is_settled = False
         self._cannot_start = cannot_start
 
@@ -103,31 +103,32 @@ class FakeRunner:
     def watch(
         self,
         step: ProcessStep,
-        condition: Probe,
+        condition: ProbedCondition,
         on_met: Callable[[], None],
         on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Remember the condition.
+        """Keep the condition's callbacks.
 
-        A test meets it by calling `watched[condition]`, and says why it can never be met by
-        calling `doomed[condition]`.
+        A test calls `watched[condition]` to meet the condition, and `doomed[condition]` with a
+        reason to say that it can never be met.
         """
         self.watched[condition] = on_met
         self.doomed[condition] = on_failed
         return lambda: None
 
     def settled(self) -> None:
-        """Remember that the start-up is over."""
+        """Record that the start-up is over."""
         self.is_settled = True
 
 
 class RecordingScreen:
-    """A screen that keeps what it is shown, one text each, for tests."""
+    """A screen for tests that keeps every line it is given."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.problems: list[str] = []
         self.ready_after_s: float | None = None
+        self.summary: ReadySummary | None = None
         self.last_line: str | None = None
 
     def begin(self, names: Sequence[str], status: Callable[[], str]) -> None:
@@ -138,17 +139,18 @@ class RecordingScreen:
         self.lines.append(f"[{name}] {text}")
 
     def note(self, text: str) -> None:
-        """Keep what the supervisor says."""
+        """Keep a message of the supervisor."""
         self.lines.append(text)
 
     def problem(self, text: str) -> None:
-        """Keep what went wrong."""
+        """Keep a problem."""
         self.lines.append(text)
         self.problems.append(text)
 
     def ready(self, elapsed_s: float, summary: ReadySummary) -> None:
-        """Keep the time."""
+        """Keep the time and the summary."""
         self.ready_after_s = elapsed_s
+        self.summary = summary
 
     def refresh(self) -> None:
         """Do nothing."""

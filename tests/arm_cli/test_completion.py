@@ -1,4 +1,4 @@
-"""What a shell gets on Tab."""
+"""Completions that a shell gets on Tab."""
 
 import os
 import subprocess
@@ -43,6 +43,74 @@ def test_tab_completes_options_types_and_executables(tmp_path):
 @pytest.mark.parametrize(
     ("shell", "part"), [("bash", "complete "), ("zsh", "compdef"), ("fish", "--command arm")]
 )
-def test_the_script_is_the_shell_s(capsys, shell, part):
+def test_the_completion_script_fits_the_shell(capsys, shell, part):
     assert main(["completion", shell]) == 0
     assert part in capsys.readouterr().out
+
+
+LAUNCH_FILE = """
+from launch_py import DeclareLaunchArgument, LaunchDescription
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("speed", default_value="slow", choices=["slow", "fast"]),
+        DeclareLaunchArgument("camera", default_value="false"),
+        DeclareLaunchArgument("name"),
+    ])
+"""
+
+
+def test_tab_knows_launch_files_and_packages_that_have_some(tmp_path):
+    words = offered("arm launch ", tmp_path)
+    assert {"mycobot", "arm_gazebo", "world:="} <= set(words)
+    assert "arm_cli" not in words
+    assert "sim.launch.py" in offered("arm launch arm_gazebo s", tmp_path)
+    (tmp_path / "mine.launch.py").write_text(LAUNCH_FILE)
+    assert offered(f"arm launch {tmp_path}/m", tmp_path) == [f"{tmp_path}/mine.launch.py"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        ("sp", {"speed:="}),
+        ("speed:=", {"speed:=slow", "speed:=fast"}),
+        ("speed:=f", {"speed:=fast"}),
+        ("camera:=", {"camera:=true", "camera:=false"}),
+        ("camera:=true n", {"name:="}),
+        ("name:=", set()),
+    ],
+)
+def test_tab_knows_the_arguments_of_a_launch_file_and_their_values(tmp_path, typed, words):
+    file = tmp_path / "mine.launch.py"
+    file.write_text(LAUNCH_FILE)
+    assert set(offered(f"arm launch {file} {typed}", tmp_path)) == words
+
+
+def test_tab_knows_the_shipped_worlds_and_completes_paths(tmp_path):
+    worlds = offered("arm launch arm_gazebo sim.launch.py world:=", tmp_path)
+    assert {"world:=empty", "world:=house", "world:=shapes"} <= set(worlds)
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "mine.urdf").touch()
+    line = f"arm launch arm_gazebo sim.launch.py model:={tmp_path}/"
+    assert set(offered(line, tmp_path)) == {
+        f"model:={tmp_path}/{name}" for name in ("mine.urdf", "robots/", "words")
+    }
+    assert offered(f"{line}m", tmp_path) == [f"model:={tmp_path}/mine.urdf"]
+
+
+def test_tab_imports_only_what_the_typed_verb_needs():
+    code = (
+        "import sys; from arm_cli.verbs import ARM; from arm_cli.word_completion import _parser; "
+        "_parser(ARM); print(*sys.modules)"
+    )
+    line = "arm topic echo --onc"
+    environment = {**os.environ, "COMP_LINE": line, "COMP_POINT": str(len(line))}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True
+    )
+    imported = set(done.stdout.split())
+    assert "arm_cli.topic.echo" in imported
+    assert (
+        not {"rclpy", "launch_py.actions", "arm_cli.topic.measuring", "arm_cli.param.access"}
+        & imported
+    )

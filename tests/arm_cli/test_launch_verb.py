@@ -1,4 +1,4 @@
-"""`arm launch`: its default file, its refusals, and what it leaves unimported."""
+"""`arm launch`: its default file, its errors, and its imports."""
 
 import subprocess
 import sys
@@ -29,7 +29,7 @@ def launch_file(tmp_path, monkeypatch):
     return path
 
 
-def test_without_words_it_takes_the_main_job(monkeypatch):
+def test_without_arguments_it_launches_the_default_file(monkeypatch):
     taken = {}
 
     def run(argv, **options):
@@ -49,7 +49,7 @@ def test_every_short_name_leads_to_a_launch_file(capsys):
         assert capsys.readouterr().out.startswith("Arguments of ")
 
 
-def test_without_the_interfaces_it_says_the_fix_and_starts_nothing(
+def test_without_the_interfaces_it_names_the_fix_and_starts_nothing(
     launch_file, monkeypatch, capsys
 ):
     monkeypatch.setattr(environment, "INTERFACE_PACKAGES", ("no_such_interfaces",))
@@ -60,7 +60,7 @@ def test_without_the_interfaces_it_says_the_fix_and_starts_nothing(
 
 
 @pytest.mark.parametrize("option", ["-n", "--noninteractive"])
-def test_a_line_for_ros2_may_say_that_nothing_is_to_be_asked(launch_file, capsys, option):
+def test_the_noninteractive_option_of_ros2_is_accepted(launch_file, capsys, option):
     assert main(["launch", option, str(launch_file), "--show-args"]) == 0
     assert "test.launch.py has no arguments." in capsys.readouterr().out
 
@@ -83,7 +83,7 @@ def test_the_launcher_imports_nothing_heavy(launch_file):
     assert done.stdout.splitlines()[0].strip() == "imported:"
 
 
-def test_its_help_explains_the_words(capsys):
+def test_its_help_explains_the_arguments(capsys):
     with pytest.raises(SystemExit, match="0"):
         main(["launch", "--help"])
     text = capsys.readouterr().out

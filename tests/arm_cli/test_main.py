@@ -1,4 +1,4 @@
-"""The `arm` command: its help, its verbs, what it refuses."""
+"""The `arm` command: its help, its verbs and its errors."""
 
 import signal
 import subprocess
@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arm_cli.main import main
-from arm_cli.verb import said_to_user
+from arm_cli.verb import run_reporting_errors
 from arm_cli.verbs import VERBS
 
 PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
@@ -29,7 +29,7 @@ def test_without_a_verb_there_is_help_and_exit_code_2(capsys):
     assert "verbs:" in capsys.readouterr().out
 
 
-def test_version_is_that_of_the_distribution(capsys):
+def test_version_prints_the_distribution_s_version(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"arm {PROJECT['version']}\n"
 
@@ -41,7 +41,7 @@ def test_version_is_that_of_the_distribution(capsys):
         ("--hlep", "arm: no option '--hlep'; did you mean '--help'?\n"),
     ],
 )
-def test_an_unknown_word_names_the_near_one(capsys, word, sentence):
+def test_an_unknown_verb_suggests_a_similar_one(capsys, word, sentence):
     assert main([word]) == 2
     captured = capsys.readouterr()
     assert (captured.out, captured.err) == ("", sentence)
@@ -72,7 +72,7 @@ def test_python_m_arm_cli_is_the_command():
 
 @pytest.mark.parametrize("closed", ["<&- >&-", ">&- 2>&-", "<&- >&- 2>&-"])
 @pytest.mark.parametrize("module", ["arm_cli --help", "launch_py --help"])
-def test_without_its_standard_streams_the_command_writes_to_nowhere(closed, module):
+def test_with_closed_standard_streams_the_output_is_discarded(closed, module):
     done = subprocess.run(
         ["sh", "-c", f"exec {sys.executable} -m {module} {closed}"],
         capture_output=True,
@@ -84,7 +84,7 @@ def test_without_its_standard_streams_the_command_writes_to_nowhere(closed, modu
 
 
 @pytest.mark.parametrize("words", [["launch"], ["topic", "list"]])
-def test_a_domain_that_is_none_is_said_before_anything_starts(capsys, monkeypatch, words):
+def test_an_invalid_domain_is_reported_before_anything_starts(capsys, monkeypatch, words):
     monkeypatch.setenv("ROS_DOMAIN_ID", "abc")
     assert main(words) == 2
     captured = capsys.readouterr()
@@ -94,7 +94,7 @@ def test_a_domain_that_is_none_is_said_before_anything_starts(capsys, monkeypatc
     )
 
 
-def test_an_interrupt_is_one_whatever_the_interrupted_code_makes_of_it():
+def test_an_interrupt_is_recognised_even_if_the_code_raises_another_error():
     def check() -> int:
         try:
             signal.raise_signal(signal.SIGINT)
@@ -104,13 +104,13 @@ def test_an_interrupt_is_one_whatever_the_interrupted_code_makes_of_it():
 
     before = signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):
-        said_to_user("arm check", check)
+        run_reporting_errors("arm check", check)
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_an_error_that_no_interrupt_made_stays_one():
+def test_an_error_without_an_interrupt_stays_an_error():
     def check() -> int:
         raise ImportError("no module")
 
     with pytest.raises(ImportError, match="no module"):
-        said_to_user("arm check", check)
+        run_reporting_errors("arm check", check)

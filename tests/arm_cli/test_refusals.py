@@ -1,4 +1,4 @@
-"""What is wrong with types and fields is said before ROS starts."""
+"""Mistakes in types and fields are reported before ROS starts."""
 
 import subprocess
 import sys
@@ -20,10 +20,15 @@ ARRAY = "std_msgs/msg/Float64MultiArray"
             "did you mean 'std_msgs/msg/String'",
         ),
         (["topic", "pub", "/x", ARRAY, "dta: [1]"], "no field 'dta'; did you mean 'data'?"),
-        (["topic", "pub", "/x", ARRAY, "data: [1"], "the values are no YAML"),
+        (["topic", "pub", "/x", ARRAY, "data: [1"], "the values are not YAML: line 2, column 1"),
         (["topic", "echo", "/x", ARRAY, "--field", "dat"], "no field 'dat'"),
-        (["topic", "echo", "/x", "--once", "--times", "2"], "--once or --times, not both"),
-        (["topic", "echo", "/x", "--filter", "m >"], "is no Python expression"),
+        (
+            ["topic", "echo", "/x", "--once", "--times", "2"],
+            "--once and --times exclude each other",
+        ),
+        (["topic", "echo", "/x", "--filter", "m >"], "is not a Python expression"),
+        (["interface", "show", "Float64MultiArray"], f"did you mean '{ARRAY}'?"),
+        (["interface", "show", "Float64MultArray"], f"did you mean '{ARRAY}'"),
         (["topic", "find", "sensor_msg/msg/Image"], "did you mean 'sensor_msgs'"),
         (["service", "call", "/x", "std_srvs/srv/SetBol", "{}"], "'std_srvs/srv/SetBool'"),
         (["service", "call", "/x", "std_srvs/srv/SetBool", "{dat: true}"], "no field 'dat'"),
@@ -33,10 +38,10 @@ ARRAY = "std_msgs/msg/Float64MultiArray"
             "no field 'position' (fields: command)",
         ),
         (["param", "load", "/n", "/no/such.yaml"], "no parameter file /no/such.yaml"),
-        (["sim", "step", "0"], "the number of steps is 0; 1 is the least"),
+        (["sim", "step", "0"], "the number of steps is 0; it must be at least 1"),
     ],
 )
-def test_it_is_one_sentence_and_rclpy_is_not_even_imported(words, sentence):
+def test_it_is_one_sentence_and_rclpy_is_not_imported(words, sentence):
     assert_refused(words, sentence)
 
 
@@ -44,10 +49,10 @@ def test_it_is_one_sentence_and_rclpy_is_not_even_imported(words, sentence):
     ("text", "sentence"),
     [
         ("data: [1]\n---\ndta: [2]\n---\n", "f.yaml: message 2: no field 'dta'; did you mean"),
-        ("---\n---\n", "f.yaml: there is no message in it"),
+        ("---\n---\n", "f.yaml: the file holds no message"),
     ],
 )
-def test_every_message_of_a_file_is_checked_before(tmp_path, text, sentence):
+def test_every_message_of_a_file_is_checked_before_publishing(tmp_path, text, sentence):
     file = tmp_path / "f.yaml"
     file.write_text(text)
     assert_refused(["topic", "pub", "/x", ARRAY, "--yaml-file", str(file)], sentence)

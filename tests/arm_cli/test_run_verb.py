@@ -2,15 +2,16 @@
 
 import json
 import os
+import sys
 
 import pytest
 
-from arm_cli.errors import NotFoundError
+from arm_cli.errors import NoSuchNameError
 from arm_cli.main import main
 from arm_cli.run_verb import find_command
 
 
-def test_it_becomes_the_executable(monkeypatch):
+def test_run_replaces_the_process_by_the_executable(monkeypatch):
     called = {}
 
     def take_over(program, command, environment):
@@ -24,20 +25,85 @@ def test_it_becomes_the_executable(monkeypatch):
     assert called["command"][:3] == ["nice", "-n", "5"]
     assert called["command"][-2:] == ["--x", "-1"]
     assert "publisher_terminal" in " ".join(called["command"])
-    assert called["environment"]["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    # The profile limits the program to this machine; ROS must leave the range to it.
+    assert called["environment"]["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "SYSTEM_DEFAULT"
+    profile = called["environment"]["FASTRTPS_DEFAULT_PROFILES_FILE"]
+    assert profile.endswith("dds_profile_localhost.xml")
 
 
 def test_the_course_project_s_names_work():
-    command = find_command("arm_control", "arm_controller")
+    as_s0 = ("--ros-args", "-p", "course:=S0")
+    for name, does in (
+        ("arm_controller", "arm_controller_node"),
+        ("publisher_defined", "publisher_defined"),
+    ):
+        assert find_command("arm_control", name) == (*find_command("arm_controller", does), *as_s0)
+
+
+def test_the_ros1_original_s_node_sends_its_own_pose():
+    command = find_command("arm_controller", "arm_controller")
     assert "arm_controller_node" in " ".join(command)
-    assert command[-1] == "desired_param:=[1.0, 0.5, 0.1, 0.5]"
-    assert find_command("arm_control", "publisher_defined") == find_command(
-        "arm_controller", "publisher_defined"
-    )
+    assert "__ns:=/arm" in command
+    file = command[command.index("--params-file") + 1]
+    assert os.path.isfile(file)
+    assert file.endswith("params_ros1.yaml")
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "does", "words"),
+    [
+        ("arm_controller", "arm_controller_node_ex", "arm_controller_node", ()),
+        ("tf2_ros", "tf2_echo", "arm", ("tf", "echo")),
+        ("tf2_tools", "view_frames", "arm", ("tf", "view_frames")),
+    ],
+)
+def test_programs_of_ros_by_their_names(package, name, does, words, capsys):
+    home = {"arm": "arm_cli"}.get(does, "arm_controller")
+    assert find_command(package, name) == (*find_command(home, does), *words)
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("package", "does"),
+    [
+        ("rviz2", "arm_viewer_node of arm_viewer"),
+        ("rqt_image_view", "arm_viewer_node of arm_viewer"),
+        ("joint_state_publisher_gui", "arm_viewer_node of arm_viewer"),
+        ("rqt_graph", "arm graph"),
+    ],
+)
+def test_the_replacement_of_a_missing_executable_is_named(package, does, capsys):
+    assert find_command(package, package)
+    said = f"{package} is not installed: {does} runs in place of {package}\n"
+    assert capsys.readouterr().err == said
+
+
+def test_an_executable_without_a_replacement_is_reported():
+    with pytest.raises(NoSuchNameError, match="rqt_plot of rqt_plot is not available: the page"):
+        find_command("rqt_plot", "rqt_plot")
+
+
+def test_every_stand_in_exists():
+    from launch_py.system.packages import Packages
+    from launch_py.system.stand_ins import NOTHING, stand_ins
+
+    listed = list(stand_ins([sys.prefix]))
+    assert len({(s.package, s.name) for s in listed}) == len(listed)
+    for found in listed:
+        if found.kind != NOTHING:
+            assert Packages(os.environ).executable(*found.words[:2])
+
+
+def test_an_installed_package_takes_precedence(tmp_path, monkeypatch):
+    program = tmp_path / "lib" / "rviz2" / "rviz2"
+    program.parent.mkdir(parents=True)
+    program.touch(mode=0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    assert find_command("rviz2", "rviz2") == (str(program),)
 
 
 @pytest.mark.parametrize("ending", ["", ".py"])
-def test_the_loop_of_arm_and_gripper_is_found_by_its_course_s_name(ending):
+def test_the_arm_and_gripper_loop_is_found_by_its_course_name(ending):
     name = "arm_gripper_loop_controller"
     assert find_command("mycobot_system_tests", name + ending) == find_command(
         "arm_controller", name
@@ -49,14 +115,14 @@ def test_the_demos_names_work(name):
     assert find_command("gz_ros2_control_demos", name) == find_command("arm_controller", name)
 
 
-def test_an_unknown_executable_names_the_near_one(capsys):
+def test_an_unknown_executable_suggests_a_similar_one(capsys):
     assert main(["run", "arm_controller", "publisher_terminl"]) == 1
     assert "did you mean 'publisher_terminal'" in capsys.readouterr().err
-    with pytest.raises(NotFoundError, match="no package 'arm_controler'"):
+    with pytest.raises(NoSuchNameError, match="no package 'arm_controler'"):
         find_command("arm_controler", "x")
 
 
-def test_a_prefix_without_its_closing_quotation_is_a_sentence(capsys):
+def test_a_prefix_with_an_open_quotation_mark_is_reported(capsys):
     assert main(["run", "--prefix", '"', "arm_controller", "publisher_terminal"]) == 2
     assert capsys.readouterr().err == "arm run: --prefix '\"': No closing quotation\n"
 
@@ -97,7 +163,7 @@ def test_pkg_prefix(capsys):
     assert "did you mean 'arm_cli'" in capsys.readouterr().err
 
 
-def test_view_becomes_the_page(monkeypatch):
+def test_view_replaces_the_process_by_the_page(monkeypatch):
     called = {}
 
     def take_over(_program, command, _environment):
@@ -109,3 +175,14 @@ def test_view_becomes_the_page(monkeypatch):
     assert "arm_viewer_node" in " ".join(called["command"])
     parameters = ["-p", "port:=8123", "-p", "publish_joint_states:=true"]
     assert called["command"][-5:] == ["--ros-args", *parameters]
+
+
+def test_pkg_lists_executables_that_run_by_another_name(capsys):
+    assert main(["pkg", "executables", "gz_ros2_control_demos"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "gz_ros2_control_demos example_diff_drive",
+        "gz_ros2_control_demos example_gripper",
+    ]
+    assert main(["pkg", "executables", "--full-path", "gz_ros2_control_demos"]) == 0
+    for path in capsys.readouterr().out.splitlines():
+        assert os.access(path, os.X_OK)

@@ -20,14 +20,14 @@ from arm_control.testing import FakeHardware, fake_hardware
 
 @dataclass(frozen=True, slots=True)
 class ProbeParameters:
-    """What the probe asks for."""
+    """The interfaces that the probe requests."""
 
     commands: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
 
 
 class Probe(Controller[ProbeParameters]):
-    """Records what is done to it in a list that all probes share, and fails on demand."""
+    """Records its calls in a list that all probes share, and fails on demand."""
 
     parameters_type = ProbeParameters
 
@@ -155,7 +155,7 @@ def observer(bench: Bench) -> Observer:
 
 @pytest.fixture
 def hardware() -> FakeHardware:
-    """Return fake hardware of four joints that nobody manages yet."""
+    """Return fake hardware of four joints without a manager."""
     return fake_hardware()
 
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 import yaml
 
-from arm_control.controller_parameter_file import ControllerParameterFile
-from arm_control.forward_command_controller import JointPositionController
+from arm_control.controllers.forward_command.controller import JointPositionController
+from arm_control.manager.parameter_file import ControllerParameterFile
+from arm_control.manager.registry import controller_class
 from arm_control.parameters import build_parameters
-from arm_control.registry import controller_class
 
 FOLDER = Path(__file__).parents[2] / "arm_control" / "config"
 PATH = FOLDER / "arm_control.yaml"

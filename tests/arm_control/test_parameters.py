@@ -1,12 +1,13 @@
 """Parameters described by a dataclass."""
 
 from dataclasses import dataclass
+from math import inf, nan
 from typing import Any
 
 import pytest
 
 from arm_control.errors import ParameterError
-from arm_control.parameters import build_parameters, parameter, specs_of
+from arm_control.parameters import build_parameters, check_values, parameter, specs_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ def test_specs_name_type_and_rules() -> None:
     assert specs["gains.p"].description == "Proportional"
 
 
-def test_what_is_not_given_has_its_default() -> None:
+def test_missing_values_have_their_defaults() -> None:
     assert build_parameters(Example, {}) == Example()
 
 
@@ -81,8 +82,42 @@ def test_a_value_beyond_its_bounds_is_refused(value: int) -> None:
         build_parameters(Bounded, {"share": value})
 
 
+@dataclass(frozen=True, slots=True)
+class Ranges:
+    above: float = parameter(1.0, "More than nothing", above=0)
+    count: int = parameter(1, "At least one", above=0)
+    least: float = parameter(0.0, "Not less than nothing", at_least=0.0)
+    most: int = parameter(0, "At most nine", at_most=9)
+    free: float = parameter(0.0, "Anything")
+    numbers: tuple[float, ...] = parameter((), "Each more than nothing", above=0)
+
+
+def test_bounds_make_a_range() -> None:
+    ranges = {spec.name: spec.range for spec in specs_of(Ranges)}
+    assert ranges == {
+        "above": (0, inf),
+        "count": (1, inf),
+        "least": (0.0, inf),
+        "most": (-inf, 9),
+        "free": None,
+        "numbers": None,
+    }
+
+
+@pytest.mark.parametrize("value", [-0.1, nan, inf])
+def test_at_least_means_a_finite_number(value: float) -> None:
+    with pytest.raises(ParameterError, match=r"'least' must be at least 0, but is "):
+        build_parameters(Ranges, {"least": value})
+
+
+def test_an_instance_made_by_hand_can_be_checked() -> None:
+    check_values(Ranges(), specs_of(Ranges))
+    with pytest.raises(ParameterError, match=r"'group.most' must be at most 9, but is 10"):
+        check_values(Ranges(most=10), specs_of(Ranges, "group."), "group.")
+
+
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
-    with pytest.raises(ParameterError, match=r"unknown parameter gain; there is joint, count, on"):
+    with pytest.raises(ParameterError, match=r"unknown parameter gain; known are joint, count, on"):
         build_parameters(Example, {"gain": 1.0})
 
 

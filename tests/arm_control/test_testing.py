@@ -14,7 +14,7 @@ def bound(hardware: FakeHardware) -> FakeHardware:
     return hardware
 
 
-def test_a_manual_clock_moves_when_told() -> None:
+def test_a_manual_clock_moves_on_request() -> None:
     clock = ManualClock(2.0)
     clock.advance(0.5)
     assert clock.now_s() == 2.5
@@ -30,6 +30,16 @@ def test_states_follow_the_commands_that_were_given() -> None:
     hardware.commands[1] = 0.7
     hardware.write(0.0, 0.01)
     assert hardware.states.tolist() == [0.0, 0.0, 0.0, 0.7, 0.0, 0.0]
+
+
+def test_states_are_unmeasured_on_demand() -> None:
+    hardware = bound(fake_hardware(("a",), initial_positions={"a": 0.3}))
+    hardware.unmeasured = {"a/position"}
+    hardware.read(0.0, 0.01)
+    assert np.isnan(hardware.states).tolist() == [True, False, False]
+    hardware.unmeasured.clear()
+    hardware.read(0.0, 0.01)
+    assert hardware.states.tolist() == [0.3, 0.0, 0.0]
 
 
 def test_life_cycle_methods_refuse_on_demand() -> None:

@@ -18,7 +18,7 @@ WAIT_TIMEOUT_S = 30.0
 END_TIMEOUT_S = 15.0
 JOINTS = ("j0", "j1", "j2", "j3")
 STATE_ORDER = ("j3", "j0", "j2", "j1")
-"""Joint states come in any order; this one is nobody's default."""
+"""Joint states come in any order; this one is no default."""
 STATE_PERIOD_S = 0.02
 
 LINKS = "".join(

@@ -19,11 +19,11 @@ def set_pose(robot) -> Callable:
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
     from rcl_interfaces.srv import SetParameters
 
-    from arm_node.testing import Acquaintance
+    from arm_node.testing import DiscoveryCheck
 
     node = robot.node("parameter_client")
     client = node.create_client(SetParameters, "/arm_controller_node/set_parameters")
-    acquaintance = Acquaintance.with_server(node, client.service_name)
+    check = DiscoveryCheck.with_server(node, client.service_name)
     types = {
         "double_array_value": ParameterType.PARAMETER_DOUBLE_ARRAY,
         "integer_array_value": ParameterType.PARAMETER_INTEGER_ARRAY,
@@ -36,7 +36,7 @@ def set_pose(robot) -> Callable:
             parameters=[Parameter(name="desired_param", value=ParameterValue(type=kind, **value))]
         )
         until(client.service_is_ready, "the parameter service")
-        until(lambda: acquaintance.complete, "known to the parameter service")
+        until(lambda: check.complete, "known to the parameter service")
         future = client.call_async(request)
         until(future.done, "an answer of the parameter service")
         return future.result().results[0]
@@ -72,13 +72,80 @@ def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
     assert commands == []
 
 
-def test_publishes_on_and_on_at_a_rate_and_says_so_once(robot, run, until):
+def test_publishes_repeatedly_at_a_rate_and_logs_it_once(robot, run, until):
     commands = robot.listen()
     robot.describe()
     program = run(MODULE, publish_rate=50, desired_param="[0.1, 0.2, 0.3, 0.4]")
     until(lambda: len(commands) >= 10, "ten commands")
     assert commands[9] == [0.1, 0.2, 0.3, 0.4]
     assert program.output.count("Publishing positions") == 1
+
+
+def test_logs_each_publication_if_told_to(robot, run, until):
+    commands = robot.listen()
+    robot.describe()
+    program = run(
+        MODULE, publish_rate=20, log_each_publication=True, desired_param="[0.1, 0.2, 0.3, 0.4]"
+    )
+    line = "Publishing positions: [0.100000, 0.200000, 0.300000, 0.400000]"
+    until(lambda: program.output.count(line) >= 3, "three lines")
+    assert program.interrupt() == 0
+    assert program.output.count(line) == len(commands)
+
+
+def test_prints_the_header_and_the_lines_of_its_format(robot, run, until):
+    robot.positions.update(j0=0.1, j1=-0.2)
+    robot.broadcast()
+    program = run(
+        MODULE,
+        print_period=0.1,
+        print_header="'Joint States:'",
+        print_format="'{name} ({index}): {position}'",
+    )
+    until(lambda: program.output.count("Joint States:") >= 2, "two prints")
+    lines = [line.partition("]: ")[2] for line in program.output.splitlines()]
+    first = lines.index("Joint States:")
+    assert lines[first + 1 : first + 3] == ["j0 (0): 0.100000", "j1 (1): -0.200000"]
+    assert "Joint State:" not in program.output
+
+
+@pytest.mark.parametrize(
+    ("course", "pose", "lines"),
+    [
+        ("S0", [1.0, 0.5, 0.1, 0.5], ["Joint States:", "j0 Position: 0.100000"]),
+        ("S1", [1.0, 0.5, 0.0, 0.0], ["Current Joint Positions:", "Joint 0: 0.100000"]),
+        ("S2", DEFAULT_POSE, ["Joint State: 'j0' Position: 0.100000 Velocity: 0.250000 Effort: "]),
+    ],
+)
+def test_a_course_has_its_own_pose_and_prints(robot, run, until, course, pose, lines):
+    robot.positions.update(j0=0.1)
+    robot.broadcast()
+    program = run(MODULE, course=course)
+    for line in lines:
+        program.wait_for(line)
+    commands = robot.listen()
+    until(lambda: len(commands) >= 3, "a pose again and again")
+    assert commands == [pose] * len(commands)
+    first_ns, *_, last_ns = robot.sent_ns
+    period_s = (last_ns - first_ns) * 1e-9 / (len(robot.sent_ns) - 1)
+    assert period_s == pytest.approx(1.0 if course == "S2" else 0.5, abs=0.2)
+
+
+def test_course_s2_logs_each_publication(robot, run, until):
+    robot.listen()
+    program = run(MODULE, course="S2")
+    line = "Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]"
+    until(lambda: program.output.count(line) >= 2, "two publications")
+    assert program.interrupt() == 0
+
+
+def test_course_s0_prints_thirty_times_a_second(robot, run, until):
+    robot.broadcast()
+    program = run(MODULE, course="S0")
+    until(lambda: program.output.count("Joint States:") >= 31, "a second of prints")
+    lines = [line for line in program.output.splitlines() if line.endswith("Joint States:")]
+    stamps = [float(line.split("[")[2].partition("]")[0]) for line in lines[:31]]
+    assert (stamps[-1] - stamps[0]) / 30 == pytest.approx(1 / 30, rel=0.25)
 
 
 def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pose):
@@ -127,7 +194,7 @@ def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
     assert commands == []
 
 
-def test_warns_while_nobody_listens_and_publishes_when_the_controller_comes(robot, run, until):
+def test_warns_without_a_subscriber_and_publishes_when_the_controller_comes(robot, run, until):
     program = run(MODULE, desired_param="[0.1, 0.2, 0.3, 0.4]")
     program.wait_for("is the position_controller active?")
     assert "nobody listens on /position_controller/commands" in program.output
@@ -147,7 +214,7 @@ def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
     assert program.interrupt() == 0
 
 
-def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):
+def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until):
     seen = robot.listen("recorder")
     program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
     until(lambda: robot.sees("arm_controller_node"), "the node")
@@ -162,10 +229,14 @@ def test_an_onlooker_does_not_take_the_controllers_pose(robot, run, until):
     [
         ({"desired_param": "[0.1, 0.2]"}, "parameter desired_param: a pose is 4 numbers"),
         ({"desired_param": "[.nan, 0.0, 0.0, 0.0]"}, "joint 'j0' cannot go to nan"),
-        ({"print_period": "-1"}, "parameter print_period: must be 0 or a number above, not -1"),
+        ({"print_period": "-1"}, "parameter print_period: must be a number of at least 0, not -1"),
         ({"joints": "[]"}, "parameter joints: must be a list of joint names"),
         ({"command_topic": "5"}, "parameter command_topic: must be the name of a topic, not 5"),
-        ({"publish_rate": "-1"}, "parameter publish_rate: must be 0 or a number above, not -1"),
+        ({"publish_rate": "-1"}, "parameter publish_rate: must be a number of at least 0, not -1"),
+        ({"print_format": "'{speed}'"}, "parameter print_format: the format '{speed}' may contain"),
+        ({"print_format": "'{name'"}, "parameter print_format: the format '{name' is wrong"),
+        ({"print_header": "5"}, "parameter print_header: must be a text, not 5"),
+        ({"course": "S9"}, "parameter course: must be one of none, S0, S1, S2, S3, not 'S9'"),
         ({"check_limits": "3"}, "parameter check_limits: must be true or false, not 3"),
     ],
 )

@@ -1,15 +1,15 @@
-"""The loop of arm and gripper: its order, and that it tells results, not hopes."""
+"""The loop of arm and gripper: its order, and that it logs actual results."""
 
 import asyncio
 import logging
 
 import pytest
 
-from arm_controller.arm_gripper_loop import CLOSED, HOME, OPEN, TARGET, ArmGripperLoop
+from arm_controller.arm_gripper_loop import CLOSED, HOME, OPEN, TARGET, run_once
 
 
 class FakeRobot:
-    """Notes what it is told; movements to the places in `blocked` fail."""
+    """Records its calls; movements to the positions in `blocked` fail."""
 
     def __init__(self, *blocked: object) -> None:
         self.did: list[object] = []
@@ -34,11 +34,11 @@ class FakeRobot:
 
 @pytest.fixture
 def told(caplog):
-    """Go round once; return the records of what was logged."""
+    """Run the loop once; return the log records."""
 
     def run(robot: FakeRobot) -> list[tuple[str, str]]:
         with caplog.at_level(logging.INFO):
-            asyncio.run(ArmGripperLoop(robot).run_once())
+            asyncio.run(run_once(robot))
         return [(record.levelname, record.getMessage()) for record in caplog.records]
 
     return run
@@ -61,7 +61,7 @@ def test_a_round_is_target_close_home_open_with_pauses(told):
     ]
 
 
-def test_a_place_that_was_not_reached_is_said_and_the_round_goes_on(told):
+def test_a_position_that_was_not_reached_is_logged_and_the_loop_goes_on(told):
     robot = FakeRobot(TARGET, CLOSED)
     said = told(robot)
     assert ("ERROR", "Target position not reached: a wall is there") in said

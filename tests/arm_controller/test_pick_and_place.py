@@ -1,4 +1,4 @@
-"""The steps of a pick: their order, what is said, and where it ends if one fails."""
+"""The steps of a pick: their order, the log, and where it ends if one fails."""
 
 import asyncio
 import logging
@@ -6,21 +6,21 @@ import logging
 import pytest
 
 from arm_controller.errors import PickError
+from arm_controller.joint_path import JointPath, path_to
 from arm_controller.mycobot import CLOSED, WIDE_OPEN
 from arm_controller.pick_and_place import Grip, PickAndPlace
 from arm_controller.pick_plan import PickPlan, PickTask
-from arm_controller.way import Way, way_to
 
 NAMES = ("to_object", "approach", "up", "down", "away", "home")
 PLAN = PickPlan(
-    PickTask(max_effort=2.0), **{name: way_to((float(n),), 1.0) for n, name in enumerate(NAMES)}
+    PickTask(max_effort=2.0), **{name: path_to((float(n),), 1.0) for n, name in enumerate(NAMES)}
 )
 HELD = Grip(-0.25, reached=False, stalled=True)
 OPEN = Grip(WIDE_OPEN, reached=True, stalled=False)
 
 
 class FakeRobot:
-    """Notes what it is told; `grips` are what closing comes to, one after the other."""
+    """Records its calls; `grips` are the results of closing, one after the other."""
 
     def __init__(self, *grips: Grip | str, blocked: str = "", opening: Grip | str = OPEN) -> None:
         self.did: list[object] = []
@@ -31,8 +31,8 @@ class FakeRobot:
     async def connect(self) -> None:
         self.did.append("connect")
 
-    async def follow(self, way: Way) -> str | None:
-        name = NAMES[int(way[0].positions[0])]
+    async def follow(self, path: JointPath) -> str | None:
+        name = NAMES[int(path[0].positions[0])]
         self.did.append(name)
         return "a wall is there" if name == self._blocked else None
 
@@ -70,15 +70,15 @@ def test_the_object_is_picked_held_and_put_back(caplog):
 @pytest.mark.parametrize(
     ("robot", "message", "last"),
     [
-        (FakeRobot(HELD, blocked="up"), "did not get up by 0.1 m: a wall is there", "up"),
+        (FakeRobot(HELD, blocked="up"), "could not move up by 0.1 m: a wall is there", "up"),
         (FakeRobot(Grip(CLOSED, True, False)), "nothing between the fingers", CLOSED),
         (FakeRobot(HELD, Grip(CLOSED, True, False)), "nothing between the fingers", CLOSED),
-        (FakeRobot(Grip(-0.1, False, False)), "the grip was ended at -0.100 rad", CLOSED),
+        (FakeRobot(Grip(-0.1, False, False)), "the grip ended at -0.100 rad", CLOSED),
         (FakeRobot("its action server is gone"), "did not move: its action server", CLOSED),
-        (FakeRobot(opening=Grip(0.02, False, True)), "did not open: it stands at 0.020", WIDE_OPEN),
+        (FakeRobot(opening=Grip(0.02, False, True)), "did not open: it is at 0.020", WIDE_OPEN),
     ],
 )
-def test_a_step_that_fails_is_the_last_and_is_said(robot, message, last):
+def test_a_failed_step_is_the_last_and_is_reported(robot, message, last):
     with pytest.raises(PickError, match=message):
         run(robot)
     assert robot.did[-1] == last

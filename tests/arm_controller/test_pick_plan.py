@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from arm_controller.errors import PlanError
+from arm_controller.joint_path import PathPoint, path_to, reversed_path, straight_path
 from arm_controller.mycobot import GRASP_CENTRE, HOME, JOINTS
 from arm_controller.pick_plan import PickPlan, PickTask, plan_pick
-from arm_controller.straight_way import straight_way
 from arm_description.errors import UrdfError
-from arm_description.inverse_kinematics import InverseKinematics
-from arm_description.kinematics import forward_kinematics
+from arm_description.kinematics.forward import forward_kinematics
+from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.resources import resolve_uri
-from arm_description.robot import Robot
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Robot
+from arm_description.xacro.expansion import expand_xacro
 
 XACRO = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 
@@ -53,7 +53,7 @@ def test_the_pads_are_where_the_plan_says(robot):
     assert (pads[0] + pads[1])[:3] / 2 == pytest.approx(GRASP_CENTRE, abs=1e-3)
 
 
-def test_the_way_up_is_straight_and_the_way_down_the_same(robot, plan):
+def test_the_path_up_is_straight_and_the_path_down_is_the_same(robot, plan):
     places = np.array([centres(robot, point.positions)[0] for point in plan.up])
     assert places[:, :2] == pytest.approx(np.full((len(places), 2), (0.22, 0.12)), abs=1e-4)
     assert (np.diff(places[:, 2]) > 0).all()
@@ -98,7 +98,7 @@ def test_names_may_have_a_prefix():
 
 
 def test_an_object_too_far_away_is_refused_with_the_reason(robot):
-    with pytest.raises(PlanError, match=r"at \(0\.600, 0\.000\) m cannot be gripped .* missing"):
+    with pytest.raises(PlanError, match=r"at \(0\.600, 0\.000\) m cannot be gripped .* is off by"):
         plan_pick(robot, PickTask(0.6, 0.0))
 
 
@@ -107,11 +107,11 @@ def test_another_robot_is_refused(robot):
         plan_pick(robot, PickTask(), "left_")
 
 
-def test_a_straight_way_past_a_singular_pose_is_refused(robot):
+def test_a_straight_line_past_a_singularity_is_refused(robot):
     kinematics = InverseKinematics(robot, "gripper_base", JOINTS)
     start = kinematics.solve(_ahead_at(robot, 0.22), (-0.09, -2.37, 1.92, 0.36, -1.48, 0.09))
-    with pytest.raises(PlanError, match="swing round"):
-        straight_way(kinematics, start.tolist(), _ahead_at(robot, 0.15), 2.0)
+    with pytest.raises(PlanError, match="singularity"):
+        straight_path(kinematics, start.tolist(), _ahead_at(robot, 0.15), 2.0)
 
 
 def _ahead_at(robot: Robot, x: float) -> np.ndarray:
@@ -120,3 +120,20 @@ def _ahead_at(robot: Robot, x: float) -> np.ndarray:
     pose[:3, :3] = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     pose[:3, 3] = np.array([x, 0.12, 0.2]) - pose[:3, :3] @ GRASP_CENTRE
     return pose
+
+
+def test_a_path_to_a_pose_ends_at_rest():
+    assert path_to([1.0, 2.0], 3.0) == (PathPoint(3.0, (1.0, 2.0), (0.0, 0.0)),)
+
+
+def test_the_reversed_path_starts_at_the_end():
+    way = (
+        PathPoint(0.5, (1.0,), (3.0,)),
+        PathPoint(2.0, (2.0,), (1.0,)),
+        PathPoint(3.0, (4.0,), (0.0,)),
+    )
+    assert reversed_path(way, (0.0,)) == (
+        PathPoint(1.0, (2.0,), (-1.0,)),
+        PathPoint(2.5, (1.0,), (-3.0,)),
+        PathPoint(3.0, (0.0,), (0.0,)),
+    )

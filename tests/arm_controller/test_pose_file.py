@@ -1,4 +1,4 @@
-"""A wrong file is told with its name and the line."""
+"""An invalid file is reported with its name and the line."""
 
 from pathlib import Path
 
@@ -27,11 +27,11 @@ def test_reads_poses_in_order(poses_in):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "must hold the key 'poses'"),
-        ("- [0, 0]\n", "must hold the key 'poses'"),
+        ("", "must have the key 'poses'"),
+        ("- [0, 0]\n", "must have the key 'poses'"),
         ("poses:\n", "line 1: 'poses' must be a list"),
-        ("poses: []\n", "holds no pose"),
-        ("{}\n", "holds no pose"),
+        ("poses: []\n", "has no pose"),
+        ("{}\n", "has no pose"),
         ("poses:\n  - [0, 0]\nspeed: 3\n", "line 3: unknown key 'speed'"),
         ("poses:\n  - 5\n", r"line 2: a pose is a list of 2 numbers, such as \[0.0, 0.0\]"),
         ("poses:\n  - [0, 0]\n  - [0]\n", "line 3: a pose is 2 numbers.*1 were given"),
@@ -51,7 +51,7 @@ def test_names_the_file_and_what_is_wrong(poses_in, text, message):
 
 
 def test_names_a_missing_file():
-    with pytest.raises(PoseFileError, match=r"there is no pose file /nowhere/poses\.yaml"):
+    with pytest.raises(PoseFileError, match=r"the pose file /nowhere/poses\.yaml does not exist"):
         read_pose_file(Path("/nowhere/poses.yaml"), JOINTS)
 
 

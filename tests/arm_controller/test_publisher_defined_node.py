@@ -35,6 +35,31 @@ def test_goes_through_the_five_poses_and_ends(robot, run):
     assert "All 5 poses reached" in program.output
 
 
+def test_poses_are_a_pause_apart(robot, run, poses_file):
+    commands = robot.listen()
+    robot.describe()
+    robot.broadcast()
+    poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
+    program = run(MODULE, poses_file=poses, pause=2)
+    assert program.wait() == 0
+    first_ns, second_ns = robot.sent_ns
+    assert len(commands) == 2
+    assert second_ns - first_ns >= 1.9e9
+
+
+def test_course_s0_sends_poses_ten_seconds_apart_though_one_is_not_reached(robot, run, poses_file):
+    commands = robot.listen()
+    robot.describe()
+    robot.broadcast()
+    robot.tick()  # Ten times as fast as time passes.
+    robot.stuck.add("j2")
+    poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
+    program = run(MODULE, poses_file=poses, course="S0", use_sim_time="true")
+    assert program.wait() == 1
+    assert "Pose 1 of 2 not reached within 10 s" in program.output
+    assert commands == [[0.1, 0.1, 0.4, 0.1], [0.2, 0.2, 0.0, 0.2]]
+
+
 def test_a_joint_that_stays_behind_is_named_and_the_next_pose_comes(robot, run, poses_file):
     commands = robot.listen()
     robot.describe()
@@ -52,7 +77,7 @@ def test_a_joint_that_stays_behind_is_named_and_the_next_pose_comes(robot, run, 
     assert commands == [[0.1, 0.1, 0.4, 0.1], [0.2, 0.2, 0.0, 0.2]]
 
 
-def test_joints_too_slow_for_the_time_out_are_told_before_and_after(robot, run, poses_file):
+def test_joints_too_slow_for_the_time_out_are_reported_before_and_after(robot, run, poses_file):
     robot.listen()
     robot.describe(velocity=0.1)
     robot.broadcast()
@@ -72,7 +97,7 @@ def test_a_pose_beyond_the_limits_is_left_out(robot, run, poses_file):
     poses = poses_file("poses:\n  - [0.0, 0.0, 0.0, -5]\n  - [0.1, 0.0, 0.0, 0.0]\n")
     program = run(MODULE, poses_file=poses)
     assert program.wait() == 1
-    assert "is left out: joint 'j3' cannot go to -5 rad" in program.output
+    assert "is skipped: joint 'j3' cannot go to -5 rad" in program.output
     assert commands == [[0.1, 0.0, 0.0, 0.0]]
 
 
@@ -107,14 +132,14 @@ def test_says_that_joint_states_are_silent(robot, run, poses_file):
     assert "/joint_states is silent: is the joint_state_broadcaster active?" in program.output
 
 
-def test_gives_up_where_nobody_listens(run):
+def test_gives_up_without_a_subscriber(run):
     program = run(MODULE, match_timeout=1)
     assert program.wait() == 1
     assert "nobody listens on /position_controller/commands" in program.output
     assert "5 of 5 poses not reached" in program.output
 
 
-def test_a_wrong_file_is_told_with_name_and_line(run, poses_file):
+def test_an_invalid_file_is_reported_with_name_and_line(run, poses_file):
     path = poses_file("poses:\n  - [0, 0, 0]\n")
     program = run(MODULE, poses_file=path)
     assert program.wait() == 1
@@ -122,7 +147,7 @@ def test_a_wrong_file_is_told_with_name_and_line(run, poses_file):
     assert "Traceback" not in program.output
 
 
-def test_ctrl_c_on_the_way_ends_it(robot, run):
+def test_ctrl_c_during_the_work_ends_it(robot, run):
     robot.listen()
     robot.describe()
     robot.broadcast()

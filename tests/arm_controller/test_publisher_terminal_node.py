@@ -56,7 +56,7 @@ def test_ctrl_c_while_a_line_waits_ends_it(run):
     assert program.interrupt() == 0
 
 
-def test_a_line_that_nobody_takes_fails_with_a_sentence(run):
+def test_a_line_without_a_subscriber_fails_with_a_sentence(run):
     program = run(MODULE, match_timeout=1)
     program.type("0 0 0 0\n")
     program.end_of_input()

@@ -1,10 +1,11 @@
-"""arm.urdf.xacro: its arguments, names, kinematics and the interfaces it declares."""
+"""arm.urdf.xacro and arm.rviz: arguments, names, kinematics, interfaces, and what RViz shows."""
 
 import itertools
 from functools import cache
 
 import numpy as np
 import pytest
+import yaml
 
 from arm_description import (
     Robot,
@@ -69,7 +70,7 @@ def names(elements) -> set[str]:
     ("base", "camera", "profile", "prefix"),
     list(
         itertools.product(
-            ("fixed", "free"), ("front", "side", "none"), ("standard", "large"), ("", "left_")
+            ("fixed", "free"), ("front", "side", "none"), ("standard", "ros1"), ("", "left_")
         )
     ),
 )
@@ -132,7 +133,7 @@ def test_the_axes_are_those_of_the_original():
     assert np.array(axes) == pytest.approx(np.array(expected, dtype=float), abs=1e-4)
 
 
-def test_a_fixed_base_stands_31_mm_over_the_world():
+def test_a_fixed_base_is_31_mm_above_the_world():
     poses = forward_kinematics(arm(base="fixed"), {})
 
     assert poses["base_link"] == pytest.approx(
@@ -217,6 +218,18 @@ def test_every_joint_takes_position_velocity_and_effort():
             assert interfaces == ["position", "velocity", "effort"]
 
 
+def test_every_joint_takes_position_only_as_in_the_original():
+    system = parse_xml(expand(command_interfaces="position")).find("ros2_control")
+    every = {
+        kind: [f"{joint.get('name')}/{part.get('name')}"
+               for joint in system.findall("joint") for part in joint.findall(kind)]
+        for kind in ("command_interface", "state_interface")
+    }  # fmt: skip
+    assert every["command_interface"] == [f"{name}/position" for name in JOINTS]
+    kinds = ("effort", "position", "velocity")
+    assert sorted(every["state_interface"]) == [f"{n}/{kind}" for n in JOINTS for kind in kinds]
+
+
 def test_initial_positions_are_those_of_the_arguments():
     urdf = expand(j0_pos="0.4", j1_pos="-0.1", j2_pos="0.5", j3_pos="1")
 
@@ -248,6 +261,50 @@ def test_the_large_camera():
     )
 
 
+def test_the_camera_of_ros_1_is_the_large_one_on_absolute_topics():
+    (camera,) = parse_cameras(expand(camera="side", camera_profile="ros1"))
+
+    assert (camera.width, camera.height, camera.hfov) == (800, 800, 1.3962634)
+    assert (camera.near, camera.far, camera.noise_stddev) == (0.02, 300.0, 0.007)
+    assert camera.image_topics == ("videocamera", "/camera/image_raw")
+    assert camera.info_topics[-1] == "/camera/camera_info"
+
+
+def test_the_camera_has_the_pose_and_the_box_that_are_given():
+    robot = arm(
+        base="free", camera_xyz="0 0 0", camera_rpy="0 0 -1.57", camera_box="0.03 0.03 0.03",
+        camera_box_xyz="-0.001 0 0", camera_box_rgba="0.5 0 0.5 1",
+    )  # fmt: skip
+    pose = forward_kinematics(robot, {})["camera_link"]
+    assert pose[:3, 3] == pytest.approx([0.0, 0.0, 0.0])
+    assert pose[:3, 0] == pytest.approx([np.cos(1.57), -np.sin(1.57), 0.0])
+    (camera,) = (link for link in robot.links if link.name == "camera_link")
+    (box,) = camera.visuals
+    assert box.geometry.size == (0.03, 0.03, 0.03)
+    assert box.origin.xyz == (-0.001, 0.0, 0.0)
+    assert box.material.rgba == (0.5, 0.0, 0.5, 1.0)
+
+
+def test_the_camera_keeps_what_is_not_given():
+    robot = arm(base="free", camera_xyz="0 0 0.1")
+    pose = forward_kinematics(robot, {})["camera_link"]
+    front = forward_kinematics(arm(base="free"), {})["camera_link"]
+    assert pose[:3, 3] == pytest.approx([0.0, 0.0, 0.1])
+    assert pose[:3, :3] == pytest.approx(front[:3, :3])
+    posts = [len(next(li for li in r.links if li.name == "camera_link").visuals)
+             for r in (arm(), robot)]  # fmt: skip
+    assert posts == [3, 2]
+
+
+def test_the_servos_have_the_given_colour():
+    def colours(robot):
+        (case, *_) = next(link for link in robot.links if link.name == "dyn2").visuals
+        return case.material.rgba
+
+    assert colours(arm()) == (0.15, 0.16, 0.18, 1.0)
+    assert colours(arm(servo_rgba="0.5 0.5 0.5 1")) == (0.5, 0.5, 0.5, 1.0)
+
+
 def test_without_a_camera_there_is_no_sensor():
     assert parse_cameras(expand(camera="none")) == ()
 
@@ -259,11 +316,13 @@ def test_without_a_camera_there_is_no_sensor():
         ({"camera": "top"}, "camera:=top is not a choice; camera can be front, side, none"),
         (
             {"camera_profile": "huge"},
-            "camera_profile:=huge is not a choice; camera_profile can be standard, large",
+            "camera_profile:=huge is not a choice; camera_profile can be standard, large, ros1",
         ),
+        ({"camera_xyz": "1 2"}, "camera_xyz:=1 2 has 2 numbers; it takes 3"),
+        ({"servo_rgba": "1 grey 0 1"}, "servo_rgba has 'grey', which is not a number"),
         (
             {"camera": "none", "camera_profile": "huge"},
-            "camera_profile:=huge is not a choice; camera_profile can be standard, large",
+            "camera_profile:=huge is not a choice; camera_profile can be standard, large, ros1",
         ),
         ({"j2_pos": "up"}, "j2_pos:=up is not a number"),
         ({"j2_pos": "nan"}, "j2_pos:=nan is not a number"),
@@ -283,3 +342,23 @@ def test_every_visual_has_a_colour():
     visuals = [visual for link in robot.links for visual in link.visuals]
     assert visuals
     assert all(visual.material and visual.material.rgba for visual in visuals)
+
+
+def visualization() -> dict:
+    path = resolve_uri("package://arm_description/config/rviz/arm.rviz")
+    return yaml.safe_load(path.read_text(encoding="utf-8"))["Visualization Manager"]
+
+
+def test_the_fixed_frame_is_the_root_of_the_robot():
+    robot = parse_urdf(expand_xacro(resolve_uri("package://arm_description/urdf/arm.urdf.xacro")))
+
+    assert visualization()["Global Options"]["Fixed Frame"] == robot.root
+
+
+def test_it_shows_the_robot_its_frames_and_the_camera():
+    displays = {display["Name"]: display for display in visualization()["Displays"]}
+
+    assert set(displays) == {"Grid", "RobotModel", "TF", "Image"}
+    assert displays["RobotModel"]["Description Topic"]["Value"] == "/robot_description"
+    assert displays["RobotModel"]["Description Topic"]["Durability Policy"] == "Transient Local"
+    assert displays["Image"]["Topic"]["Value"] == "/videocamera"

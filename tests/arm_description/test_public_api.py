@@ -1,4 +1,4 @@
-"""What the package offers by name."""
+"""The public names of the package."""
 
 import inspect
 
@@ -11,7 +11,7 @@ def test_every_public_name_exists():
         assert hasattr(arm_description, name)
 
 
-def test_every_error_is_public_and_has_the_one_root():
+def test_every_error_is_public_and_has_the_same_root():
     classes = [cls for _, cls in inspect.getmembers(errors, inspect.isclass)]
     assert len(classes) > 5
     for cls in classes:

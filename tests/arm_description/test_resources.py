@@ -1,4 +1,4 @@
-"""URIs to files: where is looked, in which order, and what the error lists."""
+"""URIs to files: where they are searched, in which order, and what the error lists."""
 
 import sys
 from pathlib import Path
@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from arm_description import ResourceNotFoundError, resolve_uri
-from arm_description.resources import find_package, folders_of, share_folders
+from arm_description.package_search import share_folders
+from arm_description.resources import find_package
 
 
 def make(path: Path) -> Path:
@@ -26,12 +27,12 @@ def test_a_package_is_found_in_the_first_prefix_that_has_the_file(tmp_path):
     assert resolve_uri("package://robot/meshes/a.stl", environ=environ) == expected
 
 
-def test_a_package_is_found_in_the_search_path_after_the_prefixes(tmp_path):
-    behind = make(tmp_path / "source/robot/a.stl")
+def test_a_package_is_found_in_the_search_path_before_the_prefixes(tmp_path):
+    behind = make(tmp_path / "prefix/share/robot/a.stl")
     search = [tmp_path / "source"]
     environ = ament(tmp_path / "prefix")
     assert resolve_uri("package://robot/a.stl", search, environ) == behind
-    first = make(tmp_path / "prefix/share/robot/a.stl")
+    first = make(tmp_path / "source/robot/a.stl")
     assert resolve_uri("package://robot/a.stl", search, environ) == first
 
 
@@ -89,10 +90,10 @@ def test_an_error_names_every_place_tried_once(tmp_path):
         resolve_uri("package://robot/a.stl", [tmp_path / "src"], environ)
     assert str(caught.value) == (
         "no file for 'package://robot/a.stl'; tried:"
+        f"\n  {tmp_path}/src/robot/a.stl"
         f"\n  {tmp_path}/one/share/robot/a.stl"
         f"\n  {tmp_path}/two/share/robot/a.stl"
         f"\n  {sys.prefix}/share/robot/a.stl"
-        f"\n  {tmp_path}/src/robot/a.stl"
     )
 
 
@@ -105,11 +106,11 @@ def test_an_error_names_every_place_tried_once(tmp_path):
         (
             "https://example.org/a.stl",
             "cannot read 'https://example.org/a.stl'; package://, model://, file:// "
-            "and plain paths are understood",
+            "and plain paths are supported",
         ),
     ],
 )
-def test_what_names_no_file_is_said(uri, message):
+def test_a_uri_without_a_file_is_reported(uri, message):
     with pytest.raises(ResourceNotFoundError) as caught:
         resolve_uri(uri)
     assert str(caught.value) == message
@@ -142,7 +143,7 @@ def test_more_slashes_than_one_stay_within_the_package(tmp_path, scheme):
 
 
 @pytest.mark.parametrize("name", [".", ".."])
-def test_dots_are_no_package(tmp_path, name):
+def test_dots_are_not_a_package(tmp_path, name):
     with pytest.raises(ResourceNotFoundError, match="names no package"):
         resolve_uri(f"package://{name}/a.stl", [tmp_path], {})
 
@@ -171,7 +172,7 @@ def test_a_repository_may_be_called_otherwise_than_its_package(tmp_path):
         resolve_uri("package://arm/a.stl", [tmp_path / "source"], {})
 
 
-def test_a_package_xml_that_is_no_text_names_nothing(tmp_path):
+def test_a_package_xml_that_is_not_text_has_no_name(tmp_path):
     (manifest(tmp_path / "folder", "robot") / "package.xml").write_bytes(b"\xff<name>robot</name>")
     with pytest.raises(ResourceNotFoundError, match="no package 'robot'; tried "):
         find_package("robot", [tmp_path], {})
@@ -184,16 +185,8 @@ def test_a_package_is_found_where_gazebo_looks_for_it(tmp_path):
 
 
 def test_a_package_is_a_folder_of_an_installed_one_or_of_the_search_path(tmp_path):
-    behind = make(tmp_path / "source/robot/a.stl").parent
+    behind = make(tmp_path / "share/robot/a.stl").parent
     environ = ament(tmp_path)
     assert find_package("robot", [tmp_path / "source"], environ) == behind
-    first = make(tmp_path / "share/robot/a.stl").parent
+    first = make(tmp_path / "source/robot/a.stl").parent
     assert find_package("robot", [tmp_path / "source"], environ) == first
-
-
-def test_the_folders_of_a_model_reach_up_to_the_neighbours_of_its_package(tmp_path):
-    model = tmp_path / "source/robot/urdf/arms/six/arm.urdf"
-    assert folders_of(model) == tuple(model.parents)[:3]
-    manifest(tmp_path / "source/robot", "robot")
-    assert folders_of(model) == tuple(model.parents)[:5]
-    assert folders_of(model)[-1] == tmp_path / "source"

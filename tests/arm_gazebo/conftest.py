@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.camera import CameraSensor
+from arm_gazebo.spec.physics_timing import physics_timing
 
 ARM_XACRO = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
 INTERFACES = ("position", "velocity", "effort")
@@ -149,12 +149,13 @@ class Bench:
         rate_hz: float = 100.0,
         world: str | Path = "empty",
         hold_joints: bool = True,
+        proportional_gain: float = 0.0,
         **options: object,
     ) -> None:
         timing = physics_timing(rate_hz)
         self.rate_hz = rate_hz
         self.built = build(urdf, world, step_s=timing.step_s, **options)
-        self.simulation = Simulation(self.built, timing, hold_joints)
+        self.simulation = Simulation(self.built, timing, hold_joints, proportional_gain)
         self.hardware = SimulatedHardware(self.simulation, parse_hardware_info(urdf)[0])
         self.states = np.full(len(self.hardware.state_interfaces), math.nan)
         self.commands = np.full(len(self.hardware.command_interfaces), math.nan)
@@ -203,7 +204,7 @@ class Bench:
 
 
 class Parts:
-    """What the tests of this folder build URDFs from."""
+    """The parts from which the tests of this folder build URDFs."""
 
     arm = staticmethod(arm)
     build = staticmethod(build)
@@ -216,7 +217,7 @@ class Parts:
     serial_arm = staticmethod(serial_arm)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def parts() -> type[Parts]:
     return Parts
 

@@ -113,11 +113,11 @@ class Client:
 
     def be_known_to_server(self, service: str) -> None:
         """Spin until the process that serves a service knows of all that this node has."""
-        from arm_node.testing import Acquaintance
+        from arm_node.testing import DiscoveryCheck
 
-        acquaintance = Acquaintance.with_server(self.node, service)
-        self.spin_until(lambda: acquaintance.complete, f"known to the server of {service}")
-        acquaintance.close()
+        check = DiscoveryCheck.with_server(self.node, service)
+        self.spin_until(lambda: check.complete, f"known to the server of {service}")
+        check.close()
 
     def wait_for(self, future: Any, what: str) -> Any:
         """Spin until a future is done; return its result."""

@@ -2,6 +2,7 @@
 
 import importlib
 import io
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -100,5 +101,43 @@ def test_compiler_error_is_shown(build_module: Any, tmp_path: Path) -> None:
 
 def test_progress_tells_how_far_the_build_is(build_module: Any) -> None:
     stream = io.StringIO()
-    build_module("progress").Progress(stream).report("linked x", 3, 4)
+    build_module("progress").BuildProgress(stream).report("linked x", 3, 4)
     assert stream.getvalue() == "arm_interfaces: [ 75 %] linked x\n"
+
+
+def test_a_lazy_package_imports_a_class_on_its_first_use(
+    build_module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "lazy_example"
+    package.mkdir()
+    for name in ("first", "second"):
+        (package / f"_{name}.py").write_text(f"class {name.title()}: ...\n")
+    generated = "".join(
+        f"from lazy_example._{name} import {name.title()}  # noqa: F401\n"
+        for name in ("first", "second")
+    )
+    lazy = build_module("lazy_imports").make_lazy(generated, "lazy_example")
+    (package / "__init__.py").write_text(lazy)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    example = importlib.import_module("lazy_example")
+    assert {"First", "Second"} <= set(dir(example))
+    assert not {"lazy_example._first", "lazy_example._second"} & set(sys.modules)
+    assert example.First.__module__ == "lazy_example._first"
+    assert "lazy_example._second" not in sys.modules
+    with pytest.raises(AttributeError, match=r"'lazy_example' has no attribute 'Third'"):
+        _ = example.Third
+
+
+def test_an_installed_package_imports_only_what_is_used() -> None:
+    code = (
+        "import sys; from control_msgs.msg import PidState; import control_msgs.action; "
+        "print(*sorted(m for m in sys.modules if m.startswith('control_msgs.')))"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    ).stdout
+    assert found.split() == [
+        "control_msgs.action",
+        "control_msgs.msg",
+        "control_msgs.msg._pid_state",
+    ]

@@ -63,6 +63,11 @@ def test_default_message_survives_serialisation(
         assert deserialize_message(serialize_message(message), cls) == message
 
 
+def test_a_motion_primitive_is_of_unknown_type_at_first(load_type: Callable[[str], type]) -> None:
+    primitive = load_type("control_msgs/msg/MotionPrimitive")
+    assert primitive().type == primitive.UNKNOWN == -1
+
+
 def test_one_step_is_the_default(load_type: Callable[[str], type]) -> None:
     assert load_type("simulation_interfaces/srv/StepSimulation").Request().steps == 1
 
@@ -72,6 +77,8 @@ def test_one_step_is_the_default(load_type: Callable[[str], type]) -> None:
     [
         ("control_msgs/msg/PidState", {"p_term": 1.5, "output": -2.25}),
         ("control_msgs/msg/InterfaceValue", {"interface_names": ["a"], "values": [0.5]}),
+        ("control_msgs/msg/Keys", {"keys": ["a", "b"]}),
+        ("pal_statistics_msgs/msg/StatisticsValues", {"values": [0.5, -1.0], "names_version": 7}),
         ("simulation_interfaces/msg/SimulatorFeatures", {"features": [0, 31, 50]}),
         ("controller_manager_msgs/msg/HardwareInterface", {"name": "ü", "is_claimed": True}),
     ],

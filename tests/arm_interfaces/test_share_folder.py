@@ -9,7 +9,13 @@ import pytest
 from ament_index_python.packages import get_package_share_directory
 from ament_index_python.resources import get_resource
 
-PACKAGES = ["tf2_msgs", "control_msgs", "controller_manager_msgs", "simulation_interfaces"]
+PACKAGES = [
+    "tf2_msgs",
+    "control_msgs",
+    "controller_manager_msgs",
+    "pal_statistics_msgs",
+    "simulation_interfaces",
+]
 
 
 @pytest.fixture(autouse=True)

@@ -40,7 +40,7 @@ def test_a_missing_interface_package_is_named_with_the_fix(monkeypatch):
 
 
 @pytest.mark.parametrize("text", ["abc", "-1", "233", "1e1", "0x5", "1.0", "\u0663", "4294967296"])
-def test_what_is_no_domain_is_refused(text):
+def test_an_invalid_domain_is_refused(text):
     with pytest.raises(InvalidDomainError) as refused:
         prepare_environment({"HOME": "/home/me", "ROS_DOMAIN_ID": text})
     assert str(refused.value) == (

@@ -1,4 +1,4 @@
-"""The thread of an executor: what it tells of failures, and in which order it ends."""
+"""The thread of an executor: what it logs of failures, and its order of shutdown."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -35,7 +35,7 @@ def run(executor: Executor, function: Callable[[], object]) -> threading.Event:
     return done
 
 
-def test_a_failure_is_told_once_and_the_executor_goes_on(context, caplog):
+def test_a_failure_is_logged_once_and_the_executor_goes_on(context, caplog):
     thread = ExecutorThread("spin", SingleThreadedExecutor(context=context))
     thread.start()
     for _ in range(3):
@@ -97,7 +97,7 @@ def test_the_callback_that_runs_is_waited_for(context):
     assert ended.is_set()
 
 
-def test_one_that_never_started_ends_too_and_a_second_end_is_none(context):
+def test_one_that_never_started_stops_as_well_and_a_second_stop_does_nothing(context):
     thread = ExecutorThread("spin", SingleThreadedExecutor(context=context))
     thread.stop()
     thread.stop()

@@ -1,8 +1,6 @@
-"""The supervisor hears of readiness through NOTIFY_SOCKET."""
+"""The supervisor is notified of readiness through NOTIFY_SOCKET."""
 
 import socket
-
-import pytest
 
 from arm_node.notify import notify
 
@@ -25,6 +23,12 @@ def test_an_abstract_address_works():
         assert supervisor.recv(100) == b"STATUS=1.00 x"
 
 
-@pytest.mark.parametrize("environment", [{}, {"NOTIFY_SOCKET": "/no/such/socket"}])
-def test_nobody_listening_is_no_failure(environment):
+def test_what_is_sent_before_anybody_listens_is_dropped(tmp_path):
+    environment = {"NOTIFY_SOCKET": str(tmp_path / "notify")}
     notify("READY=1", environment)
+    notify("READY=1", {})
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as supervisor:
+        supervisor.bind(environment["NOTIFY_SOCKET"])
+        supervisor.settimeout(10.0)
+        notify("STOPPING=1", environment)
+        assert supervisor.recv(100) == b"STOPPING=1"

@@ -1,5 +1,6 @@
 """The end of a process."""
 
+import os
 import subprocess
 import sys
 
@@ -95,7 +96,9 @@ def test_a_callback_that_does_not_end_is_left_alone():
         [sys.executable, "-c", ENDLESS], capture_output=True, text=True, timeout=60, check=False
     )
     assert run.returncode == 7, run.stderr
-    assert "a callback in thread 'executor' does not end: left alone after 5 s" in run.stderr
+    assert (
+        "a callback in thread 'executor' is still running after 5 s and is abandoned" in run.stderr
+    )
 
 
 LEFT_ALONE = """
@@ -143,3 +146,31 @@ def test_nodes_and_their_participant_end_before_the_process(application: str, co
     threads = run.stdout.split("\n")
     assert any("python" in name for name in threads)
     assert [name for name in threads if name.startswith("dds.ev")] == []
+
+
+PLAIN = """
+import sys
+from contextlib import nullcontext
+
+from arm_node.process import run_process
+
+sys.exit(run_process(lambda process: nullcontext(process.stop()), sys.argv))
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "problem"),
+    [("fifo", "it is a FIFO, not a regular file"), ("none", "No such file or directory")],
+)
+def test_a_parameter_file_that_cannot_be_read_is_a_sentence(tmp_path, kind, problem):
+    file = tmp_path / "p.yaml"
+    if kind == "fifo":
+        os.mkfifo(file)
+    run = subprocess.run(
+        [sys.executable, "-c", PLAIN, "--ros-args", "--params-file", str(file)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (run.returncode, run.stderr) == (2, f"cannot start ROS: cannot read {file}: {problem}\n")

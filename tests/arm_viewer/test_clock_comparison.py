@@ -1,4 +1,4 @@
-"""The simulation's time beside the wall's."""
+"""Simulation time compared with wall time."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def test_the_lag_of_long_ago_is_forgotten():
     assert result.measured_s == 10.0
 
 
-def test_a_reset_begins_anew():
+def test_a_reset_restarts_the_comparison():
     result = compare([(0.0, 50.0), (1.0, 51.0), (2.0, 0.0), (3.0, 1.0)])
     assert result.factor == pytest.approx(1.0)
     assert result.lag_s == pytest.approx(0.0)

@@ -1,14 +1,13 @@
-"""Which controllers take what so that joints move."""
+"""The commands that move joints through their controllers."""
 
 from types import MappingProxyType
 
 import pytest
 
-from arm_description.urdf import parse_urdf
-from arm_viewer.joint_drive import DriveKind, joint_drives
-from arm_viewer.joint_move import SPEED_USED, plan_moves
+from arm_description.urdf.parser import parse_urdf
+from arm_viewer.joint_move import SPEED_USED, DriveKind, joint_drives, plan_moves
 from arm_viewer.requests import MoveJoints
-from arm_viewer.snapshot import Controller, Description, JointReading, JointStates, Snapshot
+from arm_viewer.snapshot import Description, JointReading, JointStates, ListedController, Snapshot
 
 ROBOT = """<robot name='r'><link name='base'/><link name='a'/><link name='b'/>
   <joint name='j0' type='revolute'><parent link='base'/><child link='a'/>
@@ -28,7 +27,7 @@ def controller(kind=POSITIONS, state="active", namespace="", joints=("j1", "j0")
         "claimed": ("j0/position", "j1/position"),
         "joints": joints,
     }
-    return Controller(**{**fields, **more})
+    return ListedController(**{**fields, **more})
 
 
 def snapshot(*controllers, namespace="", at=(0.1, 0.2), commands=()):
@@ -56,13 +55,13 @@ def test_without_the_parameter_the_claimed_interfaces_say_the_order():
     assert drive.joints == ("j0", "j1")
 
 
-def test_a_joint_that_sags_stays_where_it_was_told_to_be():
+def test_a_sagging_joint_is_held_at_its_last_command():
     told = {"j1/position": 0.21}
     (move,) = plan_moves(snapshot(controller(), commands=told), MoveJoints("", {"j0": 1.0}))
     assert move.positions == (0.21, 1.0)
 
 
-def test_a_joint_that_is_elsewhere_than_it_was_told_stays_where_it_is():
+def test_a_joint_far_from_its_last_command_is_held_at_its_position():
     told = {"j1/position": 1.5}
     (move,) = plan_moves(snapshot(controller(), commands=told), MoveJoints("", {"j0": 1.0}))
     assert move.positions == (0.2, 1.0)
@@ -92,7 +91,7 @@ def test_each_robot_has_its_own_namespace():
         controller(joints=("j0", "j9"), claimed=("j0/position", "j9/position")),
     ],
 )
-def test_nothing_is_sent_where_no_active_controller_takes_positions_of_known_joints(other):
+def test_nothing_is_sent_without_an_active_controller_for_positions_of_known_joints(other):
     assert plan_moves(snapshot(other), MoveJoints("", {"j0": 1.0})) == ()
 
 

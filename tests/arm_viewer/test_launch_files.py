@@ -4,10 +4,10 @@ import os
 
 import pytest
 
-from launch_py.errors import ParameterError
-from launch_py.expansion import expand_description, survey_description
+from launch_py.errors import NodeParameterError
+from launch_py.launch_description import expand_description, survey_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.packages import Packages
+from launch_py.system.packages import Packages
 
 
 @pytest.mark.parametrize(
@@ -31,8 +31,8 @@ def test_whatever_opens_the_page_takes_its_port(package, file):
     assert arguments["viewer_port"].default == "8080"
 
 
-def test_a_port_that_is_no_number_is_refused_before_anything_starts():
+def test_an_invalid_port_is_refused_before_anything_starts():
     path = Packages(os.environ).launch_file("arm_viewer", "viewer.launch.py")
     arguments = {"viewer_port": "abc"}
-    with pytest.raises(ParameterError, match="parameter 'port': 'abc' is not an integer"):
+    with pytest.raises(NodeParameterError, match="parameter 'port': 'abc' is not an integer"):
         expand_description(read_launch_file(path), arguments, dict(os.environ), path)

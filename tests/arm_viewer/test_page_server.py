@@ -1,9 +1,10 @@
-"""The page's server, met by bare sockets."""
+"""The page's server, tested with plain sockets."""
 
 import http.client
 import logging
 import queue
 import socket
+from collections import deque
 from types import SimpleNamespace
 
 import pytest
@@ -71,7 +72,7 @@ def test_the_page_is_served_with_headers_that_keep_it_to_itself(server, get):
     assert response.headers["X-Frame-Options"] == "DENY"
 
 
-def test_the_pages_own_websocket_is_accepted_and_told_the_scene(server):
+def test_the_pages_own_websocket_is_accepted_and_receives_the_scene(server):
     with websocket(server, origin=server.url) as accepted:
         assert isinstance(accepted.recv(TIMEOUT_S), bytes)
 
@@ -86,7 +87,7 @@ def test_a_foreign_origin_is_refused_before_the_websocket_is_accepted(server):
 
 @pytest.fixture
 def said():
-    """Collect what the server says of requests."""
+    """Collect the server's log about requests."""
     records: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
     handler = logging.Handler()
     handler.emit = records.put
@@ -100,7 +101,7 @@ def said():
     ("request_line", "reason"),
     [(b"HEAD / HTTP/1.1", "expected GET; got HEAD"), (b"hello", "invalid HTTP request line")],
 )
-def test_what_is_no_request_of_a_page_is_told_in_a_sentence(server, said, request_line, reason):
+def test_an_invalid_request_is_logged_as_a_sentence(server, said, request_line, reason):
     with socket.create_connection((HOST, server.get_port()), timeout=TIMEOUT_S) as connection:
         connection.sendall(request_line + b"\r\n\r\n")
         while connection.recv(4096):
@@ -109,6 +110,40 @@ def test_what_is_no_request_of_a_page_is_told_in_a_sentence(server, said, reques
     assert reason in record.getMessage()
     assert "\n" not in record.getMessage()
     assert record.exc_info is None
+
+
+@pytest.mark.parametrize("length", [300, 7000])
+def test_a_path_that_is_too_long_is_refused(server, said, length):
+    connection = http.client.HTTPConnection(HOST, server.get_port(), timeout=TIMEOUT_S)
+    connection.request("GET", "/" + "a" * length)
+    assert connection.getresponse().status == 414
+    connection.close()
+    assert said.empty()
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        b"\xc1" * 50,  # no MessagePack
+        b"",
+        "text",
+        b"\x81\xa4type\xa3abc",  # {"type": "abc"}: no such message
+        b"\x93\x01\x02\x03",  # a list
+        b"\x91" * 1500,  # lists in lists
+        b"\xdd\xff\xff\xff\xff",  # a list of 4 billion items, of which none comes
+    ],
+)
+def test_an_invalid_message_closes_only_its_own_connection(server, said, message):
+    with websocket(server, origin=server.url) as other:
+        with websocket(server, origin=server.url) as sender:
+            sender.send(message)
+            with pytest.raises(websockets.ConnectionClosed) as closed:
+                deque(sender, maxlen=0)
+        assert closed.value.rcvd.code == 1007
+        record = said.get(timeout=TIMEOUT_S)
+        assert "closing a connection with an unreadable message" in record.getMessage()
+        assert record.exc_info is None
+        assert isinstance(other.recv(TIMEOUT_S), bytes)
 
 
 def test_a_name_that_another_site_points_here_is_refused(server, get):
@@ -152,7 +187,7 @@ def test_nothing_is_printed_and_the_port_is_free_after_the_end(capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_viser_that_serves_in_another_way_is_not_left_unguarded(monkeypatch):
+def test_an_unknown_version_of_viser_is_refused(monkeypatch):
     serve = websockets.asyncio.server.serve
     own_way = SimpleNamespace(asyncio=SimpleNamespace(server=SimpleNamespace(serve=serve)))
     monkeypatch.setattr(viser.infra._infra, "websockets", own_way)

@@ -1,10 +1,10 @@
-"""Images of ROS as red, green and blue."""
+"""ROS images converted to RGB."""
 
 import numpy as np
 import pytest
 
 from arm_viewer.errors import PictureError
-from arm_viewer.picture_colours import MOST_PIXELS_WIDE, colours
+from arm_viewer.picture_colours import MAX_PIXELS_WIDE, colours
 from arm_viewer.snapshot import Picture
 
 
@@ -53,7 +53,7 @@ def test_near_is_red_far_is_blue_and_unknown_black():
 
 def test_a_large_image_becomes_smaller():
     shape = colours(picture(np.zeros((800, 1000, 3), dtype=np.uint8), "rgb8")).shape
-    assert shape[1] <= MOST_PIXELS_WIDE
+    assert shape[1] <= MAX_PIXELS_WIDE
     assert shape[0] / shape[1] == pytest.approx(0.8, abs=0.01)
 
 
@@ -67,7 +67,7 @@ def test_a_large_image_becomes_smaller():
         Picture("rgb8", 2, 0, 6, False, np.zeros(0, np.uint8)),
     ],
 )
-def test_what_cannot_be_shown_is_said(broken):
+def test_an_unsupported_image_is_reported(broken):
     with pytest.raises(PictureError):
         colours(broken)
 

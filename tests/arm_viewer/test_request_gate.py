@@ -1,4 +1,4 @@
-"""Which requests the page answers."""
+"""The requests that the page accepts."""
 
 import pytest
 

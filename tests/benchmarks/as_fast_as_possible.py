@@ -6,9 +6,9 @@ import time
 import harness
 import mujoco
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.model.builder import build_model
 
 

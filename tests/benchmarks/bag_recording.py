@@ -70,7 +70,7 @@ def publish(seconds: float) -> None:
 
 def record(seconds: float, compression: str) -> harness.Row:
     """Record the robot; compare what is in the bag with what was published."""
-    from arm_gazebo.camera.environment import camera_environment
+    from arm_gazebo.camera.process import camera_environment
 
     with harness.fresh_domain(), tempfile.TemporaryDirectory() as folder:
         environment = harness.client_environment()
@@ -118,9 +118,8 @@ def cost(name: str, message: object, count: int, compression: str) -> harness.Ro
     """Measure the writer's processor time for a message of a kind."""
     from rclpy.serialization import serialize_message
 
-    from arm_cli.bag.bag_topic import BagMessage, BagTopic
+    from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
     from arm_cli.bag.bag_writer import BagSettings, BagWriter
-    from arm_cli.bag.type_definition import TypeDefinition
 
     data = serialize_message(message)
     with tempfile.TemporaryDirectory() as folder:

@@ -24,13 +24,13 @@ def simulate(width: int, height: int, noise: float, backend: str) -> None:
     """Be the simulation until the standard input ends; print the camera process's id."""
     import mujoco
 
-    from arm_control.hardware_info import parse_hardware_info
+    from arm_control.hardware.info import parse_hardware_info
     from arm_description.resources import resolve_uri
-    from arm_description.urdf import parse_urdf
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.urdf.parser import parse_urdf
+    from arm_description.xacro.expansion import expand_xacro
     from arm_gazebo.camera.feed import CameraFeed
     from arm_gazebo.model.builder import build_model
-    from arm_gazebo.robot.build_options import BuildOptions
+    from arm_gazebo.robot.part import BuildOptions
     from arm_gazebo.sensors.camera_reader import parse_cameras
 
     xacro = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")

@@ -1,4 +1,4 @@
-"""A client that knows nothing of the suite: default QoS, default environment. One job a run.
+"""A client that does not use the suite: default QoS, default environment. One job in each run.
 
 Prints one JSON line per answer; wall times are CLOCK_MONOTONIC, the same in every process.
 """

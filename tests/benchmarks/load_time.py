@@ -23,8 +23,8 @@ LOAD = """
 import sys, time
 started_s = time.perf_counter()
 from pathlib import Path
-from arm_description.urdf import parse_urdf
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_description.urdf.parser import parse_urdf
+from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.model.builder import build_model
 cache = Path(sys.argv[2]) if len(sys.argv) > 2 else None
 built = build_model(parse_urdf(Path(sys.argv[1]).read_text()), [],

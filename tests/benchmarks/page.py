@@ -116,7 +116,7 @@ class Joint:
 
 
 def latencies_s(client: PageClient) -> list[float]:
-    """Move the slider of j0 to and fro; return how long each time until it was seen to move."""
+    """Move the slider of j0 back and forth; return the time until each motion is seen."""
     slider = client.wait_for_slider("j0")
     joint, phases, goal = Joint(), random.Random(1), 0.0
     measured = []

@@ -12,14 +12,14 @@ import harness
 import mujoco
 import numpy as np
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import BuildOptions
+from arm_gazebo.spec.physics_timing import physics_timing
 
 ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
 REPEATS, CALLS = 100, 50

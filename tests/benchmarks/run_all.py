@@ -2,7 +2,7 @@
 
     python tests/benchmarks/run_all.py
 
-Takes a quarter of an hour; run it on a machine that does nothing else, with the suite installed
+Takes half an hour; run it on a machine that does nothing else, with the suite installed
 (not editable: compiled modules are part of the start-up time).
 """
 
@@ -19,12 +19,23 @@ SCRIPTS = (
     "command_line.py",
     "control_loop.py",
     "trajectory_control.py",
+    "busy_process.py",
     "as_fast_as_possible.py",
+    "lock_step.py",
     "camera_rate.py",
     "load_time.py",
     "world_changes.py",
+    "snapshots.py",
     "physics_speed.py",
+    "library.py",
+    "gym_speed.py",
+    "workarounds.py",
     "bag_recording.py",
+    "run_recording.py",
+    "repeatability.py",
+    "soak.py",
+    "sweep.py",
+    "fuzzing.py",
     "page.py",
 )
 

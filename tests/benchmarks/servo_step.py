@@ -14,25 +14,24 @@ from pathlib import Path
 import harness
 import numpy as np
 
-from arm_control.hardware_info import HardwareInfo, InterfaceInfo, JointInfo
-from arm_description.robot import Robot
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
-from arm_gazebo.drives.mode import DriveMode
+from arm_control.hardware.info import HardwareInfo, InterfaceInfo, JointInfo
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Robot
+from arm_description.xacro.expansion import expand_xacro
+from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import BuildOptions
+from arm_gazebo.spec.physics_timing import physics_timing
 
 OWN_ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
-DRIVEN = ("revolute", "continuous", "prismatic")
 SETTLE_S, WATCH_S = 2.0, 3.0
 
 
 def hardware(robot: Robot) -> HardwareInfo:
     """Return hardware that commands every joint that can be commanded."""
     position = (InterfaceInfo("position"),)
-    names = [j.name for j in robot.joints if j.type in DRIVEN and j.mimic is None]
+    names = [j.name for j in robot.joints if j.type.is_scalar and j.mimic is None]
     return HardwareInfo(
         "all", "system", "none", tuple(JointInfo(n, position, position) for n in names)
     )

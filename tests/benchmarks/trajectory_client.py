@@ -1,4 +1,4 @@
-"""A client of the trajectory controller that knows nothing else of the suite. One job a run.
+"""A client of the trajectory controller that does not use the suite. One job in each run.
 
 Prints one JSON line; wall times are CLOCK_MONOTONIC, simulated ones those of message stamps.
 """
@@ -134,7 +134,7 @@ def seconds(time_: Any) -> float:
 
 
 def switch(client: Client, count: int) -> dict:
-    """Hand the joints to and fro; say how long each answer took."""
+    """Switch the joints between two controllers; return how long each answer took."""
     phases = random.Random(1)
     names = ["position_controller", NAME]
     latencies = []
@@ -213,10 +213,20 @@ def results(client: Client, count: int) -> dict:
     return {"delays_s": delays}
 
 
+def large(client: Client, count: int) -> dict:
+    """Send a goal of so many way points; say whether it was accepted."""
+    rest = [0.0] * len(JOINTS)
+    points = [point(0.01 * (i + 1), rest, rest, rest) for i in range(count)]
+    goal = FollowJointTrajectory.Goal(trajectory=JointTrajectory(joint_names=JOINTS, points=points))
+    client.spin_until(client.action.server_is_ready)
+    print(json.dumps({"ready": True}), flush=True)
+    return {"accepted": client.wait(client.action.send_goal_async(goal)).accepted}
+
+
 def main() -> None:
     """Do the one job that the arguments name."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("job", choices=["switch", "busy", "track", "results"])
+    parser.add_argument("job", choices=["switch", "busy", "track", "results", "large"])
     parser.add_argument("--count", type=int, default=40)
     parser.add_argument("--seconds", type=float, default=20.0)
     arguments = parser.parse_args()
@@ -229,6 +239,7 @@ def main() -> None:
         "busy": lambda: busy(client, arguments.seconds),
         "track": lambda: track(client),
         "results": lambda: results(client, arguments.count),
+        "large": lambda: large(client, arguments.count),
     }
     print(json.dumps(jobs[arguments.job]()), flush=True)
     client.node.destroy_node()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from arm_control import HardwareReturn
-from arm_control.system_interface import SystemInterface
+from arm_control.hardware.driver import SystemInterface
 
 Info = Callable[..., Any]
 

@@ -18,16 +18,15 @@ from typing import TypeVar
 import psutil
 import pytest
 
-from launch_py.expansion import expand_description
-from launch_py.launch_description import LaunchDescription
+from launch_py.launch_description import LaunchDescription, expand_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.plan import Plan
-from launch_py.screen import ReadySummary
+from launch_py.output import ReadySummary
+from launch_py.output.log_folder import LogFolder
+from launch_py.output.reporter import Reporter
+from launch_py.plan.steps import LaunchPlan
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.log_folder import LogFolder
-from launch_py.supervision.reporter import Reporter
 from launch_py.supervision.supervisor import Supervisor
-from launch_py.testing import FakeRunner, ManualClock, RecordingScreen
+from launch_py.testing import FakeClock, FakeRunner, RecordingScreen
 
 TIMEOUT_S = 30.0
 T = TypeVar("T")
@@ -55,7 +54,7 @@ def forever(name, **options):
 
 
 def wait_until(condition: Callable[[], T], what: str, timeout_s: float = TIMEOUT_S) -> T:
-    """Block until the condition is true, and return what it returned; fail after the time-out."""
+    """Block until the condition is true and return its result; fail after the timeout."""
     deadline_s = time.monotonic() + timeout_s
     pause = threading.Event()
     while not (result := condition()):
@@ -66,7 +65,7 @@ def wait_until(condition: Callable[[], T], what: str, timeout_s: float = TIMEOUT
 
 
 class Launched:
-    """A launcher that runs, and everything that it has printed."""
+    """A running launcher and everything that it has printed."""
 
     def __init__(self, command: list[str], environment: dict[str, str]) -> None:
         self.lines: list[str] = []
@@ -137,7 +136,7 @@ class Trial:
     """A supervisor whose processes, time and screen belong to the test."""
 
     def __init__(self, plan, logs: LogFolder, cannot_start=()) -> None:
-        self.clock = ManualClock()
+        self.clock = FakeClock()
         self.loop = EventLoop(self.clock)
         self.runner = FakeRunner(cannot_start)
         self.screen = RecordingScreen()
@@ -166,12 +165,12 @@ class Trial:
         return {n for n, child in self.runner.children.items() if child.stop_delays is not None}
 
     def settle(self) -> None:
-        """Wait for the functions that are called beside the loop while everything stops."""
+        """Wait for the functions that are called beside the loop during the shutdown."""
         self.loop.run(until=lambda: self.supervisor.done)
 
     def finish(self) -> int:
         assert self.supervisor.done
-        self.supervisor.rest()
+        self.supervisor.finish_idle()
         self.settle()
         return self.supervisor.finish()
 
@@ -193,7 +192,7 @@ def launch_environment(tmp_path):
 
 @pytest.fixture
 def write_launch_file(tmp_path):
-    """Write a launch file: either all of it, or the actions of its description."""
+    """Write a launch file, from its whole text or from the actions of its description."""
 
     def write(actions: str, name: str = "test.launch.py") -> Path:
         path = tmp_path / name
@@ -227,7 +226,7 @@ def launch(write_launch_file, launch_environment):
 
 @pytest.fixture
 def run_launch_py(launch_environment, tmp_path):
-    """Run the launcher to its end and return what it printed."""
+    """Run the launcher to its end and return its output."""
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
@@ -247,7 +246,7 @@ def run_launch_py(launch_environment, tmp_path):
 def expand():
     """Expand actions, or a whole description, into a plan."""
 
-    def expand_actions(actions, environ=None, **arguments: str) -> Plan:
+    def expand_actions(actions, environ=None, **arguments: str) -> LaunchPlan:
         description = LaunchDescription(actions)
         return expand_description(description, arguments, environ or dict(os.environ))
 
@@ -256,7 +255,7 @@ def expand():
 
 @pytest.fixture
 def trial(expand, tmp_path: Path):
-    """Begin to supervise the plan of some actions, with fake processes."""
+    """Supervise the plan of some actions, with fake processes."""
     trials: list[Trial] = []
     logs = LogFolder(tmp_path)
 
@@ -274,7 +273,7 @@ def trial(expand, tmp_path: Path):
 def expand_file():
     """Expand a launch file into a plan."""
 
-    def expand_path(path: Path, **arguments: str) -> Plan:
+    def expand_path(path: Path, **arguments: str) -> LaunchPlan:
         return expand_description(read_launch_file(path), arguments, dict(os.environ), path)
 
     return expand_path
@@ -282,7 +281,7 @@ def expand_file():
 
 @pytest.fixture
 def package_prefix(tmp_path, monkeypatch):
-    """Make a prefix with packages in it; returns a function that adds one."""
+    """Create a prefix; returns a function that adds a package to it."""
     prefix = tmp_path / "prefix"
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
 
@@ -304,7 +303,7 @@ def package_prefix(tmp_path, monkeypatch):
 
 @pytest.fixture
 def waiting():
-    """Give the tests what they wait with: test modules cannot import a conftest."""
+    """Return `wait_until`, because test modules cannot import a conftest."""
 
     class Waiting:
         until = staticmethod(wait_until)

@@ -1,4 +1,4 @@
-"""What actions add to the plan and to the scope of what follows."""
+"""The steps and settings that actions add."""
 
 import os
 
@@ -30,11 +30,11 @@ from launch_py.errors import (
     UsageError,
 )
 from launch_py.events import Shutdown as ShutdownEvent
-from launch_py.expansion import survey_description
-from launch_py.plan import MessageStep, ShutdownStep, StopDelays
-from launch_py.restart_policy import RestartHistory
+from launch_py.launch_description import survey_description
+from launch_py.plan.restart_policy import RestartHistory
+from launch_py.plan.steps import MessageStep, ShutdownStep, StopDelays
 from launch_py.substitutions import Call, LaunchConfiguration
-from launch_py.testing import ManualClock
+from launch_py.testing import FakeClock
 
 
 def sh(name="sh", **options):
@@ -45,7 +45,7 @@ def texts(plan):
     return [step.text for step in plan.steps if isinstance(step, MessageStep)]
 
 
-def test_a_default_stands_where_no_value_is_given(expand):
+def test_the_default_is_used_if_no_value_is_given(expand):
     actions = [
         DeclareLaunchArgument("world", default_value="empty"),
         LogInfo(msg=LaunchConfiguration("world")),
@@ -59,18 +59,18 @@ def test_a_required_argument_is_asked_for(expand):
         expand([DeclareLaunchArgument("model", description="a URDF")])
 
 
-def test_a_value_outside_the_choices_names_the_near_one_and_all(expand):
+def test_a_value_outside_the_choices_lists_them_with_a_suggestion(expand):
     argument = DeclareLaunchArgument("camera", default_value="front", choices=["front", "side"])
     with pytest.raises(UsageError, match=r"cannot be 'frnt'; did you mean 'front'.*front, side"):
         expand([argument], camera="frnt")
 
 
-def test_an_unknown_argument_names_the_near_one(expand):
+def test_an_unknown_argument_suggests_a_similar_one(expand):
     with pytest.raises(UsageError, match="no launch argument 'wrld'; did you mean 'world'"):
         expand([DeclareLaunchArgument("world", default_value="empty")], wrld="x")
 
 
-def test_conditions_switch_actions(expand):
+def test_conditions_switch_actions_on_and_off(expand):
     actions = [
         DeclareLaunchArgument("headless", default_value="true"),
         LogInfo(msg="if", condition=IfCondition(LaunchConfiguration("headless"))),
@@ -80,12 +80,12 @@ def test_conditions_switch_actions(expand):
     assert texts(expand(actions, headless="0")) == ["unless"]
 
 
-def test_a_condition_on_something_else_is_refused(expand):
+def test_a_condition_that_is_not_a_boolean_is_refused(expand):
     with pytest.raises(SubstitutionError, match="needs true or false, not 'perhaps'"):
         expand([LogInfo(msg="x", condition=IfCondition("perhaps"))])
 
 
-def test_a_group_keeps_what_it_sets(expand):
+def test_a_group_s_settings_stay_inside(expand):
     actions = [
         SetLaunchConfiguration("a", "outside"),
         GroupAction(
@@ -96,7 +96,7 @@ def test_a_group_keeps_what_it_sets(expand):
     assert texts(expand(actions)) == ["inside", "outside"]
 
 
-def test_a_group_without_scope_does_not(expand):
+def test_the_settings_of_a_group_without_scope_do_not(expand):
     actions = [
         GroupAction([SetLaunchConfiguration("a", "inside")], scoped=False),
         LogInfo(msg=LaunchConfiguration("a")),
@@ -104,7 +104,7 @@ def test_a_group_without_scope_does_not(expand):
     assert texts(expand(actions)) == ["inside"]
 
 
-def test_a_group_may_see_nothing_of_what_is_around_it(expand):
+def test_a_group_without_forwarding_sees_no_outer_settings(expand):
     actions = [
         SetLaunchConfiguration("a", "outside"),
         SetEnvironmentVariable("NEW", "1"),
@@ -131,7 +131,7 @@ def test_a_timer_that_outlives_the_shutdown_is_refused(expand):
         expand([TimerAction(period=0.0, actions=[], cancel_on_shutdown=False)])
 
 
-def test_arguments_of_ros_that_mean_nothing_here_are_taken(expand):
+def test_arguments_of_ros_without_effect_are_accepted(expand):
     (step,) = expand([sh(log_cmd=True, cached_output=True)]).processes
     assert step == expand([sh()]).processes[0]
 
@@ -196,12 +196,12 @@ def test_a_ready_panel_is_performed(expand):
     assert second.commands == (("move", "arm topic pub"),)
 
 
-def test_something_else_than_an_action_is_refused():
+def test_an_entry_that_is_not_an_action_is_refused():
     with pytest.raises(LaunchFileError, match="takes actions, not 'x' of type str"):
         LaunchDescription(["x"])  # pyright: ignore[reportArgumentType]
 
 
-def test_a_missing_program_names_near_ones_before_anything_starts(expand):
+def test_a_missing_program_suggests_similar_names_before_anything_starts(expand):
     with pytest.raises(NotFoundError, match=r"no program 'slep' on PATH.*did you mean 'sleep'"):
         expand([ExecuteProcess(cmd=["slep", "1"])])
 
@@ -217,7 +217,7 @@ def test_a_prefix_is_put_before_the_command(expand):
 
 
 @pytest.mark.parametrize("prefix", [None, "", " "])
-def test_an_empty_prefix_is_none(expand, prefix):
+def test_an_empty_prefix_adds_nothing(expand, prefix):
     assert len(expand([sh(prefix=prefix)]).processes[0].command) == 3
 
 
@@ -239,7 +239,7 @@ def test_an_empty_prefix_is_none(expand, prefix):
         ),
     ],
 )
-def test_what_an_action_does_not_take_is_a_sentence(expand, action, message):
+def test_invalid_arguments_of_an_action_are_reported(expand, action, message):
     with pytest.raises(LaunchError, match=message):
         expand([action])
 
@@ -268,15 +268,15 @@ def test_respawn_is_a_restart_policy(expand):
     assert policy.max_restarts == 3
 
 
-def test_retries_that_are_counted_are_all_made(expand):
+def test_all_requested_retries_are_made(expand):
     (step,) = expand([sh(respawn=True, respawn_max_retries=10)]).processes
-    history = RestartHistory(step.restart, ManualClock())
+    history = RestartHistory(step.restart, FakeClock())
     assert [history.ended(1).delay_s for _ in range(11)] == [0.0] * 10 + [None]
 
 
 def test_retries_without_a_number_end_with_a_crash_loop(expand):
     (step,) = expand([sh(respawn=True)]).processes
-    history = RestartHistory(step.restart, ManualClock())
+    history = RestartHistory(step.restart, FakeClock())
     assert [history.ended(1).delay_s for _ in range(5)] == [0.0] * 4 + [None]
 
 
@@ -294,8 +294,8 @@ def test_stop_delays_may_be_substitutions(expand):
         (lambda value: TimerAction(period=value, actions=[]), "TimerAction's period"),
     ],
 )
-def test_what_is_no_time_is_refused(expand, action, name, value):
-    with pytest.raises(LaunchFileError, match=f"^{name} is .*, not seconds$"):
+def test_a_duration_that_is_not_a_number_is_refused(expand, action, name, value):
+    with pytest.raises(LaunchFileError, match=f"^{name} is .*, not a number of seconds$"):
         expand([action(value)])
 
 
@@ -350,7 +350,7 @@ def test_output_may_be_given_for_each_stream(expand, output, shown):
         ({1: "log"}, "needed, not 1 of type int"),
     ],
 )
-def test_output_that_is_nonsense_is_a_sentence(expand, output, message):
+def test_invalid_output_is_reported(expand, output, message):
     with pytest.raises(LaunchFileError, match=message):
         expand([sh(output=output)])
 
@@ -366,18 +366,18 @@ def test_output_that_is_nonsense_is_a_sentence(expand, output, message):
         ),
     ],
 )
-def test_what_is_neither_true_nor_false_is_a_sentence(expand, action, message):
+def test_a_value_that_is_not_a_boolean_is_reported(expand, action, message):
     with pytest.raises(LaunchFileError, match=message):
         expand([action])
 
 
-def test_truths_may_be_substitutions(expand):
+def test_booleans_may_be_substitutions(expand):
     (step,) = expand([sh(respawn=["fal", "se"], emulate_tty="True")]).processes
     assert step.restart.when == "never"
     assert step.emulate_tty
 
 
-def test_an_error_in_an_opaque_function_is_a_sentence(expand):
+def test_an_error_in_an_opaque_function_is_reported(expand):
     def decide(_context):
         return {}["missing"]
 
@@ -385,7 +385,7 @@ def test_an_error_in_an_opaque_function_is_a_sentence(expand):
         expand([OpaqueFunction(function=decide)])
 
 
-def test_a_survey_does_not_perform_what_is_costly(expand):
+def test_a_survey_does_not_perform_costly_substitutions(expand):
     calls = []
 
     def describe():

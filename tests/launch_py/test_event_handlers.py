@@ -1,4 +1,4 @@
-"""Handlers of what processes write, and of the shutdown."""
+"""Handlers of output and of the shutdown."""
 
 import sys
 
@@ -14,10 +14,10 @@ from launch_py import (
     Shutdown,
     TimerAction,
 )
+from launch_py.command.listings import list_plan
 from launch_py.conditions import IfCondition
 from launch_py.errors import LaunchFileError
 from launch_py.event_handlers import OnProcessIO, OnShutdown
-from launch_py.plan_listing import list_plan
 from launch_py.substitutions import LaunchConfiguration
 from launch_py.testing import fake_process
 
@@ -37,7 +37,7 @@ def echo(event):
 # Lines
 
 
-def test_a_function_learns_of_each_line(trial):
+def test_a_function_gets_each_line(trial):
     events = []
     a = fake_process("a", restart=RestartPolicy.on_failure())
     t = trial(a, on_io(target_action=a, on_stdout=events.append, on_stderr=events.append))
@@ -63,7 +63,7 @@ def test_each_stream_has_its_function(trial):
     assert t.screen.lines[-2:] == ["[a] err", "heard err"]
 
 
-def test_what_follows_a_line_may_start_processes_each_time(trial):
+def test_each_line_may_start_processes(trial):
     t = trial(
         fake_process("a"), on_io(target_action="a", on_stdout=lambda _event: fake_process("b"))
     )
@@ -72,7 +72,7 @@ def test_what_follows_a_line_may_start_processes_each_time(trial):
     assert t.started == ["a", "b", "b-2"]
 
 
-def test_whoever_follows_a_line_may_wait_for_what_was_there_before(trial):
+def test_actions_after_a_line_may_wait_for_earlier_processes(trial):
     t = trial(
         fake_process("a"),
         fake_process("c", ready=LogLine("up")),
@@ -84,7 +84,7 @@ def test_whoever_follows_a_line_may_wait_for_what_was_there_before(trial):
     assert t.started == ["a", "c", "b"]
 
 
-def test_lines_are_heard_once_the_handler_is_registered(trial):
+def test_lines_are_handled_once_the_handler_is_registered(trial):
     t = trial(
         fake_process("a"),
         TimerAction(period=1.0, actions=[on_io(target_action="a", on_stdout=echo)]),
@@ -95,7 +95,7 @@ def test_lines_are_heard_once_the_handler_is_registered(trial):
     assert [line for line in t.screen.lines if "heard" in line] == ["heard late"]
 
 
-def test_lines_are_not_heard_any_more_when_everything_stops(trial):
+def test_lines_are_not_handled_during_the_shutdown(trial):
     t = trial(
         fake_process("a"),
         on_io(target_action="a", on_stdout=lambda _event: Shutdown(reason="enough")),
@@ -116,7 +116,7 @@ def test_lines_are_not_heard_any_more_when_everything_stops(trial):
         (lambda _event: sys.exit(3), "an event handler: SystemExit: 3"),
     ],
 )
-def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial, mistake, said):
+def test_a_function_that_fails_ends_the_launch_with_a_message(trial, mistake, said):
     t = trial(fake_process("a"), on_io(target_action="a", on_stdout=mistake))
     t["a"].write("x")
     assert t.asked_to_stop() == {"a"}
@@ -125,14 +125,14 @@ def test_a_function_with_a_mistake_ends_the_launch_with_a_sentence(trial, mistak
     assert said in str(t.screen.last_line)
 
 
-def test_lines_of_a_process_that_is_switched_off_are_nobodys(trial):
+def test_a_handler_of_a_switched_off_process_does_nothing(trial):
     a = fake_process("a", condition=IfCondition("false"))
     t = trial(a, fake_process("b"), on_io(target_action=a, on_stdout=echo))
     t["b"].write("x")
     assert t.screen.lines[-1] == "[b] x"
 
 
-def test_a_process_that_is_not_there_is_refused(expand):
+def test_an_unknown_process_is_refused(expand):
     with pytest.raises(LaunchFileError, match="waits for unknown process 'b'; the processes are a"):
         expand([fake_process("a"), on_io(target_action="b", on_stdout=echo)])
     with pytest.raises(LaunchFileError, match=r"target_action= of OnProcessIO takes .*, not 3"):
@@ -142,7 +142,7 @@ def test_a_process_that_is_not_there_is_refused(expand):
 # Shutdown
 
 
-def test_the_shutdown_is_told_of_before_anything_is_asked_to_stop(trial):
+def test_shutdown_handlers_run_before_any_process_is_stopped(trial):
     asked = []
 
     def farewell(event, _context):
@@ -180,7 +180,7 @@ def test_actions_wait_for_the_shutdown(trial):
     assert t.screen.lines[-1] == "bye all"
 
 
-def test_the_shutdown_is_told_of_once_also_where_all_ends_by_itself(trial):
+def test_shutdown_handlers_run_once_even_if_everything_ends_by_itself(trial):
     reasons = []
     t = trial(fake_process("a"), on_shutdown(lambda event, _context: reasons.append(event.reason)))
     t["a"].end(3)
@@ -195,7 +195,7 @@ def test_the_end_of_a_required_process_is_a_shutdown(trial):
     assert t.finish() == 3
 
 
-def test_a_handler_that_is_not_registered_yet_says_nothing(trial):
+def test_a_handler_that_is_not_registered_yet_does_nothing(trial):
     t = trial(
         fake_process("a"), TimerAction(period=9.0, actions=[on_shutdown(LogInfo(msg="too early"))])
     )
@@ -203,15 +203,15 @@ def test_a_handler_that_is_not_registered_yet_says_nothing(trial):
     assert "too early" not in t.screen.lines
 
 
-def test_nothing_is_started_while_everything_stops(trial):
+def test_nothing_is_started_during_the_shutdown(trial):
     t = trial(fake_process("a"), on_shutdown([fake_process("b"), LogInfo(msg="bye")]))
     t.supervisor.stop("now")
     assert t.started == ["a"]
-    assert t.screen.problems == ["b is not started: everything stops"]
+    assert t.screen.problems == ["b is not started: the launch is stopping"]
     assert "bye" in t.screen.lines
 
 
-def test_a_mistake_in_a_farewell_does_not_keep_the_others_from_stopping(trial):
+def test_a_mistake_in_a_shutdown_handler_does_not_prevent_the_shutdown(trial):
     t = trial(
         fake_process("a"),
         on_shutdown(lambda event, _context: event.nothing),

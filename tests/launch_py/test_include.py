@@ -1,12 +1,14 @@
-"""Included launch files: their scope, their arguments, what is refused."""
+"""Included launch files: their scope, their arguments and their errors."""
+
+import os
 
 import pytest
 
-from launch_py.command_line import find_launch_file
+from launch_py.command.command_line import find_launch_file
 from launch_py.errors import LaunchFileError, NotFoundError, UsageError
-from launch_py.expansion import survey_description
+from launch_py.launch_description import survey_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.plan import MessageStep
+from launch_py.plan.steps import MessageStep
 
 CHILD = """
 actions = [
@@ -44,7 +46,7 @@ def test_the_command_line_reaches_an_argument_that_only_the_included_file_declar
     assert texts(expand_file(parent(), rate="500")) == ["child empty 500"]
 
 
-def test_an_argument_that_the_include_fixes_is_not_for_the_command_line(parent, expand_file):
+def test_an_argument_that_the_include_sets_cannot_be_set_on_the_command_line(parent, expand_file):
     path = parent(', launch_arguments={"world": "objects"}')
     with pytest.raises(UsageError, match="no launch argument 'world'; its arguments are rate"):
         expand_file(path, world="empty")
@@ -80,9 +82,9 @@ def test_a_conditional_include_is_surveyed_but_not_expanded(parent, expand_file)
     assert texts(expand_file(path, world="objects")) == []
 
 
-def test_a_circle_of_includes_ends_with_a_sentence(write_launch_file, expand_file):
+def test_a_cycle_of_includes_is_reported(write_launch_file, expand_file):
     path = write_launch_file("actions = [IncludeLaunchDescription(ThisLaunchFile())]")
-    with pytest.raises(LaunchFileError, match="include each other without end"):
+    with pytest.raises(LaunchFileError, match="include each other in a cycle"):
         expand_file(path)
 
 
@@ -101,7 +103,7 @@ def test_a_file_named_relatively_knows_its_folder(
 @pytest.mark.parametrize(
     "arguments", ["zip(['world'], ['objects'])", "(p for p in [('world', 'objects')])"]
 )
-def test_arguments_that_can_be_gone_through_once_are_passed(parent, expand_file, arguments):
+def test_arguments_from_an_iterator_are_passed(parent, expand_file, arguments):
     assert texts(expand_file(parent(f", launch_arguments={arguments}"))) == ["child objects 100"]
 
 
@@ -124,7 +126,13 @@ def test_one_source_included_twice_is_two_copies(write_launch_file, expand_file)
     assert waits_for == {"a": [], "b": ["a"], "a-2": [], "b-2": ["a-2"]}
 
 
-def test_a_missing_file_names_its_neighbours(parent, write_launch_file, expand_file):
+def test_a_fifo_is_not_a_launch_file(tmp_path):
+    os.mkfifo(tmp_path / "a.launch.py")
+    with pytest.raises(NotFoundError, match=r"a\.launch\.py is not a regular file, so it is not a"):
+        read_launch_file(tmp_path / "a.launch.py")
+
+
+def test_a_missing_file_is_reported_with_similar_files(parent, write_launch_file, expand_file):
     parent()
     path = write_launch_file(f"actions = [{INCLUDE.replace('child', 'chld')})]")
     with pytest.raises(NotFoundError, match=r"no launch file .*did you mean 'child.launch.py'"):
@@ -141,17 +149,17 @@ def test_a_missing_file_names_its_neighbours(parent, write_launch_file, expand_f
         ("def generate_launch_description():\n    return 1 / 0", "line 2: ZeroDivisionError"),
     ],
 )
-def test_a_broken_launch_file_is_a_sentence_with_its_line(tmp_path, body, message):
+def test_a_broken_launch_file_is_reported_with_its_line(tmp_path, body, message):
     path = tmp_path / "broken.launch.py"
     path.write_text(body)
     with pytest.raises(LaunchFileError, match=message):
         read_launch_file(path)
 
 
-def test_other_kinds_of_launch_files_are_refused(tmp_path):
-    path = tmp_path / "a.launch.xml"
+def test_other_formats_of_launch_files_are_refused(tmp_path):
+    path = tmp_path / "launch.lua"
     path.touch()
-    with pytest.raises(LaunchFileError, match="XML and YAML launch files are not supported"):
+    with pytest.raises(LaunchFileError, match=r"does not end like a launch file: .py, .xml"):
         read_launch_file(path)
 
 

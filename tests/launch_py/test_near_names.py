@@ -1,4 +1,4 @@
-"""What is said of a name that does not exist."""
+"""The hint for a name that does not exist."""
 
 import pytest
 
@@ -17,8 +17,8 @@ MANY = [f"/topic_{n}" for n in range(MAX_LISTED + 1)]
         ("whatever", ["at", "w"], "it has at, w"),
         ("zzz", ["b", "a", "b"], "it has a, b"),
         ("zzz", [], "it has none"),
-        ("zzz", MANY, f"none of the {len(MANY)} is named like it"),
+        ("zzz", MANY, f"none of the {len(MANY)} has a similar name"),
     ],
 )
-def test_near_names_come_first_then_a_list_that_is_not_too_long(name, known, hint):
+def test_similar_names_come_before_a_short_list_of_all_names(name, known, hint):
     assert describe_known(name, known, "it has") == hint

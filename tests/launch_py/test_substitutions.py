@@ -1,4 +1,4 @@
-"""What each substitution stands for, and what it says when it stands for nothing."""
+"""The value of each substitution, and the error if it has none."""
 
 import sys
 from pathlib import Path
@@ -39,12 +39,12 @@ def test_a_text_may_be_joined_from_parts(context):
     assert perform_text(context, value) == "a b objects/c"
 
 
-def test_something_else_than_text_is_refused(context):
+def test_a_value_that_is_not_a_text_is_refused(context):
     with pytest.raises(LaunchFileError, match="not 3 of type int"):
         perform_text(context, 3)  # pyright: ignore[reportArgumentType]
 
 
-def test_launch_configuration_names_the_near_ones(context):
+def test_launch_configuration_suggests_similar_names(context):
     with pytest.raises(SubstitutionError, match=r"'wrld'.*did you mean 'world'"):
         LaunchConfiguration("wrld").perform(context)
 
@@ -53,7 +53,7 @@ def test_launch_configuration_takes_its_default(context):
     assert LaunchConfiguration("other", default="x").perform(context) == "x"
 
 
-def test_environment_variable_sees_what_the_launch_file_set():
+def test_environment_variable_sees_the_launch_file_s_settings():
     context = LaunchContext(base_environment={"A": "1", "B": "2"})
     context.set_environment_variable("A", "3")
     context.set_environment_variable("B", None)
@@ -73,7 +73,7 @@ def test_this_launch_file_dir(context):
     assert ThisLaunchFileDir().perform(context) == "/a/b"
 
 
-def test_no_launch_file_has_no_folder(context):
+def test_without_a_launch_file_there_is_no_folder(context):
     with pytest.raises(SubstitutionError, match="no launch file is being read"):
         ThisLaunchFileDir().perform(context)
 
@@ -83,7 +83,7 @@ def test_command_returns_the_output(context):
     assert Command(command).perform(context) == "2"
 
 
-def test_command_that_fails_says_what_it_said(context):
+def test_command_that_fails_reports_its_stderr(context):
     command = Command([sys.executable, " -c 'import sys; sys.exit(\"no such file\")'"])
     with pytest.raises(SubstitutionError, match="exit code 1: no such file"):
         command.perform(context)
@@ -93,20 +93,20 @@ def test_command_that_fails_says_what_it_said(context):
     ("text", "message"),
     [("echo 'a", "cannot be split: No closing quotation"), (" ", "Command has no text")],
 )
-def test_command_that_is_none_is_refused(context, text, message):
+def test_an_empty_command_is_refused(context, text, message):
     with pytest.raises(SubstitutionError, match=message):
         Command(text).perform(context)
 
 
-def test_command_that_complains_fails_unless_told_otherwise(context):
+def test_command_that_writes_to_stderr_fails_by_default(context):
     text = [sys.executable, " -c 'import sys; sys.stderr.write(\"hm\"); print(5)'"]
     with pytest.raises(SubstitutionError, match="complained: hm"):
         Command(text).perform(context)
     assert Command(text, on_stderr="ignore").perform(context) == "5"
 
 
-def test_command_whose_parts_run_together_asks_for_the_space(context):
-    with pytest.raises(NotFoundError, match=r"program no-such/arm.urdf .*is there a space missing"):
+def test_command_whose_parts_lack_a_space_suggests_it(context):
+    with pytest.raises(NotFoundError, match=r"no-such/arm.urdf .*without spaces: is one missing"):
         Command(["no-such", "/arm.urdf"]).perform(context)
     with pytest.raises(NotFoundError, match="no program 'no-such'") as said:
         Command(["no-such ", "/arm.urdf"]).perform(context)
@@ -119,7 +119,7 @@ def test_command_finds_programs_beside_this_python(context):
     assert found == sys.executable
 
 
-def test_find_executable_names_near_programs(tmp_path):
+def test_find_executable_suggests_similar_programs(tmp_path):
     (tmp_path / "xacro").touch(mode=0o755)
     context = LaunchContext(base_environment={"PATH": str(tmp_path)})
     with pytest.raises(NotFoundError, match=r"no program 'xacr'.*did you mean 'xacro'"):
@@ -134,7 +134,7 @@ def test_call_gets_performed_texts(context):
     assert call.perform(context) == "/a/objects {'base': 'true'}"
 
 
-def test_call_that_fails_is_a_sentence(context):
+def test_call_that_fails_is_reported(context):
     class OwnError(Exception):
         pass
 
@@ -169,7 +169,7 @@ def test_logic(context, substitution, expected):
     assert substitution.perform(context) == expected
 
 
-def test_logic_on_something_else_is_refused(context):
+def test_logic_on_a_value_that_is_not_a_boolean_is_refused(context):
     with pytest.raises(SubstitutionError, match="'maybe', neither true nor false"):
         NotSubstitution("maybe").perform(context)
 
@@ -203,12 +203,12 @@ def test_python_expression(context, expression, expected):
 @pytest.mark.parametrize(
     "expression", ["__import__('os')", "().__class__", "[x for x in 'a']", "open", "lambda: 1"]
 )
-def test_python_expression_refuses_what_could_do_something(context, expression):
+def test_python_expression_refuses_calls_and_attributes(context, expression):
     with pytest.raises(SubstitutionError, match="not allowed"):
         PythonExpression(expression).perform(context)
 
 
 @pytest.mark.parametrize("expression", ["1 +", "1 / 0", "'a' - 1"])
-def test_python_expression_without_value_is_a_sentence(context, expression):
+def test_python_expression_without_a_value_is_reported(context, expression):
     with pytest.raises(SubstitutionError, match="expression"):
         PythonExpression(expression).perform(context)

@@ -46,6 +46,30 @@ def test_a_link_is_as_large_as_the_original(robot, link, bounds):
     assert np.array([lower, upper]) == pytest.approx(np.array(bounds), abs=2.0)
 
 
+MESHES = resolve_uri("package://mycobot_description/meshes/mycobot_280")
+
+
+def test_every_link_with_a_shape_has_its_own_files(robot):
+    shaped = {link.name for link in robot.links if link.visuals}
+    assert {path.stem for path in (MESHES / "visual").glob("*.dae")} == shaped
+    assert {path.stem for path in (MESHES / "collision").glob("*.stl")} == shaped
+
+
+@pytest.mark.parametrize("link", BOUNDS)
+def test_the_dae_of_a_link_has_its_pieces_in_their_colours(robot, link):
+    coloured = trimesh.load_scene(MESHES / "visual" / f"{link}.dae")
+    pieces = visuals(robot, link)
+    assert coloured.bounds[0] == pytest.approx(
+        np.min([m.bounds[0] for m in pieces], axis=0), abs=2e-6
+    )
+    assert coloured.bounds[1] == pytest.approx(
+        np.max([m.bounds[1] for m in pieces], axis=0), abs=2e-6
+    )
+    colours = {tuple(m.visual.material.main_color) for m in coloured.geometry.values()}
+    materials = [visual.material.rgba for visual in robot.link(link).visuals]
+    assert colours == {tuple(round(255 * part) for part in rgba) for rgba in materials}
+
+
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_the_right_side_of_the_gripper_is_the_left_ones_mirror_image(robot, number):
     left = visuals(robot, f"gripper_left{number}")

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from arm_control.hardware_info import parse_hardware_info
+from arm_control.hardware.info import parse_hardware_info
 from arm_description import (
     Box,
     Robot,
@@ -88,14 +88,30 @@ def test_every_combination_of_choices_is_one_tree(prefix, use_gripper, add_world
     assert names(robot.links) == links
     assert robot.root == ("world" if add_world == "true" else f"{prefix}base_link")
     joints = {*ARM_JOINTS, *((DRIVEN, *FOLLOWERS) if with_gripper else ())}
-    assert names(robot.movable_joints) == {prefix + joint for joint in joints}
+    assert names(robot.movable_joints) == {prefixed(joint, prefix) for joint in joints}
+
+
+def prefixed(joint: str, prefix: str) -> str:
+    """Return the name of a joint with the prefix before the names of both links."""
+    return prefix + joint.replace("_to_", f"_to_{prefix}")
+
+
+def test_a_prefix_is_before_the_names_of_both_links_of_a_joint():
+    robot = mycobot(prefix="left_", use_gripper="true")
+    assert {
+        "left_base_link_to_left_link1",
+        "left_link1_to_left_link2",
+        "left_link6_to_left_link6_flange",
+        "left_link6_flange_to_left_gripper_base",
+        "left_gripper_base_to_left_gripper_right2",
+    } <= names(robot.joints)
 
 
 def test_the_base_and_the_flange_can_have_other_names():
     robot = mycobot(base_link="foot", flange_link="tool0", prefix="a_")
 
     assert {"a_foot", "a_tool0"} <= names(robot.links)
-    assert {"a_foot_to_link1", "a_link6_to_tool0"} <= names(robot.joints)
+    assert {"a_foot_to_a_link1", "a_link6_to_a_tool0"} <= names(robot.joints)
     commanded = {joint.name for joint in parse_hardware_info(expand(flange_link="tool0"))[0].joints}
     assert "link6_to_tool0" in commanded
 
@@ -119,7 +135,7 @@ def test_a_value_that_is_no_choice_is_refused_with_the_choices(argument, value, 
 @pytest.mark.parametrize(("positions", "flange"), FLANGE_AT.items())
 @pytest.mark.parametrize("prefix", ["", "left_"])
 def test_a_pose_means_the_same_as_in_the_original(positions, flange, prefix):
-    joints = dict(zip([prefix + joint for joint in ARM_JOINTS], positions, strict=True))
+    joints = dict(zip([prefixed(joint, prefix) for joint in ARM_JOINTS], positions, strict=True))
     poses = forward_kinematics(mycobot(add_world="false", prefix=prefix), joints)
 
     place, axis = flange
@@ -156,7 +172,7 @@ def test_five_joints_follow_the_driven_one_within_their_limits(prefix):
 
     followers = {joint.name: joint.mimic for joint in robot.joints if joint.mimic is not None}
     assert {name: mimic.multiplier for name, mimic in followers.items()} == {
-        prefix + name: multiplier for name, multiplier in FOLLOWERS.items()
+        prefixed(name, prefix): multiplier for name, multiplier in FOLLOWERS.items()
     }
     assert driven.limit is not None
     assert (driven.limit.lower, driven.limit.upper) == (-0.7, 0.15)
@@ -203,7 +219,7 @@ def test_ros2_control_commands_what_the_robot_has_and_only_that(use_gripper):
 
     gripper = ["left_" + DRIVEN] if use_gripper == "true" else []
     commanded = [joint.name for joint in component.joints if joint.command_interfaces]
-    assert commanded == [*(f"left_{joint}" for joint in ARM_JOINTS), *gripper]
+    assert commanded == [*(prefixed(joint, "left_") for joint in ARM_JOINTS), *gripper]
     assert {joint.name for joint in component.joints} == names(parse_urdf(text).movable_joints)
     assert component.plugin == "arm_gazebo/SimulatedHardware"
     (mock,) = parse_hardware_info(expand())

@@ -7,13 +7,13 @@ import pytest
 import yaml
 
 from launch_py.errors import UsageError
-from launch_py.expansion import expand_description
+from launch_py.launch_description import expand_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.packages import Packages
-from launch_py.plan import GeneratedFile, Plan, ProcessStep
+from launch_py.plan.steps import GeneratedFile, LaunchPlan, ProcessStep
+from launch_py.system.packages import Packages
 
 
-def plan(**arguments: str) -> Plan:
+def plan(**arguments: str) -> LaunchPlan:
     file = Packages(os.environ).launch_file("mycobot_gazebo", "mycobot.gazebo.launch.py")
     return expand_description(read_launch_file(file), arguments, dict(os.environ), file)
 
@@ -38,8 +38,8 @@ def test_names_of_joints_are_the_robots():
 
     assert nodes["/gripper_action_controller"]["joint"] == "left_gripper_controller"
     joints = nodes["/arm_controller"]["joints"]
-    assert joints[0] == "left_link1_to_link2"
-    assert joints[-1] == "left_link6_to_link6_flange"
+    assert joints[0] == "left_link1_to_left_link2"
+    assert joints[-1] == "left_link6_to_left_link6_flange"
     assert all(f'name="{joint}"' in nodes["/arm_gazebo"]["robot_description"] for joint in joints)
 
 
@@ -71,7 +71,7 @@ def test_worlds_may_be_named_as_gazebos_files_are():
 
 
 def test_sliders_beside_a_broadcaster_are_refused_with_the_way_out():
-    with pytest.raises(UsageError, match="give load_controllers:=false with it"):
+    with pytest.raises(UsageError, match="add load_controllers:=false"):
         plan(jsp_gui="true")
 
 

@@ -79,7 +79,7 @@ class Installation:
     environment: Mapping[str, str]
 
     def run(self, *command: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
-        """Run a command in a folder that has nothing to do with the sources."""
+        """Run a command in a folder outside the sources."""
         return run(command, folder, self.environment)
 
     @cached_property
@@ -169,18 +169,27 @@ def project() -> Project:
 
 
 @pytest.fixture(scope="session")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel, built in isolation as pip does."""
-    folder = tmp_path_factory.mktemp("wheel")
+def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the source archives of both distributions, and the suite's wheel.
+
+    The wheel is built from its archive, and each in an environment of its own, as for an index.
+    """
+    folder = tmp_path_factory.mktemp("distributions")
     sources = copy_sources(folder / "sources")
-    run(
-        [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", folder, sources.root],
-        folder,
-        bare(),
-    )
-    (built,) = folder.glob("*.whl")
-    # What is installed from it must not need them.
+    interfaces = folder / "interfaces"
+    shutil.copytree(ROOT / "arm_interfaces", interfaces, ignore=shutil.ignore_patterns("build"))
+    build = [sys.executable, "-m", "build", "--outdir", folder / "dist"]
+    run([*build, sources.root], folder, bare())
+    run([*build, "--sdist", interfaces], folder, bare())
+    # What is installed from the wheel must not need them.
     shutil.rmtree(sources.root)
+    return folder / "dist"
+
+
+@pytest.fixture(scope="session")
+def wheel(distributions: Path) -> Path:
+    """The suite's wheel."""
+    (built,) = distributions.glob("*.whl")
     return built
 
 
@@ -198,6 +207,16 @@ def install_editable(folder: Path, _wheel: Path) -> Installation:
     python = make_environment(folder / "venv")
     pip("install", "--no-deps", "-e", sources.root, into=python, folder=folder)
     return in_environment(sources, folder / "venv", python, sources.root)
+
+
+@pytest.fixture(scope="session")
+def description_alone(tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    """What `pip install ./arm_description` installs, in an environment of its own."""
+    folder = tmp_path_factory.mktemp("description_alone")
+    sources = copy_sources(folder / "sources")
+    python = make_environment(folder / "venv")
+    pip("install", sources.root / "arm_description", into=python, folder=folder)
+    return in_environment(sources, folder / "venv", python, folder / "venv")
 
 
 def install_by_colcon(folder: Path, _wheel: Path) -> Installation:

@@ -9,10 +9,10 @@ import sys
 
 from ament_index_python.packages import get_package_share_directory
 
-from arm_description.resources import resolve_uri
-from arm_description.robot import Mesh
-from arm_description.urdf import parse_urdf
-from arm_description.xacro_expansion import expand_xacro
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Mesh
+from arm_description.xacro.expansion import expand_xacro
 
 
 def describe(packages: list[str]) -> dict:
@@ -20,7 +20,9 @@ def describe(packages: list[str]) -> dict:
     shares = {package: get_package_share_directory(package) for package in packages}
     modules = {package: importlib.import_module(package).__file__ for package in packages}
     xacro = f"{shares['arm_description']}/urdf/arm.urdf.xacro"
-    robot = parse_urdf(expand_xacro(xacro, {}), xacro)
+    text = expand_xacro(xacro, {})
+    robot = parse_urdf(text, xacro)
+    finder = ResourceFinder.of_description(text)
     meshes = {
         visual.geometry.uri
         for link in robot.links
@@ -31,7 +33,7 @@ def describe(packages: list[str]) -> dict:
         "shares": shares,
         "modules": modules,
         "joints": [joint.name for joint in robot.movable_joints],
-        "meshes": {uri: str(resolve_uri(uri)) for uri in sorted(meshes)},
+        "meshes": {uri: str(finder.find(uri)) for uri in sorted(meshes)},
     }
 
 

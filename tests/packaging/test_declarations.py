@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = {
@@ -19,7 +20,18 @@ MODULE_PACKAGES = [package for package in PACKAGES if (FOLDERS[package] / packag
 """Those that hold more than data."""
 TOOLS = {"ament_index_python", "xacro"}
 """Packages of ROS that are used without an import: the index on the disk, a program."""
-DATA_FOLDERS = ("config", "launch", "meshes", "urdf", "worlds")
+ROS = {"ros-jazzy-rclpy", "ros-jazzy-common-interfaces"}
+READ_BY_TRIMESH = {"pycollada", "networkx"}
+PROVIDERS = {
+    **{name: name for name in ("argcomplete", "glfw", "lxml", "mcap", "numpy", "rich", "trimesh")},
+    **{name: name for name in ("viser", "websockets", "xacro", "xxhash", "zstandard")},
+    "cv2": "opencv-python-headless",
+    "mujoco": "mujoco-core",
+    "re2": "google-re2",
+    "yaml": "PyYAML",
+}
+"""The dependency of the suite that has a module."""
+DATA_FOLDERS = ("config", "launch", "meshes", "scripts", "urdf", "worlds")
 
 
 class SetupFile(ast.NodeVisitor):
@@ -59,6 +71,10 @@ def setup_file(package: str) -> SetupFile:
     return SetupFile(FOLDERS[package] / "setup.py")
 
 
+NODE_NAMES = "launch_py.nodes"
+"""The group that names nodes, not code: script name to node name."""
+
+
 def manifest(package: str) -> etree._Element:
     return etree.parse(FOLDERS[package] / "package.xml").getroot()
 
@@ -68,17 +84,22 @@ def entry_points(table: dict) -> dict[str, dict[str, str]]:
     return {"console_scripts": project["scripts"], **project.get("entry-points", {})}
 
 
+def module_file(module: str) -> Path:
+    package, _, rest = module.partition(".")
+    return ROOT / package / package / (rest.replace(".", "/") + ".py")
+
+
 def defined_names(module: str) -> set[str]:
     """The classes and functions of a module, found without importing it."""
-    package, _, rest = module.partition(".")
-    path = ROOT / package / package / (rest.replace(".", "/") + ".py")
-    tree = ast.parse(path.read_text())
+    tree = ast.parse(module_file(module).read_text())
     return {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
 
 
 def leads_to_something(module: str, attribute: str) -> bool:
-    """Whether there is such a package, or a module with such a class or function."""
-    return attribute in defined_names(module) if attribute else module in PACKAGES
+    """Whether there is such a package or module, or a module with such a class or function."""
+    if attribute:
+        return attribute in defined_names(module)
+    return module in PACKAGES or module_file(module).is_file()
 
 
 def test_every_package_is_in_the_wheel(project):
@@ -135,9 +156,15 @@ def test_no_setup_file_has_a_group_of_entry_points_that_the_root_lacks(project):
     groups = {
         group
         for package in MODULE_PACKAGES
-        for group in setup_file(package).arguments["entry_points"]
+        for group in setup_file(package).arguments.get("entry_points", {})
     }
     assert groups <= set(entry_points(project.table))
+
+
+def owner(project, group: str, name: str, target: str) -> str:
+    """The package whose setup.py declares an entry point: of a node's name, that of its script."""
+    place = project.table["project"]["scripts"][name] if group == NODE_NAMES else target
+    return place.split(".")[0]
 
 
 def test_the_entry_points_agree(project):
@@ -145,15 +172,22 @@ def test_the_entry_points_agree(project):
         declared = {package: setup_file(package).entry_points(group) for package in PACKAGES}
         owned = {
             package: {
-                name: target for name, target in wanted.items() if target.split(".")[0] == package
+                name: target
+                for name, target in wanted.items()
+                if owner(project, group, name, target) == package
             }
             for package in PACKAGES
         }
         assert declared == owned, group
 
 
+STAND_INS = "executable_stand_ins"
+
+
 def test_every_entry_point_leads_to_something(project):
-    for group, targets in entry_points(project.table).items():
+    groups = entry_points(project.table)
+    assert groups.pop(NODE_NAMES).keys() <= groups["console_scripts"].keys()
+    for group, targets in groups.items():
         for name, target in targets.items():
             module, _, attribute = target.partition(":")
             assert leads_to_something(module, attribute), f"{group}: {name}"
@@ -169,12 +203,37 @@ def test_the_data_folders_agree(project, package):
         f"{folder}/package.xml": f"share/{package}/package.xml",
         **{f"{folder}/{name}": f"share/{package}/{name}" for name in present},
     }
+    if (ROOT / folder / "resource" / STAND_INS).is_dir():
+        file = f"{STAND_INS}/{package}"
+        wanted[f"{folder}/resource/{file}"] = f"share/ament_index/resource_index/{file}"
     declared = {
         source: target
         for source, target in project.shared_data.items()
         if Path(source).is_relative_to(folder)
     }
     assert declared == wanted
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_pip_finds_the_packages_that_it_needs_beside_it(package):
+    """`pip install ./PACKAGE` takes them from the folders next to it."""
+    folder = FOLDERS[package]
+    beside = setup_file(package).constants.get("NEIGHBOURS", [])
+    assert isinstance(beside, list)
+    assert {(folder / path).resolve() for path in beside} == {
+        FOLDERS[name] for name in declared_by(package) & set(PACKAGES)
+    }
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_pip_gets_what_it_imports_and_nothing_else(project, package):
+    declared = {Requirement(line).name: line for line in project.table["project"]["dependencies"]}
+    used = imported_in(FOLDERS[package] / package) if package in MODULE_PACKAGES else set[str]()
+    wanted = {PROVIDERS[module] for module in used & PROVIDERS.keys()}
+    wanted |= READ_BY_TRIMESH if "trimesh" in used else set()
+    wanted |= ROS if "rclpy" in used else set()
+    lines = setup_file(package).constants.get("REQUIREMENTS", [])
+    assert lines == [declared[name] for name in sorted(wanted)]
 
 
 def imported_in(folder: Path) -> set[str]:
@@ -206,3 +265,12 @@ def test_what_is_declared_is_here_or_used(package):
     strange = declared_by(package) - set(PACKAGES) - used - TOOLS
     # What apt calls python3-yaml is imported by another name.
     assert {name for name in strange if not name.startswith("python3-")} == set()
+
+
+TYPED = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim")
+
+
+@pytest.mark.parametrize("package", TYPED)
+def test_type_checkers_read_the_types_of_what_programs_import(package):
+    assert (FOLDERS[package] / package / "py.typed").is_file()
+    assert "py.typed" in setup_file(package).arguments["package_data"][package]

@@ -1,21 +1,38 @@
-"""What the packages import is declared, not brought along by luck by something else."""
+"""What the packages import is declared, and what is declared is imported."""
 
 import ast
-import re
+import json
+import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
-from importlib.metadata import packages_distributions
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+INTERFACES = tomllib.loads((ROOT / "arm_interfaces/pyproject.toml").read_text())["project"]
 WHEEL = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
-PACKAGES = [ROOT / path for path in WHEEL["packages"]]
-
-
-def distribution(requirement: str) -> str:
-    return re.sub(r"[-_.]+", "-", re.split(r"[\[<>=~! ]", requirement)[0]).lower()
+PRODUCT = [ROOT / path for path in WHEEL["packages"]]
+BESIDE = [ROOT / folder for folder in ("tests", "tools", "docs", "examples")]
+READS_MESHES = {"pycollada", "networkx"}
+"""What trimesh imports for .dae and for .3mf; nothing else imports them."""
+HOSTS = {"pytest"}
+"""What loads a plugin of the suite; nobody imports the plugin where it is not installed."""
+DECLARED = {canonicalize_name(Requirement(r).name) for r in PROJECT["project"]["dependencies"]}
+EXTRAS = PROJECT["project"]["optional-dependencies"]
+OPTIONAL = {
+    "arm_sim/arm_sim/gym": "gym",
+    "arm_sim/arm_sim/dataset": "dataset",
+    "arm_sim/arm_sim/sweep": "sweep",
+}
+"""Parts of the product that need an extra, which no other part imports."""
+RUN = Path(__file__).with_name("run_without.py")
 
 
 def imported(file: Path) -> Iterator[str]:
@@ -26,20 +43,142 @@ def imported(file: Path) -> Iterator[str]:
             yield node.module.partition(".")[0]
 
 
-def test_every_distribution_that_is_imported_is_declared():
-    modules = {name for package in PACKAGES for f in package.rglob("*.py") for name in imported(f)}
-    modules -= sys.stdlib_module_names | {package.name for package in PACKAGES}
-    providers = packages_distributions()
-    declared = {distribution(each) for each in PROJECT["project"]["dependencies"]}
-    missing = {
+def modules_of(folders: Iterable[Path], but: Iterable[Path] = ()) -> set[str]:
+    files = [
+        file
+        for folder in folders
+        for file in folder.rglob("*.py")
+        if file.stem != "setup" and not any(file.is_relative_to(part) for part in but)
+    ]
+    found = {name for file in files for name in imported(file)}
+    return found - sys.stdlib_module_names - {package.name for package in PRODUCT}
+
+
+def neighbours(folders: Iterable[Path]) -> set[str]:
+    """The modules that scripts of these folders import from beside themselves."""
+    files = [file for folder in folders for file in folder.rglob("*.py")]
+    return {file.stem for file in files} | {file.parent.name for file in files}
+
+
+@cache
+def providers() -> dict[str, set[str]]:
+    """The distributions that bring each top-level module."""
+    found = packages_distributions().items()
+    return {module: {canonicalize_name(name) for name in names} for module, names in found}
+
+
+def provided_by(module: str) -> set[str]:
+    # What is one compiled file is not in the list; such a distribution has its module's name.
+    return providers().get(module, {canonicalize_name(module)})
+
+
+def is_ros(name: str) -> bool:
+    # A ROS distribution's packages come together, with the pinned ones or with a ROS installation.
+    return name.startswith(("ros-", "arm-interfaces"))
+
+
+def undeclared(modules: set[str], declared: set[str]) -> set[str]:
+    return {
         module
         for module in modules
-        if not any(is_declared(name, declared) for name in providers.get(module, []))
+        if not any(name in declared or is_ros(name) for name in provided_by(module))
     }
+
+
+def closure(requirements: Iterable[str], extras: frozenset[str] = frozenset()) -> set[str]:
+    """Return the distributions that these requirements install, by their metadata."""
+    found: set[str] = set()
+    for text in requirements:
+        requirement = Requirement(text)
+        marker = requirement.marker
+        if marker and not any(marker.evaluate({"extra": extra}) for extra in extras | {""}):
+            continue
+        name = canonicalize_name(requirement.name)
+        if name not in found:
+            found |= {name, *closure(needs_of(name), frozenset(requirement.extras))}
+    return found
+
+
+def needs_of(name: str) -> list[str]:
+    try:
+        return requires(name) or []
+    except PackageNotFoundError:
+        return []
+
+
+def test_every_distribution_that_the_product_imports_is_declared():
+    modules = modules_of(PRODUCT, but=[ROOT / part for part in OPTIONAL])
     assert {"rclpy", "mujoco"} < modules
-    assert missing == set()
+    assert undeclared(modules, DECLARED | HOSTS) == set()
 
 
-def is_declared(name: str, declared: set[str]) -> bool:
-    # A ROS distribution's packages come together, with the pinned ones or with a ROS installation.
-    return distribution(name) in declared or name.startswith(("ros-", "arm-interfaces"))
+@pytest.mark.parametrize(("part", "extra"), OPTIONAL.items())
+def test_what_an_optional_part_imports_is_in_its_extra(part: str, extra: str):
+    extras = {canonicalize_name(Requirement(each).name) for each in EXTRAS[extra]}
+    modules = modules_of([ROOT / part])
+    assert undeclared(modules, DECLARED | extras) == set()
+    assert extras <= {name for module in modules for name in provided_by(module)}
+
+
+def test_every_distribution_that_is_declared_is_imported():
+    used = {name for module in modules_of(PRODUCT) for name in provided_by(module)}
+    assert {name for name in DECLARED - used if not is_ros(name)} == READS_MESHES
+
+
+def test_what_tests_tools_and_the_manual_import_is_in_an_extra():
+    extras = {
+        canonicalize_name(Requirement(each).name)
+        for group in ("test", "docs", "dev")
+        for each in EXTRAS[group]
+    }
+    strange = modules_of(BESIDE) - neighbours(BESIDE)
+    assert undeclared(strange, DECLARED | extras) == set()
+    assert extras & DECLARED == set()
+
+
+def test_the_manual_says_what_each_dependency_is_for():
+    manual = (ROOT / "docs/start/install.md").read_text()
+    rows = [line.split("|")[1] for line in manual.splitlines() if line.startswith("| ")]
+    named = {word.strip(" ,").partition("[")[0] for row in rows for word in row.split(",")}
+    declared = {Requirement(r).name for r in PROJECT["project"]["dependencies"]}
+    assert declared - named == set()
+
+
+def test_the_extra_names_the_interfaces_of_this_checkout():
+    assert EXTRAS["interfaces"] == [f"{INTERFACES['name']}=={INTERFACES['version']}"]
+
+
+@pytest.fixture(scope="module")
+def hidden_modules() -> list[str]:
+    """The modules of this environment that nobody gets who installs the suite alone."""
+    installed = closure(PROJECT["project"]["dependencies"])
+    return sorted(
+        module
+        for module, names in providers().items()
+        if not any(name in installed or is_ros(name) or name == "arm-suite" for name in names)
+    )
+
+
+# A second on a quiet machine for each package, minutes on a busy one.
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_all_modules_and_all_mesh_files_do_without_what_is_not_declared(hidden_modules, tmp_path):
+    # Without these the test hides nothing that matters.
+    assert {"scipy", "yourdfpy", "pytest"} <= set(hidden_modules)
+    sys.path.insert(0, str(ROOT / "tests/fuzz"))
+    try:
+        from seeds import meshes
+    finally:
+        sys.path.remove(str(ROOT / "tests/fuzz"))
+    for suffix, (mesh, *_) in meshes().items():
+        (tmp_path / f"mesh{suffix}").write_bytes(mesh)
+    packages = [package.name for package in PRODUCT]
+    done = subprocess.run(
+        [sys.executable, RUN, json.dumps(hidden_modules), json.dumps(packages), tmp_path],
+        capture_output=True,
+        text=True,
+        timeout=500.0,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == sorted(f"mesh{suffix}" for suffix in meshes())

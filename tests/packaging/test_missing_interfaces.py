@@ -35,10 +35,11 @@ ARGUMENTS = {
     "arm": ["launch"],
     "spawner": ["position_controller"],
     "unspawner": ["position_controller"],
+    "ros_gz_create": ["-topic", "robot_description"],
     "hardware_spawner": ["HardwareInterface", "--activate"],
 }
 SUPERVISOR = "launch_py"
-"""Knows nothing of the interfaces, so it can only pass on what its processes say."""
+"""Does not need the interfaces itself; it passes on what its processes print."""
 
 SCRIPTS: dict[str, str] = tomllib.loads(PROJECT.read_text())["project"]["scripts"]
 

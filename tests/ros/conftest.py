@@ -18,10 +18,13 @@ import pytest
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
+QUEUE_DEPTH = 100
+"""Of a subscription: with ROS's usual 10, a test that a busy machine holds up for a tenth of a
+second would lose messages of a 100 Hz topic."""
 
 
 class Launched:
-    """A running `arm launch` and everything that it printed."""
+    """A running `arm launch` and its output."""
 
     def __init__(self, arguments: list[str], environment: dict[str, str]) -> None:
         self.lines: list[str] = []
@@ -49,7 +52,7 @@ class Launched:
 
     @property
     def output(self) -> str:
-        """All that was printed so far."""
+        """The output so far."""
         return "\n".join(self.lines)
 
     def wait_for_line(self, text: str, timeout_s: float = START_TIMEOUT_S) -> str:
@@ -57,7 +60,7 @@ class Launched:
         return self._wait_for(lambda line: text in line, f"with {text!r}", timeout_s)
 
     def wait_until_ready(self) -> None:
-        """Block until the launcher says that everything runs, not only some process."""
+        """Block until the launcher reports that everything is ready."""
         self._wait_for(lambda line: line.startswith("ready "), "'ready ...'", START_TIMEOUT_S)
 
     def _wait_for(self, fits: Callable[[str], bool], what: str, timeout_s: float) -> str:
@@ -90,7 +93,7 @@ class Launched:
         return code
 
     def close(self) -> None:
-        """Make sure that nothing stays behind, whatever the test did."""
+        """End the launch and remove what it leaves, whatever the test did."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
             try:
@@ -105,7 +108,7 @@ class Launched:
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
-    """Start `arm launch ARGUMENTS`; ended with the test at the latest."""
+    """Start `arm launch ARGUMENTS`, which ends with the test at the latest."""
     yield from _launcher(tmp_path)
 
 
@@ -113,7 +116,7 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
 def launch_for_file(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[Callable[..., Launched]]:
-    """Start `arm launch ARGUMENTS`; ended with the last test of the file at the latest."""
+    """Start `arm launch ARGUMENTS`, which ends with the last test of the file at the latest."""
     yield from _launcher(tmp_path_factory.mktemp("launch"))
 
 
@@ -145,7 +148,7 @@ class Collector:
             self.changed.notify_all()
 
     def clear(self) -> None:
-        """Forget what came so far."""
+        """Discard the messages so far."""
         with self.changed:
             self.messages.clear()
             self.arrivals_s.clear()
@@ -171,12 +174,12 @@ class Collector:
             return list(self.messages)
 
     def wait_for(self, count: int = 1, timeout_s: float = WAIT_TIMEOUT_S) -> list:
-        """Block until that many messages have come."""
+        """Block until `count` messages have arrived."""
         return self.wait_until(lambda m: len(m) >= count, f"{count} messages", timeout_s)
 
 
 class Client:
-    """A stranger's rclpy node: everything default, its executor in a thread."""
+    """An ordinary user's rclpy node: default settings, and an executor in a thread."""
 
     def __init__(self) -> None:
         import rclpy
@@ -198,7 +201,7 @@ class Client:
         while not self._stop.is_set():
             self.executor.spin_once(timeout_sec=0.05)
 
-    def subscribe(self, message_type: type, topic: str, qos: object = 10) -> Collector:
+    def subscribe(self, message_type: type, topic: str, qos: object = QUEUE_DEPTH) -> Collector:
         """Collect a topic's messages from now on."""
         collector = Collector()
         self.node.create_subscription(message_type, topic, collector, qos)
@@ -228,7 +231,7 @@ class Client:
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
-        """Call a service once it is there; return its answer."""
+        """Call a service once it is available; return its answer."""
         client = self.node.create_client(service_type, name)
         if not client.wait_for_service(timeout_sec=timeout_s):
             pytest.fail(f"no service {name} within {timeout_s} s")
@@ -236,23 +239,23 @@ class Client:
         return self.result_of(client.call_async(request), name, timeout_s)
 
     def be_known_to_readers(self, topic: str) -> None:
-        """Block until the processes that read a topic know of all that this node has."""
-        from arm_node.testing import Acquaintance
+        """Block until the readers of a topic have discovered all endpoints of this node."""
+        from arm_node.testing import DiscoveryCheck
 
-        self._make(Acquaintance(self.node, topic), topic)
+        self._complete(DiscoveryCheck(self.node, topic), topic)
 
     def be_known_to_server(self, service: str) -> None:
-        """Block until the process that serves a service knows of all that this node has."""
-        from arm_node.testing import Acquaintance
+        """Block until a service's server has discovered all endpoints of this node."""
+        from arm_node.testing import DiscoveryCheck
 
-        self._make(Acquaintance.with_server(self.node, service), service)
+        self._complete(DiscoveryCheck.with_server(self.node, service), service)
 
-    def _make(self, acquaintance: Any, name: str) -> None:
-        self.wait_until(lambda: acquaintance.complete, f"known to those behind {name}")
-        self.run(acquaintance.close, name)
+    def _complete(self, check: Any, name: str) -> None:
+        self.wait_until(lambda: check.complete, f"known to those behind {name}")
+        self.run(check.close, name)
 
     def run(self, function: Callable[[], object], what: str) -> Any:
-        """Run a function on the executor's thread; return what it returns."""
+        """Run a function on the executor's thread; return its result."""
         return self.result_of(self.executor.create_task(function), what)
 
     @staticmethod

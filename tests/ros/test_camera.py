@@ -1,4 +1,4 @@
-"""The camera process as a stranger with rclpy sees it; a few lines here play the simulation."""
+"""The camera process, as an rclpy node sees it, with a fake simulation."""
 
 import contextlib
 import os
@@ -45,7 +45,7 @@ TICK_S = 0.01
 
 
 class Simulation:
-    """A feed whose time goes on, tick by tick, in a thread."""
+    """A feed whose time advances tick by tick in a thread."""
 
     def __init__(self, feed: CameraFeed, process: CameraProcess) -> None:
         self.feed = feed
@@ -68,12 +68,12 @@ class Simulation:
 
     @property
     def child(self) -> psutil.Process:
-        """The camera process that runs now."""
+        """The running camera process."""
         assert self.process.pid is not None
         return psutil.Process(self.process.pid)
 
     def kill_child(self, number: int) -> int:
-        """End the camera process by a signal, remove its shared memory, return its id."""
+        """End the camera process with a signal, remove its shared memory and return its id."""
         child = self.child
         segments = self.segments()
         child.send_signal(number)
@@ -82,11 +82,11 @@ class Simulation:
         return child.pid
 
     def segments(self) -> set[Path]:
-        """Return the shared memory of the camera process: what was not there before it."""
+        """Return the shared memory of the camera process, which did not exist before it."""
         return segments_of(self.child) - self._foreign
 
     def replaced(self, pid: int) -> bool:
-        """Look after the camera process; return whether another one has taken its place."""
+        """Supervise the camera process once; return whether it has been replaced."""
         self.feed.supervise()
         return self.process.pid not in (None, pid)
 
@@ -115,7 +115,7 @@ Simulate = Callable[..., Simulation]
 
 @pytest.fixture
 def simulate() -> Iterator[Simulate]:
-    """Start a simulation with one camera; ended with the test at the latest."""
+    """Start a simulation with one camera, which ends with the test at the latest."""
     running: list[Simulation] = []
 
     def start(sensor: CameraSensor = SENSOR, environ: dict | None = None, **options) -> Simulation:
@@ -152,7 +152,7 @@ def red_centre(picture: np.ndarray) -> tuple[float, float]:
     return float(columns.mean()) + 0.5, float(rows.mean()) + 0.5
 
 
-def test_the_intrinsics_say_where_the_ball_is_in_the_picture(simulate, client):
+def test_the_intrinsics_project_the_ball_to_its_pixels(simulate, client):
     from sensor_msgs.msg import CameraInfo, Image
 
     simulate()
@@ -167,7 +167,7 @@ def test_the_intrinsics_say_where_the_ball_is_in_the_picture(simulate, client):
     assert red_centre(pixels(image)) == pytest.approx((u / w, v / w), abs=1.0)
 
 
-def test_every_picture_has_an_info_of_the_same_time_on_every_topic(simulate, client):
+def test_every_picture_has_a_camera_info_with_the_same_stamp_on_every_topic(simulate, client):
     from sensor_msgs.msg import CameraInfo, Image
 
     simulate()
@@ -175,10 +175,11 @@ def test_every_picture_has_an_info_of_the_same_time_on_every_topic(simulate, cli
     topics = [client.subscribe(CameraInfo, name) for name in names]
     images = client.subscribe(Image, "/camera/image_raw")
     stamps = [stamp_s(image) for image in images.wait_for(10)]
-    for infos in topics:
-        infos.wait_until(
+    for topic in topics:
+        infos = topic.wait_until(
             lambda m: set(stamps[-3:]) <= {stamp_s(info) for info in m}, "infos of the pictures"
         )
+        assert len({stamp_s(info) for info in infos}) == len(infos)
 
 
 def test_stamps_are_those_of_the_ticks_at_which_frames_are_due(simulate, client):
@@ -210,7 +211,7 @@ def test_best_effort_subscribers_get_large_noisy_pictures(simulate, client):
     assert noise == pytest.approx(np.sqrt(2 * ((0.007 * 255) ** 2 + 1 / 12)), rel=0.05)
 
 
-def test_compressed_pictures_show_the_same(simulate, client):
+def test_compressed_pictures_show_the_same_image(simulate, client):
     import cv2
     from sensor_msgs.msg import CompressedImage, Image
 
@@ -225,7 +226,7 @@ def test_compressed_pictures_show_the_same(simulate, client):
     assert len(compressed.data) < len(image.data) / 5
 
 
-def test_without_a_viewer_infos_flow_and_nothing_is_rendered(simulate, client):
+def test_without_subscribers_camera_infos_are_published_and_nothing_is_rendered(simulate, client):
     from diagnostic_msgs.msg import DiagnosticArray
     from sensor_msgs.msg import CameraInfo
 
@@ -235,7 +236,7 @@ def test_without_a_viewer_infos_flow_and_nothing_is_rendered(simulate, client):
     assert values(report)["frames rendered"] == "0"
     assert values(report)["backend"] == "none"
     assert report.status[0].level == b"\x00"
-    assert report.status[0].message == "nobody is looking"
+    assert report.status[0].message == "no subscribers"
 
 
 def test_diagnostics_tell_rate_backend_and_viewers(simulate, client):
@@ -271,24 +272,27 @@ def test_a_simulation_too_fast_for_the_camera_is_a_warning(simulate, client):
     assert "of 500 Hz" in reports[-1].status[0].message
 
 
-def test_the_namespace_is_the_simulations(simulate, client):
+def test_the_cameras_are_in_the_simulation_s_namespace(simulate, client):
     from sensor_msgs.msg import CameraInfo
 
     simulate(ros_arguments=("-r", "__ns:=/lab"))
-    client.subscribe(CameraInfo, "/lab/videocamera/camera_info").wait_for(1)
+    (info, *_) = client.subscribe(CameraInfo, "/lab/videocamera/camera_info").wait_for(1)
+    assert info.width > 0
+    assert client.node.count_publishers("/videocamera/camera_info") == 0
 
 
 @pytest.mark.parametrize("profile", ["dds_images.xml", "dds_images_small.xml"])
-def test_pictures_come_through_either_profile(simulate, client, profile):
+def test_pictures_arrive_with_either_profile(simulate, client, profile):
     from sensor_msgs.msg import Image
 
     file = Path(sys.prefix) / "share/arm_gazebo/config" / profile
     simulate(environ={"FASTRTPS_DEFAULT_PROFILES_FILE": str(file)})
-    client.subscribe(Image, "/videocamera").wait_for(5)
+    pictures = client.subscribe(Image, "/videocamera").wait_for(5)
+    assert all(len(picture.data) == picture.step * picture.height > 0 for picture in pictures)
 
 
 @pytest.mark.gl
-def test_a_crash_while_drawing_is_followed_by_the_next_backend(simulate, client):
+def test_after_a_crash_while_drawing_the_next_backend_is_used(simulate, client):
     from diagnostic_msgs.msg import DiagnosticArray
     from sensor_msgs.msg import Image
 
@@ -307,7 +311,7 @@ def test_a_crash_while_drawing_is_followed_by_the_next_backend(simulate, client)
     assert values(reports[-1])["backend"] == "raycast"
 
 
-def test_a_killed_process_is_started_again(simulate, client):
+def test_a_killed_camera_process_is_restarted(simulate, client):
     from sensor_msgs.msg import CameraInfo
 
     simulation = simulate()
@@ -320,7 +324,7 @@ def test_a_killed_process_is_started_again(simulate, client):
     assert simulation.process.settings.excluded == ()
 
 
-def test_the_end_leaves_no_process_and_no_shared_memory(simulate, client):
+def test_stopping_leaves_no_process_and_no_shared_memory(simulate, client):
     from sensor_msgs.msg import Image
 
     simulation = simulate()
@@ -333,7 +337,7 @@ def test_the_end_leaves_no_process_and_no_shared_memory(simulate, client):
     assert not [segment for segment in segments if segment.exists()]
 
 
-def test_the_process_ends_with_a_simulation_that_is_killed():
+def test_the_camera_process_ends_with_a_killed_simulation():
     parent = subprocess.Popen(
         [
             *(sys.executable, "-c"),
@@ -361,7 +365,7 @@ def test_the_process_ends_with_a_simulation_that_is_killed():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--socket", "0", "--parent", "1", "--settings", "{}"], "not the settings"),
+        (["--socket", "0", "--parent", "1", "--settings", "{}"], "not settings of a camera"),
         (
             ["--socket", "0", "--parent", "1", "--settings", '{"cameras":[],"excluded":[]}'],
             "has ended",
@@ -369,7 +373,7 @@ def test_the_process_ends_with_a_simulation_that_is_killed():
         ([], "--socket"),
     ],
 )
-def test_started_by_hand_it_says_why_it_does_not_run(arguments, said):
+def test_a_camera_process_started_by_hand_explains_why_it_does_not_run(arguments, said):
     run = subprocess.run(
         [sys.executable, "-m", "arm_gazebo.camera_node", *arguments],
         stdin=subprocess.DEVNULL,

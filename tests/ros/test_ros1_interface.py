@@ -1,6 +1,8 @@
 """The arm as it was in ROS 1: a controller for each joint, everything under /arm."""
 
 import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -40,7 +42,7 @@ def test_four_topics_move_the_arm_and_states_come_at_50_hz(launch, client):
     assert periods.min() == 1
 
 
-def test_the_originals_node_goes_beyond_a_limit_and_is_warned_once(launch, client):
+def test_the_original_s_node_exceeds_a_limit_and_gets_one_warning(launch, client):
     from controller_manager_msgs.srv import ListControllers
     from sensor_msgs.msg import JointState
 
@@ -54,7 +56,9 @@ def test_the_originals_node_goes_beyond_a_limit_and_is_warned_once(launch, clien
     }
 
     states = client.subscribe(JointState, "/arm/joint_states")
-    node = launch("arm_controller", "arm_controller_node.launch.py", "interface:=ros1")
+    node = launch(
+        *("arm_controller", "arm_controller_node.launch.py"), "interface:=ros1", "replace:=true"
+    )
     node.wait_for_line("Publishing positions: [-5.000000, 0.500000, -1.200000, -1.000000]")
     states.wait_until(
         lambda m: bool(m) and is_at(m[-1], [LIMIT, *ORIGINAL_POSE[1:]]), "the arm is folded"
@@ -64,3 +68,52 @@ def test_the_originals_node_goes_beyond_a_limit_and_is_warned_once(launch, clien
     assert simulation.stop(signal.SIGINT) == 0
     warning = "joint 'j0': position command -5 rad is beyond its limit of -2.57 rad"
     assert simulation.output.count(warning) == 1
+
+
+def test_the_side_camera_is_on_the_topics_of_ros_1(launch, client):
+    from sensor_msgs.msg import CameraInfo, Image
+
+    launch("arm_gazebo", "arm_world.launch.py", "interface:=ros1").wait_until_ready()
+    (image, *_) = client.subscribe(Image, "/camera/image_raw").wait_for(1)
+    assert (image.width, image.height) == (800, 800)
+    (info, *_) = client.subscribe(CameraInfo, "/camera/camera_info").wait_for(1)
+    assert (info.width, info.height) == (800, 800)
+    assert info.k[0] == pytest.approx(400.0 / np.tan(1.3962634 / 2.0))
+
+
+def test_arm_control_finds_the_manager_of_ros_1_by_itself(launch):
+    launch("interface:=ros1", "camera:=none").wait_until_ready()
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_cli", "control", "list_controllers"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60.0,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "j0p_controller" in done.stdout
+    assert done.stderr == "there is no /controller_manager: asking /arm/controller_manager\n"
+
+
+def test_several_managers_are_named(launch, tmp_path):
+    from arm_description.resources import find_package
+
+    file = find_package("arm_description") / "urdf" / "arm.urdf.xacro"
+    robots = tmp_path / "robots.yaml"
+    model_args = {side: f"camera:=none prefix:={side}_" for side in ("left", "right")}
+    robots.write_text(
+        "".join(f"{s}: {{model: {file}, model_args: '{w}'}}\n" for s, w in model_args.items())
+    )
+    launch("arm_gazebo", "sim.launch.py", f"robots:={robots}").wait_until_ready()
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_cli", "control", "list_controllers"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60.0,
+    )
+    assert done.returncode == 1
+    assert done.stderr == (
+        "arm control list_controllers: there is no /controller_manager, but there are "
+        "/left/controller_manager, /right/controller_manager: choose one with -c\n"
+    )

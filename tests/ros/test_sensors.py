@@ -141,7 +141,7 @@ def common(first, second) -> list:
     return [pair for pair in pairs if pair[1] is not None]
 
 
-def test_imu_and_broadcaster_tell_the_same_of_the_same_state(lab, client):
+def test_the_imu_and_its_broadcaster_publish_the_same_state(lab, client):
     from sensor_msgs.msg import Imu
 
     own = client.subscribe(Imu, "/imu/data")
@@ -156,7 +156,7 @@ def test_imu_and_broadcaster_tell_the_same_of_the_same_state(lab, client):
     assert {stamp_ns(m) % 20_000_000 for m in own.messages} == {0}
 
 
-def test_a_force_torque_sensor_bears_the_arm(lab, client):
+def test_a_force_torque_sensor_measures_the_weight_of_the_arm(lab, client):
     from geometry_msgs.msg import WrenchStamped
 
     for topic, frame in (("/wrist", "arm"), ("/ft_broadcaster/wrench", "tool")):
@@ -173,7 +173,7 @@ def test_a_force_torque_sensor_bears_the_arm(lab, client):
         ("/ranger", "/ranger/camera_info", 32),
     ],
 )
-def test_distances_are_in_metres_and_come_with_their_camera_info(lab, client, topic, info, width):
+def test_depth_is_in_metres_and_comes_with_its_camera_info(lab, client, topic, info, width):
     from sensor_msgs.msg import CameraInfo, Image
 
     images, infos = client.subscribe(Image, topic), client.subscribe(CameraInfo, info)
@@ -187,7 +187,7 @@ def test_distances_are_in_metres_and_come_with_their_camera_info(lab, client, to
     assert depth[0, 0] == np.inf
 
 
-def test_points_have_place_and_colour(lab, client):
+def test_points_have_position_and_colour(lab, client):
     from sensor_msgs.msg import Image, PointCloud2
 
     clouds = client.subscribe(PointCloud2, "/front/points")
@@ -214,7 +214,7 @@ def test_a_plain_camera_beside_them_has_its_own_size_and_rate(lab, client):
     assert {stamp_ns(image) % 50_000_000 for image in images} == {0}
 
 
-def test_contact_is_told_when_the_arm_comes_down(lab, client):
+def test_contact_is_published_when_the_arm_touches_down(lab, client):
     from geometry_msgs.msg import WrenchStamped
     from std_msgs.msg import Bool, Float64MultiArray
 

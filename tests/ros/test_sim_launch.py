@@ -1,4 +1,4 @@
-"""`arm launch arm_gazebo sim.launch.py`: robots that this suite has never seen."""
+"""`arm launch arm_gazebo sim.launch.py` with robots that are unknown to this suite."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ JOINTS = f"""
 
 @pytest.fixture
 def bare(tmp_path):
-    """The file of a robot that says nothing about its hardware."""
+    """The file of a robot without a <ros2_control> block."""
     model = tmp_path / "bare.urdf"
     model.write_text(f'<robot name="bare">{FRAME}{JOINTS}</robot>')
     return model
@@ -52,21 +52,63 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
     )
     launched.wait_until_ready()
     launched.wait_for_line("plugin 'p' in lab.sdf (line 1): it is not simulated")
-    launched.wait_for_line("one is made up that commands shoulder, elbow")
+    remark = "world lab: 1 thing is left out: plugin 'p' in lab.sdf"
+    launched.wait_for_line(f"[arm_gazebo]: {remark}")
+    launched.wait_for_line(f"arm_gazebo_node: {remark}")
+    launched.wait_for_line("a default one commands shoulder, elbow")
     states = client.subscribe(JointState, "/left/joint_states")
     commands = client.publisher(Float64MultiArray, "/left/position_controller/commands")
     commands.publish(Float64MultiArray(data=[0.5, -0.5]))
     goal = {"shoulder": 0.5, "elbow": -0.5}
-    states.wait_until(
+    reached = states.wait_until(
         lambda m: (
             bool(m) and np.allclose(m[-1].position, [goal[name] for name in m[-1].name], atol=0.005)
         ),
         "the pose is reached",
     )
+    assert set(reached[-1].name) == goal.keys()
 
 
-def test_a_mast_shows_what_its_camera_sees(launch, client, tmp_path):
-    """Nothing on it moves, so no controller is needed."""
+def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
+    launch, client, tmp_path
+):
+    from std_msgs.msg import String
+
+    from arm_description import ResourceFinder
+
+    package = tmp_path / "arm_description"
+    (package / "meshes").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>arm_description</name></package>")
+    (package / "meshes/wedge.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    )
+    uris = ("package://arm_description/meshes/wedge.obj", "meshes/wedge.obj")
+    shapes = "".join(
+        f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in uris
+    )
+    (package / "bare.urdf").write_text(
+        f'<robot name="bare">{FRAME}{JOINTS}</robot>'.replace(
+            '<link name="upper"/>', f'<link name="upper">{shapes}</link>'
+        )
+    )
+    launched = launch(
+        "arm_gazebo", "sim.launch.py", f"model:={package / 'bare.urdf'}", "strict:=true"
+    )
+    launched.wait_until_ready()
+    description = client.subscribe(String, "/robot_description", latched()).wait_for(1)[-1].data
+    finder = ResourceFinder.of_description(description)
+    assert {finder.find(uri) for uri in uris} == {package / "meshes/wedge.obj"}
+
+
+def latched():
+    """Return the QoS of a description."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def test_a_mast_s_camera_publishes_pictures(launch, client, tmp_path):
+    """Nothing on the mast moves, so it needs no controller."""
     from sensor_msgs.msg import Image
 
     mast = tmp_path / "mast.urdf"
@@ -89,10 +131,12 @@ controller_manager:
     states: {type: joint_state_broadcaster/JointStateBroadcaster}
     force: {type: force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster}
     gripper: {type: position_controllers/JointGroupPositionController}
-    arm: {type: position_controllers/JointGroupPositionController}
 force: {ros__parameters: {sensor_name: only_real, frame_id: lower}}
 gripper: {ros__parameters: {joints: [finger]}}
-arm: {ros__parameters: {joints: [shoulder, elbow]}}
+arm:
+  ros__parameters:
+    type: position_controllers/JointGroupPositionController
+    joints: [shoulder, elbow]
 """
 
 
@@ -104,7 +148,7 @@ def foreign(tmp_path):
     return file
 
 
-def test_what_cannot_start_on_this_robot_is_left_out(launch, client, bare, foreign):
+def test_controllers_that_do_not_fit_the_robot_are_left_out(launch, client, bare, foreign):
     from controller_manager_msgs.srv import ListControllers
 
     launched = launch("arm_gazebo", "sim.launch.py", f"model:={bare}", f"controllers:={foreign}")
@@ -116,7 +160,7 @@ def test_what_cannot_start_on_this_robot_is_left_out(launch, client, bare, forei
     assert {c.name for c in listed if c.state == "active"} == {"states", "arm"}
 
 
-def test_what_is_named_has_to_start(launch, bare, foreign):
+def test_a_named_controller_must_start(launch, bare, foreign):
     launched = launch(
         *("arm_gazebo", "sim.launch.py", f"model:={bare}"),
         *(f"controllers:={foreign}", "spawn:=states,force"),
@@ -126,7 +170,7 @@ def test_what_is_named_has_to_start(launch, bare, foreign):
     assert "'only_real/force.x' is not available" in launched.output
 
 
-def test_two_robots_in_one_world_do_not_hear_each_other(launch, client, tmp_path):
+def test_two_robots_in_one_world_do_not_affect_each_other(launch, client, tmp_path):
     from controller_manager_msgs.srv import ListControllers
     from sensor_msgs.msg import JointState
     from std_msgs.msg import Float64MultiArray
@@ -159,7 +203,7 @@ def test_two_robots_in_one_world_do_not_hear_each_other(launch, client, tmp_path
     assert claimed == {"right_shoulder/position", "right_elbow/position"}
 
 
-def test_a_model_that_is_no_robot_is_a_sentence(launch, tmp_path):
+def test_a_model_that_is_not_a_robot_is_reported(launch, tmp_path):
     model = tmp_path / "two.urdf"
     model.write_text('<robot name="two"><link name="a"/>\n<link name="b"/></robot>')
     launched = launch("arm_gazebo", "sim.launch.py", f"model:={model}")

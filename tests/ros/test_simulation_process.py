@@ -1,4 +1,4 @@
-"""A start that fails somewhere on its way ends what it had begun."""
+"""A start that fails midway stops what it has started."""
 
 import subprocess
 import sys
@@ -29,7 +29,7 @@ print(code, threads, psutil.Process().children())
 def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A file that makes the simulation of the arm with its front camera."""
     from arm_description.resources import resolve_uri
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.xacro.expansion import expand_xacro
 
     arm = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")
     path = tmp_path_factory.mktemp("simulation") / "parameters.yaml"
@@ -42,11 +42,11 @@ def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     "broken",
     [
         "arm_gazebo.physics.simulation.Simulation.__init__",
-        "arm_control.ros.controller_manager_server.ControllerManagerServer.__init__",
+        "arm_control.manager.ros.controller_manager_server.ControllerManagerServer.__init__",
         "arm_gazebo.camera.feed.CameraFeed.start",
     ],
 )
-def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):
+def test_a_failed_start_ends_the_loop_and_the_cameras(parameters, broken):
     run = subprocess.run(
         [
             *(sys.executable, "-c", PROGRAM, broken),
@@ -62,7 +62,7 @@ def test_a_start_that_fails_ends_loop_and_cameras(parameters, broken):
     assert run.returncode == 0
 
 
-def test_a_robot_without_hardware_is_refused_with_what_it_lacks(tmp_path):
+def test_a_robot_without_hardware_is_refused_with_the_reason(tmp_path):
     path = tmp_path / "parameters.yaml"
     settings = {"robot_description": "<robot name='bare'><link name='base'/></robot>"}
     path.write_text(yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}}))

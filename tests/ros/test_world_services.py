@@ -1,4 +1,4 @@
-"""Things come, move and go in a running simulation, and the arm does not notice."""
+"""Entities are spawned, moved and deleted in a running simulation without affecting the arm."""
 
 import signal
 import subprocess
@@ -57,7 +57,7 @@ class Simulator:
         return self._answer(service, type_.Request(**fields), 30.0)
 
     def ask(self, service: str, **fields) -> Any:
-        """Return the future of an answer that is long in coming."""
+        """Return the future of an answer that takes long."""
         type_ = getattr(self._types, service)
         if service not in self._clients:
             self._clients[service] = self._matched(service, type_)
@@ -129,7 +129,7 @@ class Simulator:
 def arm(tmp_path_factory):
     """Run the simulation of the arm with its camera, its forearm held up."""
     from arm_description.resources import resolve_uri
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.xacro.expansion import expand_xacro
 
     folder = tmp_path_factory.mktemp("arm")
     xacro = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
@@ -158,7 +158,7 @@ def simulator(arm, client) -> Simulator:
     return Simulator(client)
 
 
-def test_the_arm_holds_while_things_come_move_and_go(simulator, client):
+def test_the_arm_holds_while_entities_are_spawned_moved_and_deleted(simulator, client):
     from sensor_msgs.msg import JointState
 
     states = client.subscribe(JointState, "/joint_states")
@@ -175,7 +175,15 @@ def test_the_arm_holds_while_things_come_move_and_go(simulator, client):
     assert np.all(np.diff([stamp_s(message) for message in states.messages]) > 0)
 
 
-def test_what_is_spawned_is_seen_by_the_camera(simulator, client):
+@pytest.mark.parametrize("node", ["simulation", "arm_gazebo", "controller_manager"])
+def test_every_node_has_parameters(arm, client, node):
+    from rcl_interfaces.srv import ListParameters
+
+    answer = client.call(ListParameters, f"/{node}/list_parameters", ListParameters.Request())
+    assert "use_sim_time" in answer.result.names
+
+
+def test_the_camera_sees_a_spawned_entity(simulator, client):
     from sensor_msgs.msg import Image
 
     def red(message: Image) -> float:
@@ -188,7 +196,8 @@ def test_what_is_spawned_is_seen_by_the_camera(simulator, client):
     simulator.spawn("wall", WALL, 0.0, -6.0, 0.0)
     pictures.wait_until(lambda m: red(m[-1]) > 0.1, "the red wall")
     simulator.delete("wall")
-    pictures.wait_until(lambda m: red(m[-1]) < 0.01, "no wall any more")
+    seen = pictures.wait_until(lambda m: red(m[-1]) < 0.01, "no wall any more")
+    assert red(seen[-1]) < 0.01
 
 
 def test_markers_show_the_world(simulator, client):
@@ -219,7 +228,7 @@ def test_markers_show_the_world(simulator, client):
     )
 
 
-def test_time_stands_still_and_goes_on_by_steps(simulator, client):
+def test_time_stops_and_advances_by_steps(simulator, client):
     from simulation_interfaces.msg import SimulationState
 
     simulator.spawn("crate", CRATE, 3.0, 3.0, 2.0)
@@ -237,7 +246,7 @@ def test_time_stands_still_and_goes_on_by_steps(simulator, client):
     simulator.delete("crate")
 
 
-def test_a_long_run_of_steps_hears_whoever_ends_it(simulator, client):
+def test_a_long_run_of_steps_can_be_cancelled(simulator, client):
     from simulation_interfaces.msg import SimulationState
 
     simulator.go_to(SimulationState.STATE_PAUSED)
@@ -251,7 +260,7 @@ def test_a_long_run_of_steps_hears_whoever_ends_it(simulator, client):
     simulator.go_to(SimulationState.STATE_PLAYING)
 
 
-def test_the_arm_goes_on_in_another_world(simulator, client):
+def test_the_arm_continues_in_another_world(simulator, client):
     from sensor_msgs.msg import JointState
     from simulation_interfaces.msg import Resource, SimulationState
 
@@ -265,7 +274,7 @@ def test_the_arm_goes_on_in_another_world(simulator, client):
     assert np.abs(held - [0.0, 0.5, 0.5, 0.0]).max() < 0.005
 
 
-def test_nonsense_is_refused_with_a_sentence(simulator):
+def test_invalid_requests_are_refused_with_a_sentence(simulator):
     from simulation_interfaces.msg import EntityFilters, EntityState, Resource
 
     for service, fields in (
@@ -284,7 +293,7 @@ def test_nonsense_is_refused_with_a_sentence(simulator):
 
 
 def nowhere():
-    """Return a state whose pose is no number."""
+    """Return a state whose pose is not a number."""
     from simulation_interfaces.msg import EntityState
 
     state = EntityState()

@@ -5,11 +5,12 @@ import os
 import pytest
 import yaml
 
+from arm_cli.main import main
 from launch_py.errors import LaunchError
-from launch_py.expansion import expand_description
+from launch_py.launch_description import expand_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.packages import Packages
-from launch_py.plan import GeneratedFile, ProcessStep
+from launch_py.plan.steps import GeneratedFile, ProcessStep
+from launch_py.system.packages import Packages
 
 
 def simulation(gz_args: str) -> dict:
@@ -35,7 +36,7 @@ def test_a_world_may_be_named_with_or_without_the_word_to_run(gz_args, world):
     assert simulation(gz_args)["world"] == world
 
 
-def test_there_is_nobody_in_it_but_a_camera():
+def test_its_only_robot_is_a_camera():
     parameters = simulation("shapes.sdf")
 
     assert parameters["spawn"] == ""
@@ -43,5 +44,11 @@ def test_there_is_nobody_in_it_but_a_camera():
 
 
 def test_a_word_that_means_nothing_is_refused():
-    with pytest.raises(LaunchError, match="gz_args has '--gravity'; the words known are"):
+    with pytest.raises(LaunchError, match="gz_args has '--gravity'; it takes"):
         simulation("--gravity shapes.sdf")
+
+
+def test_the_arguments_of_the_simulation_are_its_own_too(capsys):
+    line = ["launch", "ros_gz_sim", "gz_sim.launch.py", "gz_args:=-r house.world", "--print"]
+    assert main([*line, "viewer:=true"]) == 0
+    assert "\narm_viewer_node\n" in capsys.readouterr().out

@@ -5,10 +5,10 @@ import os
 import pytest
 import yaml
 
-from launch_py.expansion import expand_description
+from launch_py.launch_description import expand_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.packages import Packages
-from launch_py.plan import GeneratedFile, ProcessStep
+from launch_py.plan.steps import GeneratedFile, ProcessStep
+from launch_py.system.packages import Packages
 
 SLIDERS = "joint_state_publisher_gui"
 FILE = ("yahboom_rosmaster_description", "robot_state_publisher.launch.py")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-from arm_control.hardware_info import parse_hardware_info
+from arm_control.hardware.info import parse_hardware_info
 from arm_description import (
     Cylinder,
     Robot,

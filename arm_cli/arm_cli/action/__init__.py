@@ -1,1 +1,1 @@
-"""The verbs of `arm action`."""
+"""`arm action send_goal` and its ROS half."""

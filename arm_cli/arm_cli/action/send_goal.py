@@ -5,16 +5,18 @@ import sys
 from contextlib import closing
 from typing import TYPE_CHECKING
 
-from arm_cli.errors import UsageError
+from arm_cli.command_parser import positive_number
+from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.output import complain, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with
-from launch_py.near_names import describe_known
+from arm_node.names import describe_known
 
 if TYPE_CHECKING:
-    from arm_cli.ros.goal import GoalSender
-    from arm_cli.ros.session import Session
+    from arm_cli.action.ros_goal import GoalSender
+    from arm_cli.ros.session import CommandSession
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,16 +28,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action_type", help="such as control_msgs/action/GripperCommand")
     parser.add_argument("goal", nargs="?", default="", help="fields of the goal as YAML")
     parser.add_argument("--stdin", action="store_true", help="read the goal from stdin")
-    parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback, too")
+    parser.add_argument("-f", "--feedback", action="store_true", help="also print the feedback")
+    parser.add_argument(
+        "--timeout",
+        type=positive_number,
+        metavar="SECONDS",
+        help="how long to wait for a server, and how long a goal may take before it is cancelled",
+    )
 
 
 def run(options: argparse.Namespace) -> None:
-    """Send the goal, print what becomes of it; Ctrl-C cancels it.
+    """Send the goal and print its progress and result; Ctrl-C cancels it.
 
     Raises:
-        NotFoundError: there is no such type.
-        UsageError: the action has another type.
+        NoSuchNameError: there is no such type.
+        CommandUsageError: the action has another type.
         MessageError: the values do not fit the goal.
+        UnansweredError: there is no server, or no result, within `--timeout`.
     """
     type_ = InterfaceIndex().find(options.action_type, ("action",))
     from arm_cli.messages.filling import fill_message, read_yaml
@@ -44,29 +53,33 @@ def run(options: argparse.Namespace) -> None:
     text = sys.stdin.read() if options.stdin else options.goal
     filled = fill_message(class_.Goal(), read_yaml(text, f"{type_.full_name} goal"))
     for note in filled.notes:
-        print(f"arm action send_goal: {note}", file=sys.stderr)
+        complain(f"arm action send_goal: {note}")
     with connect() as session:
-        from arm_cli.ros.goal import GoalSender
+        from arm_cli.action.ros_goal import GoalSender
 
         with closing(GoalSender(session, class_, session.full_name(options.action_name))) as sender:
-            _wait_for_server(session, sender, type_.full_name)
-            sender.send(filled, options.feedback)
+            _wait_for_server(session, sender, type_.full_name, options.timeout)
+            sender.wait_until_known()
+            sender.send(filled, options.feedback, options.timeout)
 
 
-def _wait_for_server(session: "Session", sender: "GoalSender", type_name: str) -> None:
+def _wait_for_server(
+    session: "CommandSession", sender: "GoalSender", type_name: str, timeout_s: float | None
+) -> None:
     from arm_cli.ros.graph import Graph
 
     graph = Graph(session)
-    print("Waiting for an action server to become available...")
+    say("Waiting for an action server to become available...")
 
     def ready() -> bool:
         others = graph.offered_action_types(sender.name)
         if others and type_name not in others:
-            raise UsageError(f"{sender.name} is a {', '.join(others)}, not a {type_name}")
+            raise CommandUsageError(f"{sender.name} is a {', '.join(others)}, not a {type_name}")
         return sender.is_ready()
 
     def notice() -> str:
         near = describe_known(sender.name, [n for n in graph.actions() if n != sender.name])
         return f"no server of {sender.name} yet{f'; {near}' if near.startswith('did') else ''}"
 
-    session.wait_until(ready, notice)
+    if not session.wait_until(ready, notice, timeout_s):
+        raise UnansweredError(f"action {sender.name} has no server (waited {timeout_s:g} s)")

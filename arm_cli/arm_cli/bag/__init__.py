@@ -1,1 +1,1 @@
-"""Recordings in rosbag2's layout: written, read and described. Knows no rclpy."""
+"""Bags in rosbag2's layout, and the verbs of `arm bag`."""

@@ -1,4 +1,4 @@
-"""What stands in a bag's metadata.yaml."""
+"""The content of a bag's metadata.yaml."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +9,7 @@ from arm_cli.bag.yaml_text import dump_yaml, load_yaml
 from arm_cli.errors import BagError
 
 VERSION = 9
-"""As ROS 2 Jazzy writes it: policies by name."""
+"""The version that ROS 2 Jazzy writes, with QoS policies by name."""
 ROOT = "rosbag2_bagfile_information"
 FILE_NAME = "metadata.yaml"
 STORAGE = "mcap"
@@ -17,11 +17,11 @@ STORAGE = "mcap"
 
 @dataclass(frozen=True, slots=True)
 class TimeSpan:
-    """From the first message to the last; both None without one.
+    """The times of the first and the last message, None without a message.
 
     Attributes:
         start_ns: since the epoch, or in simulation time.
-        end_ns: the same.
+        end_ns: as `start_ns`.
     """
 
     start_ns: int | None = None
@@ -29,17 +29,17 @@ class TimeSpan:
 
     @property
     def duration_ns(self) -> int:
-        """Its length, 0 without a message."""
+        """The duration, 0 without a message."""
         return 0 if self.start_ns is None or self.end_ns is None else self.end_ns - self.start_ns
 
     def with_time(self, time_ns: int) -> "TimeSpan":
-        """Return the span that holds a time, too."""
+        """Return the span extended to a time."""
         if self.start_ns is None or self.end_ns is None:
             return TimeSpan(time_ns, time_ns)
         return TimeSpan(min(self.start_ns, time_ns), max(self.end_ns, time_ns))
 
     def joined(self, other: "TimeSpan") -> "TimeSpan":
-        """Return the span that holds both."""
+        """Return the span of both."""
         span = self
         for time_ns in (other.start_ns, other.end_ns):
             span = span if time_ns is None else span.with_time(time_ns)
@@ -48,7 +48,7 @@ class TimeSpan:
 
 @dataclass(frozen=True, slots=True)
 class BagFileInfo:
-    """One of a bag's files: its name, the time and the number of its messages."""
+    """One file of a bag: its name, and the time span and number of its messages."""
 
     name: str
     span: TimeSpan
@@ -57,14 +57,14 @@ class BagFileInfo:
 
 @dataclass(frozen=True, slots=True)
 class BagMetadata:
-    """Everything about a bag but its messages.
+    """Everything about a bag except its messages.
 
     Attributes:
-        files: in the order of their messages.
-        topics: topics and how many messages they have.
-        ros_distro: the ROS that recorded it.
-        storage: format of the files.
-        compression_mode: of whole files, by rosbag2; empty is none.
+        files: the files in the order of their messages.
+        topics: the topics, each with its number of messages.
+        ros_distro: the ROS distribution that recorded the bag.
+        storage: the format of the files.
+        compression_mode: how rosbag2 compressed whole files; empty if it did not.
     """
 
     files: tuple[BagFileInfo, ...]
@@ -75,7 +75,7 @@ class BagMetadata:
 
     @property
     def span(self) -> TimeSpan:
-        """The time of all messages."""
+        """The time span of all messages."""
         span = TimeSpan()
         for file in self.files:
             span = span.joined(file.span)
@@ -91,7 +91,7 @@ class BagMetadata:
         return dump_yaml({ROOT: self.to_plain()})
 
     def to_plain(self) -> dict[str, Any]:
-        """Return what stands in it below its root."""
+        """Return the content of metadata.yaml below its root key."""
         return {
             "version": VERSION,
             "storage_identifier": self.storage,
@@ -118,14 +118,14 @@ class BagMetadata:
 
 
 def read_metadata(text: str, where: str) -> BagMetadata:
-    """Return the metadata of a metadata.yaml, of any version up to 9.
+    """Return the metadata in a metadata.yaml of any version up to 9.
 
     Args:
-        text: its content.
-        where: its path, for messages.
+        text: the content of the file.
+        where: the path of the file, for error messages.
 
     Raises:
-        BagError: it is none.
+        BagError: the text is not the metadata of a bag.
     """
     try:
         plain = load_yaml(text)[ROOT]
@@ -142,7 +142,7 @@ def read_metadata(text: str, where: str) -> BagMetadata:
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise BagError(f"{where} is no metadata of a bag ({reason})") from error
+        raise BagError(f"{where} does not hold a bag's metadata ({reason})") from error
 
 
 def _span_to_plain(span: TimeSpan) -> dict[str, Any]:

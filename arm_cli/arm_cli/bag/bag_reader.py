@@ -1,37 +1,43 @@
-"""A bag that is there: a folder with MCAP files, or one such file alone."""
+"""Reads a bag: a folder with MCAP files, or a single MCAP file."""
 
+import os
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 
 from arm_cli.bag.bag_metadata import FILE_NAME, STORAGE, BagMetadata, read_metadata
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag.mcap_file_reader import McapFileReader
 from arm_cli.errors import BagError
+from arm_node.user_file import read_text
 
 
 class BagReader:
     """Reads a bag; a context manager that closes it.
 
-    The files themselves say what is in them: metadata.yaml of a recorder that was killed is older
-    than its last messages.
+    The metadata come from the files themselves, because the metadata.yaml of a recorder that was
+    killed is older than the last messages.
 
     Attributes:
-        path: of the folder or file.
-        metadata: everything about it but its messages.
-        unfinished: names of the files whose writer did not come to the end.
-        size_bytes: of all files.
+        path: the path of the folder or file.
+        metadata: everything about the bag except its messages.
+        unfinished: the names of the files that their writer did not finish.
+        size_bytes: the total size of the files.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, by_metadata: bool = True) -> None:
         """Open all files.
+
+        Args:
+            path: the path of the folder or file.
+            by_metadata: whether to open the files that metadata.yaml lists, or all MCAP files.
 
         Raises:
             BagError: there is no bag, or it cannot be read; the message says why.
         """
         self.path = path
-        paths, ros_distro = _parts(path)
+        paths, ros_distro = _parts(path, by_metadata)
         with ExitStack() as opening:
             files = [opening.enter_context(closing(McapFileReader(part))) for part in paths]
             self._open_files = opening.pop_all()
@@ -50,12 +56,16 @@ class BagReader:
         """All topics."""
         return [topic for topic, _ in self.metadata.topics]
 
+    def definition(self, topic: str) -> TypeDefinition | None:
+        """Return the definition of a topic's type from the bag, None if the bag has none."""
+        return next(filter(None, (file.definition(topic) for file in self._files)), None)
+
     def messages(self, topics: Collection[str], start_ns: int = 0) -> Iterator[BagMessage]:
         """Yield the messages of some topics in the order of their time.
 
         Args:
-            topics: names.
-            start_ns: nothing from before it.
+            topics: the names of the topics.
+            start_ns: the time of the earliest message.
 
         Raises:
             BagError: the bag is damaged.
@@ -70,7 +80,7 @@ class BagReader:
         self._open_files.close()
 
     def __enter__(self) -> "BagReader":
-        """Return it."""
+        """Return the reader."""
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -79,26 +89,28 @@ class BagReader:
 
 
 def describe_unfinished(reader: BagReader) -> str | None:
-    """Return a sentence about files whose writer did not come to the end, None without such."""
+    """Return a warning about unfinished files, None if there are none."""
     if not reader.unfinished:
         return None
     names = ", ".join(reader.unfinished)
     return (
         f"{names} was not finished: it is being recorded, or its recorder was killed. "
-        "Everything up to its last whole chunk is there."
+        "Everything up to its last complete chunk is readable."
     )
 
 
-def _parts(path: Path) -> tuple[list[Path], str]:
-    """Return the files of a bag, and the ROS that its metadata name."""
-    if path.is_file():
+def _parts(path: Path, by_metadata: bool) -> tuple[list[Path], str]:
+    """Return the files of a bag, and the ROS distribution in its metadata."""
+    if os.path.isfile(path):
         return [_checked(path)], ""
-    if not path.is_dir():
+    if not os.path.isdir(path):
+        if os.path.exists(path):
+            raise BagError(f"Bag path '{path}' is neither a folder nor a regular file")
         raise BagError(f"Bag path '{path}' does not exist!")
     metadata_file = path / FILE_NAME
-    if metadata_file.is_file():
+    if by_metadata and os.path.isfile(metadata_file):
         try:
-            text = metadata_file.read_text(encoding="utf-8")
+            text = read_text(metadata_file)
         except (OSError, UnicodeDecodeError) as error:
             raise BagError(f"cannot read {metadata_file}: {error}") from error
         metadata = read_metadata(text, str(metadata_file))
@@ -112,7 +124,9 @@ def _parts(path: Path) -> tuple[list[Path], str]:
         return found, ""
     if any(path.glob("*.db3")):
         raise BagError(_other_storage(path, "sqlite3"))
-    raise BagError(f"no bag in {path}: neither {FILE_NAME} nor an .mcap file")
+    raise BagError(
+        f"the folder {path} is not a bag: it holds neither {FILE_NAME} nor an .mcap file"
+    )
 
 
 def _checked(path: Path) -> Path:
@@ -125,13 +139,13 @@ def _checked(path: Path) -> Path:
 
 def _other_storage(path: Path, storage: str) -> str:
     return (
-        f"{path} is stored as {storage}, only {STORAGE} can be read; "
+        f"{path} is stored as {storage}, but only {STORAGE} can be read; "
         "convert it with `ros2 bag convert` or `rosbags-convert`"
     )
 
 
 def _joined(files: list[McapFileReader]) -> tuple[tuple[BagTopic, int], ...]:
-    """Return the topics of all files, each once, with all their messages."""
+    """Return the topics of all files, each once, with the number of its messages."""
     topics: dict[str, BagTopic] = {}
     counts: dict[str, int] = {}
     for file in files:

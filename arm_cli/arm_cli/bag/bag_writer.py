@@ -1,26 +1,25 @@
-"""A bag while it is being written: a folder with MCAP files and their metadata."""
+"""Writes a bag: a folder with MCAP files and their metadata."""
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from arm_cli.bag.bag_metadata import FILE_NAME, BagFileInfo, BagMetadata
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag.mcap_file_writer import McapFileWriter
-from arm_cli.bag.type_definition import TypeDefinition
 from arm_cli.bag.yaml_text import dump_yaml
 from arm_cli.errors import BagError
 
 
 @dataclass(frozen=True, slots=True)
 class BagSettings:
-    """How a bag is written.
+    """Options of writing a bag.
 
     Attributes:
-        compression: of the chunks: none, lz4 or zstd.
-        max_size_bytes: a file that has reached it is followed by another one; None never.
-        max_duration_ns: the same for the time that a file spans.
-        ros_distro: the ROS that is recorded.
+        compression: the compression of the chunks: none, lz4 or zstd.
+        max_size_bytes: the size at which a new file begins; None means never.
+        max_duration_ns: the duration at which a new file begins; None means never.
+        ros_distro: the ROS distribution being recorded.
     """
 
     compression: str = "none"
@@ -33,10 +32,10 @@ class BagWriter:
     """Writes a bag; not thread-safe."""
 
     def __init__(self, folder: Path, settings: BagSettings) -> None:
-        """Create the folder with a first file.
+        """Create the folder and the first file.
 
         Raises:
-            BagError: the folder exists, or cannot be made.
+            BagError: the folder exists, or cannot be created.
         """
         self.folder = folder
         self._settings = settings
@@ -57,7 +56,7 @@ class BagWriter:
 
     @property
     def metadata(self) -> BagMetadata:
-        """What the bag holds by now."""
+        """The metadata of the bag so far."""
         return BagMetadata(
             files=(*self._closed, self._file.info),
             topics=tuple((topic, self._counts[name]) for name, (topic, _) in self._topics.items()),
@@ -70,20 +69,20 @@ class BagWriter:
         return sum(path.stat().st_size for path in self.folder.glob("*.mcap"))
 
     def add_topic(self, topic: BagTopic, definition: TypeDefinition) -> None:
-        """Announce a topic; before its first message, and only once.
+        """Add a topic, once and before its first message.
 
         Raises:
-            BagError: it cannot be written.
+            BagError: the bag cannot be written.
         """
         self._topics[topic.name] = (topic, definition)
         self._counts[topic.name] = 0
         self._file.add_topic(topic, definition)
 
     def write(self, message: BagMessage) -> None:
-        """Write a message of a topic that was added.
+        """Write a message of an added topic.
 
         Raises:
-            BagError: it cannot be written.
+            BagError: the bag cannot be written.
         """
         try:
             if self._is_full(message.log_time_ns):
@@ -94,10 +93,10 @@ class BagWriter:
         self._counts[message.topic] += 1
 
     def flush(self) -> None:
-        """Make all that was written so far safe from a kill, metadata included.
+        """Write everything so far, metadata included, so that it survives a kill.
 
         Raises:
-            BagError: it cannot be written.
+            BagError: the bag cannot be written.
         """
         try:
             self._file.flush()
@@ -106,10 +105,10 @@ class BagWriter:
             raise _cannot_write(self.folder, error) from error
 
     def close(self) -> BagMetadata:
-        """Finish the bag; return what it holds.
+        """Finish the bag; return its metadata.
 
         Raises:
-            BagError: it cannot be written.
+            BagError: the bag cannot be written.
         """
         metadata = self.metadata
         try:
@@ -145,11 +144,28 @@ class BagWriter:
         return McapFileWriter(path, self._settings.compression)
 
     def _write_metadata(self) -> None:
-        # By a new file in the old one's place: whoever looks meanwhile finds one of the two.
-        path = self.folder / FILE_NAME
-        new = path.with_name(f".{FILE_NAME}.new")
-        new.write_text(self.metadata.to_yaml(), encoding="utf-8")
-        os.replace(new, path)
+        _replace_metadata(self.folder, self.metadata)
+
+
+def write_metadata(folder: Path, metadata: BagMetadata) -> Path:
+    """Write a bag's metadata.yaml; return its path.
+
+    Raises:
+        BagError: the file cannot be written.
+    """
+    try:
+        return _replace_metadata(folder, metadata)
+    except OSError as error:
+        raise _cannot_write(folder, error) from error
+
+
+def _replace_metadata(folder: Path, metadata: BagMetadata) -> Path:
+    # A new file replaces the old one atomically, so that a reader always finds a complete file.
+    path = folder / FILE_NAME
+    new = path.with_name(f".{FILE_NAME}.new")
+    new.write_text(metadata.to_yaml(), encoding="utf-8")
+    os.replace(new, path)
+    return path
 
 
 def _cannot_write(folder: Path, error: OSError) -> BagError:

@@ -1,4 +1,4 @@
-"""One MCAP file, finished or not."""
+"""Reads one MCAP file, finished or not."""
 
 import io
 from collections.abc import Collection, Iterator
@@ -13,51 +13,54 @@ from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from arm_cli.bag.bag_metadata import BagFileInfo, TimeSpan
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_topic import ENCODING, BagMessage, BagTopic, TypeDefinition
+from arm_cli.bag.chunk_sizes import MAX_CHUNK_BYTES, check_chunks
 from arm_cli.bag.mcap_recovery import damage_errors, recover_summary
 from arm_cli.bag.offered_qos import read_offers
 from arm_cli.bag.yaml_text import load_yaml
 from arm_cli.errors import BagError
+from arm_node.user_file import open_file
 
 
 class _RecoveringReader(SeekingReader):
-    """Reads a file without a summary by one that was made up."""
+    """Reads a file without a summary by a reconstructed one."""
 
     def __init__(self, stream: BinaryIO) -> None:
         super().__init__(stream, validate_crcs=True)
-        self._made_up = recover_summary(stream)
+        self._recovered = recover_summary(stream)
 
     def get_summary(self) -> Summary:
-        return self._made_up
+        return self._recovered
 
 
 class McapFileReader:
     """Reads one file.
 
     Attributes:
-        path: of the file.
-        is_finished: whether its writer came to the end and wrote the index.
-        info: name, time and number of its messages.
-        topics: its topics and how many messages each has.
+        path: the path of the file.
+        is_finished: whether its writer finished it and wrote the index.
+        info: its name, and the time span and number of its messages.
+        topics: its topics, each with its number of messages.
     """
 
     def __init__(self, path: Path) -> None:
-        """Open the file, and scan it where it has no summary.
+        """Open the file, and scan it if it has no summary.
 
         Raises:
-            BagError: it cannot be opened, or is damaged.
+            BagError: the file cannot be opened, or is damaged.
         """
         self.path = path
         try:
-            self._stream = path.open("rb")
+            self._stream = open_file(path)
         except OSError as error:
             raise BagError(f"cannot read {path}: {error.strerror}") from error
         with ExitStack() as opening:
             opening.callback(self._stream.close)
             if self._stream.read(MAGIC_SIZE) != MCAP0_MAGIC:
-                raise BagError(f"{path} is no MCAP file")
+                raise BagError(f"{path} is not an MCAP file")
             try:
                 self._reader, self._summary, self.is_finished = _open_reader(self._stream)
+                check_chunks(self._stream, self._summary.chunk_indexes)
                 self.topics = _topics(self._summary)
             except damage_errors() as error:
                 raise self._damaged(error) from error
@@ -69,7 +72,7 @@ class McapFileReader:
         self._stream.close()
 
     def ros_distro(self) -> str:
-        """Return the ROS that recorded it, empty where it does not say."""
+        """Return the ROS distribution that recorded the file, empty if unknown."""
         if not self.is_finished:
             return ""
         try:
@@ -82,17 +85,25 @@ class McapFileReader:
             pass
         return ""
 
+    def definition(self, topic: str) -> TypeDefinition | None:
+        """Return the definition of a topic's type from the file, None if the file has none."""
+        for channel in self._summary.channels.values():
+            schema = self._summary.schemas.get(channel.schema_id)
+            if channel.topic == topic and schema is not None and schema.encoding == ENCODING:
+                return TypeDefinition(schema.name, schema.data.decode("utf-8", "replace"))
+        return None
+
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[BagMessage]:
         """Yield the messages of some topics in the order of their time.
 
         Args:
-            topics: names.
-            start_ns: nothing from before it.
+            topics: the names of the topics.
+            start_ns: the time of the earliest message.
 
         Raises:
             BagError: the file is damaged.
         """
-        # Without chunks there is no index to sort by: as they come, which needs no memory either.
+        # A file without chunks has no index to sort by, so its messages come in file order.
         sort = bool(self._summary.chunk_indexes)
         found = self._reader.iter_messages(topics, starting_at=start_ns, log_time_order=sort)
         try:
@@ -103,7 +114,7 @@ class McapFileReader:
         except damage_errors() as error:
             if self.is_finished or sort:
                 raise self._damaged(error) from error
-            # The torn record at the end of a file that nobody finished.
+            # An unfinished file may end with a torn record.
 
     def _damaged(self, error: Exception) -> BagError:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
@@ -111,17 +122,22 @@ class McapFileReader:
 
 
 def _open_reader(stream: BinaryIO) -> tuple[SeekingReader, Summary, bool]:
-    """Return a reader, the file's summary or one made up, and whether it is the file's."""
+    """Return a reader, the summary, and whether the summary is the file's own."""
     ends = _ends_well(stream)
     stream.seek(0)
     if ends:
-        reader = SeekingReader(stream, validate_crcs=True)
+        reader = SeekingReader(stream, validate_crcs=True, record_size_limit=MAX_CHUNK_BYTES)
         summary = reader.get_summary()
-        if summary is not None and summary.statistics is not None:
+        if summary is not None and summary.statistics is not None and not _hides_chunks(summary):
             return reader, summary, True
         stream.seek(0)
     recovering = _RecoveringReader(stream)
     return recovering, recovering.get_summary(), False
+
+
+def _hides_chunks(summary: Summary) -> bool:
+    """Return whether the file has chunks but no index of them, so that it must be scanned."""
+    return not summary.chunk_indexes and bool(summary.statistics and summary.statistics.chunk_count)
 
 
 def _ends_well(stream: BinaryIO) -> bool:

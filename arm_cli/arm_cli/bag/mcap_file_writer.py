@@ -1,6 +1,6 @@
-"""One MCAP file while it is being written.
+"""Writes one MCAP file.
 
-After every flush the file is a whole one: behind its last chunk stands the end of a file without an
+After every flush the file is complete: after its last chunk comes the end of a file without an
 index, which the next chunk overwrites. So any reader can read a file whose writer was killed.
 """
 
@@ -12,15 +12,14 @@ from mcap.records import DataEnd, Footer
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from arm_cli.bag.bag_metadata import BagFileInfo, TimeSpan
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag.offered_qos import offers_to_text
-from arm_cli.bag.type_definition import TypeDefinition
 
 PROFILE = "ros2"
 LIBRARY = "arm-suite"
 CHUNK_BYTES = 768 * 1024
-_NEVER_BY_ITSELF = 1 << 62
-"""The library's own limit of a chunk: chunks end here, so that their size is known."""
+_UNLIMITED_CHUNK = 1 << 62
+"""Keeps the library from ending chunks itself: this class ends them, to know their size."""
 
 COMPRESSIONS = {
     "none": CompressionType.NONE,
@@ -43,13 +42,13 @@ class McapFileWriter:
         """Create the file.
 
         Args:
-            path: of a file that does not exist.
-            compression: of its chunks, one of COMPRESSIONS.
+            path: the path of the file, which must not exist.
+            compression: the compression of its chunks, one of COMPRESSIONS.
         """
         self._path = path
         self._stream = path.open("xb")
         self._writer = Writer(
-            self._stream, chunk_size=_NEVER_BY_ITSELF, compression=COMPRESSIONS[compression]
+            self._stream, chunk_size=_UNLIMITED_CHUNK, compression=COMPRESSIONS[compression]
         )
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
@@ -62,16 +61,16 @@ class McapFileWriter:
 
     @property
     def info(self) -> BagFileInfo:
-        """What the file holds by now."""
+        """The name of the file, and the time span and number of its messages so far."""
         return BagFileInfo(self._path.name, self._span, self._count)
 
     @property
     def size_bytes(self) -> int:
-        """The file's size, as if what waits for the next chunk were in it, not compressed."""
+        """The file's size plus the uncompressed size of the pending messages."""
         return self._stream.tell() + self._pending_bytes
 
     def add_topic(self, topic: BagTopic, definition: TypeDefinition) -> None:
-        """Announce a topic; before its first message."""
+        """Add a topic, before its first message."""
         schema = self._schemas.get(topic.type)
         if schema is None:
             schema = self._writer.register_schema(
@@ -89,7 +88,7 @@ class McapFileWriter:
         )
 
     def write(self, message: BagMessage) -> None:
-        """Write a message of a topic that was added."""
+        """Write a message of an added topic."""
         self._writer.add_message(
             self._channels[message.topic],
             message.log_time_ns,
@@ -103,17 +102,17 @@ class McapFileWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Hand everything to the operating system: from now on a kill cannot take it away."""
+        """Hand everything to the operating system, so that it survives a kill."""
         self._writer.flush()
         self._pending_bytes = 0
-        following = self._stream.tell()
+        chunks_end = self._stream.tell()
         self._stream.write(self._end)
         self._stream.flush()
-        # What follows is longer than the end, a chunk or the index: nothing of it stays behind.
-        self._stream.seek(following)
+        # The next chunk or the index is longer than this end, so it overwrites all of it.
+        self._stream.seek(chunks_end)
 
     def close(self, metadata: str) -> None:
-        """Finish the file with its index, and the bag's metadata inside."""
+        """Finish the file with the bag's metadata and the index."""
         self.flush()
         self._writer.add_metadata("rosbag2", {"serialized_metadata": metadata})
         self._writer.finish()

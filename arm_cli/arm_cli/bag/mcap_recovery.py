@@ -1,7 +1,7 @@
-"""The summary of an MCAP file that has none: made up from what can be read of it.
+"""Reconstructs the missing summary of an MCAP file from its readable records.
 
-A recorder that was killed leaves whole chunks and no index; a machine that lost its power, perhaps
-a torn chunk at the end.
+A recorder that was killed leaves complete chunks and no index. After a power failure the last chunk
+may be torn.
 """
 
 import io
@@ -19,12 +19,15 @@ from mcap.records import Channel, Chunk, ChunkIndex, Message, Schema, Statistics
 from mcap.stream_reader import MAGIC_SIZE, breakup_chunk
 from mcap.summary import Summary
 
+from arm_cli.bag.chunk_sizes import MAX_CHUNK_BYTES, ChunkTooLargeError, check_chunk
+
 _HEADER = struct.Struct("<BQ")
 
 _DAMAGE: tuple[type[Exception], ...] = (
     McapError,
     ValueError,
     LookupError,
+    OverflowError,
     MemoryError,
     OSError,
     struct.error,
@@ -32,7 +35,7 @@ _DAMAGE: tuple[type[Exception], ...] = (
     EOFError,
     zlib.error,
 )
-"""What reading damaged records raises, or a disk that cannot be read."""
+"""Exceptions from reading damaged records or an unreadable disk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +56,15 @@ def damage_errors() -> tuple[type[Exception], ...]:
 
 
 def recover_summary(stream: BinaryIO) -> Summary:
-    """Return the summary of all that is readable from the beginning on."""
+    """Return the summary of all records before the first damage."""
     summary = Summary()
     counter = _Counter(summary)
     damage = damage_errors()
     for record in _records(stream):
         try:
             counter.add(record)
+        except ChunkTooLargeError:
+            raise
         except damage:
             break
     summary.statistics = counter.statistics()
@@ -75,13 +80,15 @@ def _records(stream: BinaryIO) -> Iterator[_Record]:
         following = offset + _HEADER.size + length
         if following > end or opcode == Opcode.DATA_END:
             return
+        if length > MAX_CHUNK_BYTES:
+            raise ChunkTooLargeError(f"a record has {length} bytes; the limit is {MAX_CHUNK_BYTES}")
         wanted = opcode in _Counter.WANTED
         yield _Record(offset, opcode, stream.read(length) if wanted else b"")
         offset = following
 
 
 class _Counter:
-    """Puts records into a summary."""
+    """Adds records to a summary and counts the messages."""
 
     WANTED = frozenset((Opcode.CHUNK, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE))
 
@@ -105,6 +112,7 @@ class _Counter:
 
     def _add_chunk(self, record: _Record) -> None:
         chunk = Chunk.read(record.stream())
+        check_chunk(chunk)
         for inner in breakup_chunk(chunk, validate_crc=True):
             self._add_plain(inner)
         self._summary.chunk_indexes.append(

@@ -1,15 +1,20 @@
-"""The quality of service that a publisher offered, as rosbag2 writes it into its files."""
+"""QoS of recorded topics: the policies that publishers offered, and a user's overrides."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from arm_cli.bag.yaml_text import dump_yaml, load_yaml
+from arm_cli.errors import BagError
+from arm_cli.names import absolute_name
+from arm_node.names import describe_known
+from arm_node.user_file import read_text
 
 INFINITE_NS = 2**63 - 1
-"""A duration that nobody has limited."""
+"""A duration without a limit."""
 
-# The position is the number that files before metadata version 9 hold instead of the name.
+# The position of a name is the number that metadata before version 9 hold instead of it.
 POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
@@ -27,18 +32,18 @@ POLICIES = {
 
 @dataclass(frozen=True, slots=True)
 class OfferedQos:
-    """One publisher's offer; policies by rclpy's short names.
+    """The QoS that one publisher offers, with policies by rclpy's short names.
 
     Attributes:
-        history: Fast DDS does not tell it to others: "unknown".
-        depth: 0 where the history is unknown.
+        history: "unknown" if recorded, because Fast DDS does not announce it.
+        depth: 0 if the history is unknown.
         reliability: policy.
         durability: policy.
-        deadline_ns: INFINITE_NS is none, as for the other durations.
+        deadline_ns: INFINITE_NS means no limit, as for the other durations.
         lifespan_ns: duration.
         liveliness: policy.
         lease_ns: liveliness lease duration.
-        avoid_ros_namespace_conventions: whether the topic has no `rt/` before its DDS name.
+        avoid_ros_namespace_conventions: whether the topic's DDS name has no prefix `rt/`.
     """
 
     history: str = "unknown"
@@ -52,7 +57,7 @@ class OfferedQos:
     avoid_ros_namespace_conventions: bool = False
 
     def to_plain(self) -> dict[str, Any]:
-        """Return it as metadata version 9 has it."""
+        """Return the offer in the form of metadata version 9."""
         return {
             "history": self.history,
             "depth": self.depth,
@@ -67,12 +72,12 @@ class OfferedQos:
 
 
 def offers_to_text(offers: Sequence[OfferedQos]) -> str:
-    """Return offers as the text that an MCAP channel carries."""
+    """Return offers as the text of an MCAP channel's metadata."""
     return dump_yaml([offer.to_plain() for offer in offers])
 
 
 def read_offers(value: Any) -> tuple[OfferedQos, ...]:
-    """Return the offers of a file's entry, a list or its YAML text; what is unclear is default."""
+    """Return the offers in a list or its YAML text; invalid values become defaults."""
     if isinstance(value, str):
         try:
             value = load_yaml(value)
@@ -116,5 +121,41 @@ def _nanoseconds(value: Any) -> int:
     sec, nsec = value.get("sec"), value.get("nsec")
     if not isinstance(sec, int) or not isinstance(nsec, int):
         return INFINITE_NS
-    # Zero is how older middlewares wrote "not limited".
+    # Older middlewares wrote zero for "no limit".
     return min(sec * 10**9 + nsec, INFINITE_NS) or INFINITE_NS
+
+
+def read_qos_overrides(path: Path | None) -> dict[str, OfferedQos]:
+    """Return the QoS overrides by topic; an empty dict without a file.
+
+    Raises:
+        BagError: the file is missing or malformed; the message says what is wrong and where.
+    """
+    if path is None:
+        return {}
+    try:
+        content = load_yaml(read_text(path))
+    except OSError as error:
+        raise BagError(f"cannot read {path}: {error.strerror}") from error
+    except ValueError as error:
+        raise BagError(f"{path} is {error}") from error
+    if not isinstance(content, dict):
+        raise BagError(f"{path} has no topics: its form must be '/topic: {{depth: 10}}'")
+    return {
+        absolute_name(str(name)): _override(value, f"{path}: {name}")
+        for name, value in content.items()
+    }
+
+
+def _override(value: Any, where: str) -> OfferedQos:
+    if not isinstance(value, Mapping):
+        raise BagError(f"{where} has no policies, such as 'reliability: best_effort'")
+    known = OfferedQos().to_plain()
+    for key, setting in value.items():
+        if key not in known:
+            raise BagError(f"{where} has no policy {str(key)!r}; {describe_known(str(key), known)}")
+        names = POLICIES.get(key)
+        if names is not None and setting not in names:
+            hint = describe_known(str(setting), names)
+            raise BagError(f"{where}: {key} cannot be {setting!r}; {hint}")
+    return read_offers([dict(value)])[0]

@@ -1,22 +1,22 @@
-"""`arm bag play`: publish again what is in a bag."""
+"""`arm bag play`: publishes the messages of a bag."""
 
 import argparse
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.bag.bag_path import existing_path
+from arm_cli.bag.info import existing_path
 from arm_cli.command_parser import positive_number, positive_number_or_zero, positive_whole_number
-from arm_cli.errors import BagError, NotFoundError, StoppedError, UsageError
+from arm_cli.errors import BagError, CommandUsageError, NoSuchNameError, StoppedError
 from arm_cli.names import absolute_name
+from arm_cli.output import complain
 from arm_cli.ros.connection import connect
-from launch_py.near_names import describe_known
+from arm_node.names import describe_known
 
 if TYPE_CHECKING:
     from arm_cli.bag.bag_reader import BagReader
     from arm_cli.bag.bag_topic import BagTopic
-    from arm_cli.ros.bag_player import BagPlayer
+    from arm_cli.bag.ros_player import BagPlayer
 
 CLOCK_HZ = 40.0
 READ_AHEAD = 1000
@@ -29,22 +29,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
     _add_topics(parser)
     parser.add_argument(
-        "-r", "--rate", type=positive_number, default=1.0, help="how fast to play (default 1.0)"
+        "-r", "--rate", type=positive_number, default=1.0, help="speed of playing (default 1.0)"
     )
-    parser.add_argument("-l", "--loop", action="store_true", help="begin anew at the end")
+    parser.add_argument("-l", "--loop", action="store_true", help="start again at the end")
     parser.add_argument(
         "--start-offset",
         type=positive_number_or_zero,
         default=0.0,
         metavar="SECONDS",
-        help="leave out so much of the beginning",
+        help="skip this much of the beginning",
     )
     parser.add_argument(
         "--playback-duration",
         type=_duration,
         default=float("inf"),
         metavar="SECONDS",
-        help="play only so much of the bag; a negative number: all",
+        help="play only this much of the bag; a negative number means all",
     )
     parser.add_argument(
         "--clock",
@@ -60,14 +60,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=positive_number_or_zero,
         default=0.0,
         metavar="SECONDS",
-        help="wait so long before each time it is played",
+        help="wait this long before playing, each time with --loop",
     )
     parser.add_argument(
         "--read-ahead-queue-size",
         type=positive_whole_number,
         default=READ_AHEAD,
         metavar="N",
-        help=f"messages that are read before they are due (default {READ_AHEAD})",
+        help=f"number of messages to read before they are due (default {READ_AHEAD})",
     )
     parser.add_argument(
         "--qos-profile-overrides-path",
@@ -75,18 +75,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="YAML with the quality of service of publishers, by topic",
     )
-    # There are no such controls; but lines written for ros2 switch them off.
+    # Accepted because command lines for ros2 use it. There are no keyboard controls here.
     parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
 
 
 def _add_topics(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("topics", "By default: all.")
     group.add_argument("--topics", nargs="+", metavar="TOPIC", help="play only these")
-    group.add_argument("-e", "--regex", metavar="REGEX", help="play those in which it is found")
-    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="but not these")
-    group.add_argument(
-        "-x", "--exclude-regex", metavar="REGEX", help="but none in which it is found"
-    )
+    group.add_argument("-e", "--regex", metavar="REGEX", help="play topics that match")
+    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these")
+    group.add_argument("-x", "--exclude-regex", metavar="REGEX", help="leave out topics that match")
     group.add_argument(
         "-m",
         "--remap",
@@ -104,26 +102,26 @@ def _duration(text: str) -> float:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Play until the end, or until a signal comes.
+    """Play until the end or until a signal arrives.
 
     Raises:
-        NotFoundError: the bag has no such topic.
-        BagError: the bag or the file of overrides cannot be read, or there is nothing to play.
-        UsageError: a name to be remapped is not OLD:=NEW.
+        NoSuchNameError: the bag has no such topic.
+        BagError: the bag or the overrides cannot be read, or there is nothing to play.
+        CommandUsageError: a remapping is not of the form OLD:=NEW.
     """
     from arm_cli.bag.bag_reader import BagReader, describe_unfinished
-    from arm_cli.bag.qos_overrides import read_qos_overrides
+    from arm_cli.bag.offered_qos import read_qos_overrides
 
     names = _remapped_names(options.remap)
     overrides = read_qos_overrides(options.qos_profile_overrides_path)
     with BagReader(options.bag_path) as reader:
         unfinished = describe_unfinished(reader)
         if unfinished is not None:
-            print(f"arm bag play: {unfinished}", file=sys.stderr)
+            complain(f"arm bag play: {unfinished}")
         topics = _topics(reader, options)
         extent_ns = _extent(reader, options)
         with connect(NODE_NAME) as session:
-            from arm_cli.ros.bag_player import BagPlayer
+            from arm_cli.bag.ros_player import BagPlayer
 
             player = BagPlayer(session, options.clock)
             try:
@@ -135,7 +133,7 @@ def run(options: argparse.Namespace) -> None:
                         break
                 player.finish()
             except StoppedError:
-                print("Playing stopped", file=sys.stderr)
+                complain("Playing stopped")
 
 
 def _play_once(
@@ -145,20 +143,19 @@ def _play_once(
     extent_ns: tuple[int, int],
     options: argparse.Namespace,
 ) -> None:
-    from arm_cli.bag.play_schedule import PlaySchedule
-    from arm_cli.bag.read_ahead import ReadAhead
+    from arm_cli.bag.playback import PlaySchedule, ReadAhead
 
     start_ns, end_ns = extent_ns
     found = reader.messages(topics, start_ns)
     with ReadAhead(found, options.read_ahead_queue_size) as messages:
         schedule = PlaySchedule(start_ns, time.monotonic(), options.rate)
-        # The rest of the bag matters to who goes by its clock, and to the period of a loop only.
+        # The time after the last message matters only to readers of /clock and to loops.
         to_the_end = options.loop or options.clock is not None
         player.play(messages, schedule, end_ns, to_the_end=to_the_end)
 
 
 def _extent(reader: "BagReader", options: argparse.Namespace) -> tuple[int, int]:
-    """Return the times of the bag between which it is played."""
+    """Return the start and the end of playing, in the bag's time."""
     span = reader.metadata.span
     if span.start_ns is None or span.end_ns is None:
         raise BagError(f"{reader.path} has no messages")
@@ -179,7 +176,7 @@ def _topics(reader: "BagReader", options: argparse.Namespace) -> list["BagTopic"
     known = [topic.name for topic in reader.topics]
     for name in sorted(wanted.difference(known)):
         hint = describe_known(name, known, "it has")
-        raise NotFoundError(f"no topic {name!r} in {reader.path}; {hint}")
+        raise NoSuchNameError(f"no topic {name!r} in {reader.path}; {hint}")
     pattern = compile_pattern(options.regex, "--regex")
     selection = TopicSelection(
         every=not wanted and pattern is None,
@@ -202,6 +199,6 @@ def _remapped_names(words: list[str]) -> dict[str, str]:
     for word in words:
         old, separator, new = word.partition(":=")
         if not (old and separator and new):
-            raise UsageError(f"--remap {word!r} is not OLD:=NEW")
+            raise CommandUsageError(f"--remap {word!r} is not OLD:=NEW")
         names[absolute_name(old)] = absolute_name(new)
     return names

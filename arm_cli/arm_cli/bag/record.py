@@ -1,8 +1,7 @@
-"""`arm bag record`: record topics to a bag."""
+"""`arm bag record`: records topics to a bag."""
 
 import argparse
 import os
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ from arm_cli.command_parser import (
     whole_number,
 )
 from arm_cli.errors import BagError, StoppedError
+from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with
@@ -30,7 +30,7 @@ POLL_MS = 100
 NODE_NAME = "rosbag2_recorder"
 
 _PRESETS = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_small": "zstd"}
-"""rosbag2's presets for MCAP, by the compression that they mean."""
+"""rosbag2's presets for MCAP, with the compression of each."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _add_selection(parser)
     _add_output(parser)
     parser.add_argument(
-        "--no-discovery", action="store_true", help="record only topics that are there at the start"
+        "--no-discovery", action="store_true", help="record only topics that exist at the start"
     )
     parser.add_argument(
         "-p",
@@ -53,11 +53,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=whole_number,
         default=CACHE_BYTES,
         metavar="BYTES",
-        help="messages that wait for the disk; when there are more, messages are dropped and "
-        f"counted (default {CACHE_BYTES}); 0: each is written at once",
+        help="size of the cache for messages that wait for the disk; further messages are dropped "
+        f"and counted (default {CACHE_BYTES}); 0 writes each message at once",
     )
     parser.add_argument(
-        "--use-sim-time", action="store_true", help="take the messages' times from /clock"
+        "--use-sim-time", action="store_true", help="stamp messages with the time of /clock"
     )
     parser.add_argument(
         "--qos-profile-overrides-path",
@@ -65,14 +65,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="YAML with the quality of service of subscriptions, by topic",
     )
-    # There are no such controls; but lines written for ros2 switch them off.
+    # Accepted because command lines for ros2 use it. There are no keyboard controls here.
     parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument(
         "--node-name",
         type=node_name,
         default=NODE_NAME,
         metavar="NAME",
-        help=f"default {NODE_NAME}",
+        help=f"name of the recording node (default {NODE_NAME})",
     )
 
 
@@ -82,28 +82,28 @@ def _add_selection(parser: argparse.ArgumentParser) -> None:
         group.add_argument("names", nargs="*", metavar="TOPIC", help="topics to record"),
         completers.topics,
     )
-    group.add_argument("--topics", nargs="+", metavar="TOPIC", help="the same")
+    group.add_argument("--topics", nargs="+", metavar="TOPIC", help="more topics to record")
     group.add_argument(
         "-a",
         "--all",
         "--all-topics",
         action="store_true",
-        help="record all topics, new ones included, but no hidden ones",
+        help="record all topics except hidden ones, including topics that appear later",
     )
-    group.add_argument("-e", "--regex", metavar="REGEX", help="record topics in which it is found")
-    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="but not these")
-    group.add_argument("--exclude-regex", metavar="REGEX", help="but none in which it is found")
+    group.add_argument("-e", "--regex", metavar="REGEX", help="record topics that match")
+    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these")
+    group.add_argument("--exclude-regex", metavar="REGEX", help="leave out topics that match")
     group.add_argument(
         "--include-hidden-topics",
         action="store_true",
-        help="--all and --regex mean hidden ones",
+        help="let --all and --regex include hidden topics",
     )
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("bag")
     group.add_argument(
-        "-o", "--output", metavar="DIR", help="folder to make (default rosbag2_<date>-<time>)"
+        "-o", "--output", metavar="DIR", help="folder to create (default rosbag2_<date>-<time>)"
     )
     group.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
     group.add_argument(
@@ -113,7 +113,7 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
         type=whole_number,
         default=0,
         metavar="BYTES",
-        help="begin a new file when one has reached this size (default 0: never)",
+        help="start a new file at this size (default 0: never)",
     )
     group.add_argument(
         "-d",
@@ -121,36 +121,36 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
         "--max-duration",
         type=positive_number,
         metavar="SECONDS",
-        help="begin a new file when one spans this time",
+        help="start a new file after this time",
     )
     group.add_argument(
         "--compression",
         "--compression-format",
         choices=("none", "lz4", "zstd"),
-        help="of the files' chunks (default none); every MCAP reader understands it",
+        help="compression of the files' chunks (default none); every MCAP reader supports it",
     )
     group.add_argument(
         "--compression-mode",
         choices=("none", "file", "message"),
         default="none",
-        help="accepted: chunks are compressed, and files stay readable",
+        help="accepted for rosbag2's sake; always compresses chunks, so that files stay readable",
     )
     group.add_argument(
         "--storage-preset-profile",
         choices=tuple(_PRESETS),
         default="none",
-        help="the same in rosbag2's words",
+        help="compression by the name of rosbag2's preset",
     )
 
 
 def run(options: argparse.Namespace) -> None:
-    """Record until a signal comes.
+    """Record until a signal arrives.
 
     Raises:
-        BagError: nothing is selected, the file of overrides is none, or the bag cannot be written.
-        UsageError: no topic can have a name that was given.
+        BagError: nothing is selected, the overrides are malformed, or the bag cannot be written.
+        CommandUsageError: a given name is not a valid topic name.
     """
-    from arm_cli.bag.qos_overrides import read_qos_overrides
+    from arm_cli.bag.offered_qos import read_qos_overrides
 
     selection = _selection(options)
     overrides = read_qos_overrides(options.qos_profile_overrides_path)
@@ -160,10 +160,10 @@ def run(options: argparse.Namespace) -> None:
     from arm_cli.bag.recording import Recording
 
     with connect(options.node_name, options.use_sim_time) as session:
-        from arm_cli.ros.bag_recorder import BagRecorder
+        from arm_cli.bag.ros_recorder import BagRecorder
 
         for name in selection.names:
-            session.full_name(name)  # which refuses one that would be waited for in vain
+            session.full_name(name)  # It raises an error for an invalid name.
         writer = BagWriter(folder, settings)
         recording = Recording(writer, options.max_cache_size)
         recorder = BagRecorder(
@@ -179,7 +179,7 @@ def run(options: argparse.Namespace) -> None:
                 session.wait_until(lambda: session.clock_ns() > 0, lambda: "waiting for /clock")
             recorder.run(not options.no_discovery)
         except StoppedError:
-            print("Recording stopped", file=sys.stderr)
+            complain("Recording stopped")
         metadata = recording.finish()
     _report(metadata, folder, writer.size_bytes, recording.dropped, recorder.lost)
 
@@ -207,7 +207,7 @@ def _settings(options: argparse.Namespace) -> "BagSettings":
     from arm_cli.bag.bag_writer import BagSettings
 
     if options.compression_mode != "none" and options.compression is None:
-        raise BagError("--compression-mode wants a --compression-format: lz4 or zstd")
+        raise BagError("--compression-mode needs a --compression-format: lz4 or zstd")
     duration_s = options.max_bag_duration
     return BagSettings(
         compression=options.compression or _PRESETS[options.storage_preset_profile],
@@ -224,15 +224,14 @@ def _report(
     dropped: "Counter[str]",
     lost: "Counter[str]",
 ) -> None:
-    from arm_cli.bag.info_text import describe_size
+    from arm_cli.bag.info import describe_size
 
-    print(
+    complain(
         f"{metadata.message_count} messages of {len(metadata.topics)} topics in "
-        f"{metadata.span.duration_ns * 1e-9:.1f} s, {describe_size(size_bytes)}, in {folder}",
-        file=sys.stderr,
+        f"{metadata.span.duration_ns * 1e-9:.1f} s, {describe_size(size_bytes)}, in {folder}"
     )
     if not dropped and not lost:
-        print("No message was dropped", file=sys.stderr)
-    for counts, reason in ((dropped, "the disk was too slow"), (lost, "lost on the way here")):
+        complain("No message was dropped")
+    for counts, reason in ((dropped, "the disk was too slow"), (lost, "lost in transport")):
         for topic, count in sorted(counts.items()):
-            print(f"{count} messages of {topic} were dropped: {reason}", file=sys.stderr)
+            complain(f"{count} messages of {topic} were dropped: {reason}")

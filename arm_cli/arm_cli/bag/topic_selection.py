@@ -1,4 +1,4 @@
-"""Which topics are recorded, or played."""
+"""Selects the topics to record or to play."""
 
 import re
 from collections.abc import Sequence
@@ -10,15 +10,15 @@ from arm_cli.names import absolute_name, is_hidden
 
 @dataclass(frozen=True, slots=True)
 class TopicSelection:
-    """Chooses topics by their names.
+    """Selects topics by their names.
 
     Attributes:
-        every: whether all are wanted, but those excluded and hidden ones.
-        names: wanted ones.
-        pattern: those in which it is found are wanted, too.
-        excluded_names: not wanted, whatever is said above.
-        excluded_pattern: those in which it is found are not wanted either.
-        hidden: whether `every` and `pattern` mean hidden ones, too.
+        every: whether to select all topics except excluded and hidden ones.
+        names: names of topics to select.
+        pattern: selects the topics that match it.
+        excluded_names: names of topics to leave out, whatever the attributes above select.
+        excluded_pattern: leaves out the topics that match it.
+        hidden: whether `every` and `pattern` select hidden topics too.
     """
 
     every: bool = False
@@ -29,7 +29,7 @@ class TopicSelection:
     hidden: bool = False
 
     def wants(self, name: str) -> bool:
-        """Return whether a topic is wanted."""
+        """Return whether a topic is selected."""
         if name in self.excluded_names:
             return False
         if self.excluded_pattern is not None and self.excluded_pattern.search(name):
@@ -42,24 +42,24 @@ class TopicSelection:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the names are all that can ever be wanted."""
+        """Whether only `names` can select topics."""
         return not self.every and self.pattern is None
 
 
 def absolute_names(names: Sequence[str] | None) -> frozenset[str]:
-    """Return names as the graph has them."""
+    """Return names as the graph shows them."""
     return frozenset(absolute_name(name) for name in names or ())
 
 
 def compile_pattern(text: str | None, option: str) -> re.Pattern[str] | None:
-    """Return a compiled regular expression, None for none.
+    """Return a compiled regular expression, None without a text.
 
     Raises:
-        BagError: it is none.
+        BagError: the text is not a regular expression.
     """
     if not text:
         return None
     try:
         return re.compile(text)
     except re.error as error:
-        raise BagError(f"{option} {text!r} is no regular expression: {error}") from error
+        raise BagError(f"{option} {text!r} is not a regular expression: {error}") from error

@@ -1,10 +1,11 @@
-"""YAML by libyaml where PyYAML has it: metadata are written again and again while recording."""
+"""Reads and writes YAML, with libyaml if available: a recorder writes its metadata often."""
 
 from typing import Any
 
 import yaml
 
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+from arm_node import limited_yaml
+
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
@@ -12,14 +13,14 @@ def load_yaml(text: str) -> Any:
     """Return the value of a YAML text.
 
     Raises:
-        ValueError: it is none.
+        ValueError: the text is not YAML, or exceeds the limits of `limited_yaml`.
     """
     try:
-        return yaml.load(text, Loader=_LOADER)
-    except (yaml.YAMLError, ValueError) as error:
-        raise ValueError(f"no YAML: {error}") from error
+        return limited_yaml.load_yaml(text)
+    except limited_yaml.YamlError as error:
+        raise ValueError(f"not YAML: {error}") from error
 
 
 def dump_yaml(value: Any) -> str:
-    """Return plain values as YAML, keys in their order."""
+    """Return plain values as YAML, with keys in their order."""
     return yaml.dump(value, Dumper=_DUMPER, sort_keys=False)

@@ -1,1 +1,1 @@
-"""The verbs of `arm control`."""
+"""The verbs of `arm control`, which query and command a controller manager."""

@@ -1,18 +1,19 @@
-"""The controller manager that a verb asks."""
+"""What the verbs of `arm control` share: the client of the manager, options and completers."""
 
 import argparse
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.names import absolute_name
+from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with
+from arm_node.names import describe_known
 
 if TYPE_CHECKING:
-    from arm_cli.ros.controller_manager import ControllerManagerClient
+    from arm_node.controller_manager import ControllerManagerClient
 
 DEFAULT_MANAGER = "/controller_manager"
 
@@ -21,35 +22,42 @@ ACTIVE, INACTIVE, UNCONFIGURED, OTHER = 92, 96, 93, 91
 
 
 def add_manager_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the choice of the manager."""
+    """Add the option that selects the manager."""
     complete_with(
         parser.add_argument(
             "-c",
             "--controller-manager",
             default=DEFAULT_MANAGER,
             metavar="NODE",
-            help=f"name of the manager's node (default {DEFAULT_MANAGER})",
+            help=f"name of the manager's node (default {DEFAULT_MANAGER}, or the only one)",
         ),
         completers.nodes,
     )
-    # A manager that is named may always be a hidden node; but lines written for ros2 say so.
+    # Accepted because command lines for ros2 use it. A named node may always be hidden here.
     parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
 
 
 @contextmanager
 def ask_manager(options: argparse.Namespace) -> Iterator["ControllerManagerClient"]:
-    """Give a client of the manager's services."""
+    """Yield a client of the manager's services."""
     with connect() as session:
-        from arm_cli.ros.controller_manager import ControllerManagerClient
+        from arm_cli.ros.controller_manager import manager_client
 
-        yield ControllerManagerClient(session, absolute_name(options.controller_manager))
+        manager = absolute_name(options.controller_manager)
+        yield manager_client(session, manager, or_the_only_one=manager == DEFAULT_MANAGER)
 
 
 def refuse(sentence: str) -> int:
-    """Say why not, in the very words of ros2 control; return the exit code."""
-    sys.stdout.flush()
-    print(sentence, file=sys.stderr)
+    """Print an error in the exact words of ros2 control; return the exit code."""
+    complain(sentence)
     return 1
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """Return "; did you mean ...?" if an unknown name is similar to a known one, else ""."""
+    names = list(known)
+    hint = "" if name in names else describe_known(name, names)
+    return f"; {hint}" if hint.startswith("did") else ""
 
 
 def state_colour(state: str) -> int:
@@ -62,3 +70,34 @@ def plain(messages: list[Any]) -> list[Any]:
     from arm_cli.messages.text import to_plain
 
     return [to_plain(message) for message in messages]
+
+
+def add_controller_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the controller's name."""
+    complete_with(
+        parser.add_argument("controller_name", help="such as position_controller"),
+        loaded_controllers,
+    )
+
+
+def loaded_controllers(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    """Return the names of the loaded controllers, for the Tab key."""
+    return _ask(parsed_args, lambda manager: list(manager.states()))
+
+
+def loadable_controllers(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    """Return the controllers in the manager's parameters that are not loaded, for the Tab key."""
+    return _ask(parsed_args, lambda manager: sorted({*manager.loadable()} - {*manager.states()}))
+
+
+def hardware_components(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
+    """Return the names of the hardware components, for the Tab key."""
+    return _ask(parsed_args, lambda manager: [c.name for c in manager.hardware_components()])
+
+
+def _ask(
+    parsed_args: argparse.Namespace, ask: Callable[["ControllerManagerClient"], list[str]]
+) -> list[str]:
+    manager = getattr(parsed_args, "controller_manager", None) or DEFAULT_MANAGER
+    with ask_manager(argparse.Namespace(controller_manager=manager)) as client:
+        return ask(client)

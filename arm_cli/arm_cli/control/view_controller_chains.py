@@ -1,12 +1,13 @@
-"""`arm control view_controller_chains`: the controllers and their interfaces as a picture."""
+"""`arm control view_controller_chains`: draws the controllers and their interfaces."""
 
 import argparse
 from pathlib import Path
 from typing import Any
 
 from arm_cli.control.manager import add_manager_arguments, ask_manager
-from arm_cli.drawing.picture_file import write_picture
-from arm_viewer.drawing.digraph import Digraph, Edge, Shape, Vertex
+from arm_cli.graph_files import write_picture
+from arm_cli.output import say
+from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
 
 STEM = "controller_diagram"
 STATES, COMMANDS = "state interfaces", "command interfaces"
@@ -14,21 +15,21 @@ STATES, COMMANDS = "state interfaces", "command interfaces"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument("--save", action="store_true", help="accepted: it is always saved")
+    parser.add_argument("--save", action="store_true", help="accepted; the picture is always saved")
     add_manager_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> None:
-    """Write the picture, and its source for graphviz beside it.
+    """Write the picture and its graphviz source.
 
     Raises:
         UnansweredError: the manager does not answer.
-        UsageError: the file cannot be written.
+        CommandUsageError: the file cannot be written.
     """
     with ask_manager(options) as manager:
         controllers = manager.controllers()
     path = write_picture(controller_graph(controllers), Path(STEM))
-    print(f"Saved controller diagram to {path.absolute()}")
+    say(f"Saved controller diagram to {path.absolute()}")
 
 
 def controller_graph(controllers: list[Any]) -> Digraph:

@@ -1,1 +1,1 @@
-"""What `arm doctor` looks at: a check is a class of its own, which knows no ROS."""
+"""`arm doctor`: checks without ROS, and the observation of a running simulation by ROS."""

@@ -1,4 +1,4 @@
-"""What was seen of a running simulation, in a second or so."""
+"""What the doctor observes of a running simulation, in about a second."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class LoadedController:
-    """A controller, with the command interfaces that it has claimed."""
+    """A loaded controller and the command interfaces that it has claimed."""
 
     name: str
     state: str
@@ -14,45 +14,52 @@ class LoadedController:
 
 
 @dataclass(frozen=True, slots=True)
-class HardwareComponent:
-    """A hardware component, with its command interfaces: whether each is claimed."""
+class ObservedHardware:
+    """A hardware component.
+
+    Attributes:
+        name: the component's name.
+        state: its lifecycle state.
+        claimed: whether each of its command interfaces is claimed, by name.
+        states: the names of its state interfaces.
+    """
 
     name: str
     state: str
     claimed: Mapping[str, bool] = field(default_factory=dict)
+    states: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class ControlState:
-    """What a controller manager says.
+    """The state of a controller manager.
 
     Attributes:
-        manager: absolute name of its node.
-        answered: False where it does not answer; nothing else is known then.
-        controllers: all that are loaded.
-        hardware: all components.
+        manager: the absolute name of its node.
+        answered: whether it answered; if not, nothing else is known.
+        controllers: the loaded controllers.
+        hardware: the hardware components.
     """
 
     manager: str
     answered: bool = True
     controllers: tuple[LoadedController, ...] = ()
-    hardware: tuple[HardwareComponent, ...] = ()
+    hardware: tuple[ObservedHardware, ...] = ()
 
     @property
     def option(self) -> str:
-        """What to add to a command line for this manager."""
+        """The command-line option that selects this manager."""
         return "" if self.manager == "/controller_manager" else f" -c {self.manager}"
 
 
 @dataclass(frozen=True, slots=True)
 class ClockReading:
-    """How far /clock went.
+    """How far /clock advanced.
 
     Attributes:
-        simulated_s: between the first and the last message.
-        wall_s: between their arrivals.
-        wanted_factor: simulated over wall time that was asked for, 0 for as fast as possible, None
-            where that is not known.
+        simulated_s: simulation time between the first and the last message.
+        wall_s: wall time between their arrivals.
+        wanted_factor: the requested real-time factor; 0 means as fast as possible, None unknown.
     """
 
     simulated_s: float
@@ -72,34 +79,36 @@ class Mismatch:
 
 @dataclass(frozen=True, slots=True)
 class StateTopic:
-    """A topic on which joint states come, or are waited for.
+    """A topic for joint states.
 
     Attributes:
-        name: of the topic.
-        publishers: names of the nodes that publish it.
-        listeners: names of the nodes that listen to it.
-        received: how many messages came.
+        name: the topic's name.
+        publishers: the names of the publishing nodes.
+        listeners: the names of the subscribing nodes.
+        received: the number of messages received.
+        not_numbers: the NaN values of the last message, as interfaces such as 'j0/position'.
     """
 
     name: str
     publishers: tuple[str, ...] = ()
     listeners: tuple[str, ...] = ()
     received: int = 0
+    not_numbers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class CommandTopic:
-    """A topic on which set-points come.
+class SetpointTopic:
+    """A topic for set-points.
 
     Attributes:
-        name: of the topic.
-        publishers: names of the nodes that publish it.
-        listeners: names of the nodes that listen to it.
-        controller: the controller that it belongs to, empty where none is loaded.
-        state: of that controller.
-        received: how many messages came.
-        ahead_s: how far the last message's stamp was ahead of the simulation; None without a stamp.
-        lasting_s: how long that message's motion takes from its stamp on.
+        name: the topic's name.
+        publishers: the names of the publishing nodes.
+        listeners: the names of the subscribing nodes.
+        controller: the controller that it belongs to, empty if none is loaded.
+        state: the state of that controller.
+        received: the number of messages received.
+        ahead_s: how far the last message's stamp was ahead of simulation time; None without stamp.
+        lasting_s: the duration of that message's motion from its stamp.
     """
 
     name: str
@@ -113,18 +122,20 @@ class CommandTopic:
 
 
 @dataclass(frozen=True, slots=True)
-class Observation:
-    """All that the checks of a running simulation need.
+class GraphObservation:
+    """The input of the checks of a running simulation.
 
     Attributes:
         managers: the controller managers.
-        publishers: names of the publishing nodes, by topic.
-        descriptions: the robot description that came on each such topic, empty where none came.
-        clock: None where nothing came on /clock.
-        clock_readers: names of the nodes that go by /clock.
-        joint_states: topics with joint states.
-        mismatches: end points that cannot talk to each other.
-        commands: topics with set-points.
+        publishers: the names of the publishing nodes, by topic.
+        descriptions: the robot description by topic, empty if none arrived.
+        clock: the clock, None if nothing arrived on /clock.
+        clock_readers: the names of the nodes that subscribe to /clock.
+        joint_states: the topics for joint states.
+        mismatches: endpoints that cannot exchange messages.
+        commands: the topics for set-points.
+        nodes: the full name of every node, with duplicates.
+        stopped: the topics that say that an emergency stop is latched.
     """
 
     managers: tuple[ControlState, ...] = ()
@@ -134,14 +145,16 @@ class Observation:
     clock_readers: tuple[str, ...] = ()
     joint_states: tuple[StateTopic, ...] = ()
     mismatches: tuple[Mismatch, ...] = ()
-    commands: tuple[CommandTopic, ...] = ()
+    commands: tuple[SetpointTopic, ...] = ()
+    nodes: tuple[str, ...] = ()
+    stopped: tuple[str, ...] = ()
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to examine."""
+        """Whether there is nothing to check."""
         return not (self.managers or self.is_timed or self.descriptions)
 
     @property
     def is_timed(self) -> bool:
-        """Whether somebody publishes /clock, or goes by it."""
+        """Whether a node publishes /clock or subscribes to it."""
         return bool(self.publishers.get("/clock") or self.clock_readers)

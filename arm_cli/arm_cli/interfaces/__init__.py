@@ -1,1 +1,1 @@
-"""Interface types: what is installed, and what their files say. Knows no rclpy."""
+"""The installed message, service and action types, and their definitions."""

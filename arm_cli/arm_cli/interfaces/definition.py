@@ -16,11 +16,11 @@ _QUOTED = re.compile(r"'(?:\\.|[^'\\])*'|\"(?:\\.|[^\"\\])*\"")
 
 @dataclass(frozen=True, slots=True)
 class Comments:
-    """Which comments and empty lines are shown.
+    """Which comments and empty lines to show.
 
     Attributes:
-        outer: of the type itself.
-        nested: of the types of its fields.
+        outer: whether to show those of the type itself.
+        nested: whether to show those of the types of its fields.
     """
 
     outer: bool = True
@@ -28,16 +28,16 @@ class Comments:
 
 
 def describe_type(index: InterfaceIndex, type_: InterfaceType, comments: Comments) -> Iterator[str]:
-    """Yield the lines of a type's definition, one more tab for each level of nesting.
+    """Yield the lines of a type's definition, with one more tab for each level of nesting.
 
     Raises:
-        NotFoundError: the type of a field is not installed.
+        NoSuchNameError: the type of a field is not installed.
     """
     yield from _lines(index, type_, comments.outer, comments.nested, "")
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the full name of the message type of a field, None for lines without one."""
+    """Return the full name of the message type in a field's line, None if there is none."""
     match = _FIELD.match(line)
     if match is None or line.lstrip().startswith("#"):
         return None
@@ -49,7 +49,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def without_comment(line: str) -> str:
-    """Return a line without its comment; a # between quotes is none."""
+    """Return a line without its comment; a # in quotes does not start a comment."""
     masked = _QUOTED.sub(lambda match: "_" * len(match.group()), line)
     return line[: masked.find("#")].strip() if "#" in masked else line
 

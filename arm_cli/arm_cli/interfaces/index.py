@@ -1,4 +1,4 @@
-"""The installed message, service and action types, found by their definition files."""
+"""Finds the installed message, service and action types by their definition files."""
 
 import os
 from collections.abc import Mapping
@@ -7,9 +7,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from arm_cli.errors import NotFoundError
-from launch_py.near_names import describe_known
-from launch_py.packages import ament_prefixes
+from arm_cli.errors import NoSuchNameError
+from arm_node.names import MIN_SIMILARITY, describe_known
+from launch_py.system.packages import ament_prefixes
 
 KINDS = ("msg", "srv", "action")
 KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
@@ -26,7 +26,7 @@ class InterfaceType:
 
     @property
     def full_name(self) -> str:
-        """Its name, such as std_msgs/msg/String."""
+        """The full name, such as std_msgs/msg/String."""
         return f"{self.package}/{self.kind}/{self.name}"
 
 
@@ -34,7 +34,7 @@ class InterfaceIndex:
     """Finds types in the share folders of the prefixes."""
 
     def __init__(self, environ: Mapping[str, str] = os.environ) -> None:
-        """Look in the prefixes of AMENT_PREFIX_PATH and of this Python."""
+        """Search the prefixes of AMENT_PREFIX_PATH and of this Python."""
         self._shares = [Path(prefix, "share") for prefix in ament_prefixes(environ)]
 
     def packages(self, kinds: tuple[str, ...] = KINDS) -> list[str]:
@@ -60,10 +60,10 @@ class InterfaceIndex:
         return sorted(found.values(), key=lambda type_: type_.full_name)
 
     def find(self, name: str, kinds: tuple[str, ...] = KINDS) -> InterfaceType:
-        """Return the type of a name; `std_msgs/String` is `std_msgs/msg/String`, too.
+        """Return the type with a name; `std_msgs/String` also means `std_msgs/msg/String`.
 
         Raises:
-            NotFoundError: there is no such type; the message names near ones.
+            NoSuchNameError: there is no such type; the message suggests similar names.
         """
         parts = name.split("/")
         if len(parts) == 3 and parts[1] in kinds:
@@ -76,30 +76,48 @@ class InterfaceIndex:
             package, kind, stem = full_name.split("/")
             for share in self._shares:
                 path = share / package / kind / f"{stem}.{kind}"
-                if path.is_file():
+                if os.path.isfile(path):
                     return InterfaceType(package, kind, stem, path)
         raise self._unknown(name, kinds)
 
-    def _unknown(self, name: str, kinds: tuple[str, ...]) -> NotFoundError:
+    def _unknown(self, name: str, kinds: tuple[str, ...]) -> NoSuchNameError:
         what = KIND_NAMES[kinds[0]] if len(kinds) == 1 else "interface"
+        if "/" not in name:
+            similar = self._similar_types(name, kinds)
+            if similar:
+                choices = " or ".join(map(repr, similar))
+                return NoSuchNameError(f"no {what} type {name!r}; did you mean {choices}?")
         package = name.split("/")[0]
         installed = self.packages(kinds)
         if package not in installed:
             known = describe_known(package, installed)
-            return NotFoundError(f"no {what} type {name!r}: no package {package!r}; {known}")
+            return NoSuchNameError(f"no {what} type {name!r}: no package {package!r}; {known}")
         known = [type_.full_name for type_ in self.types(kinds, package)]
-        return NotFoundError(f"no {what} type {name!r}; {describe_known(name, known)}")
+        return NoSuchNameError(f"no {what} type {name!r}; {describe_known(name, known)}")
+
+    def _similar_types(self, stem: str, kinds: tuple[str, ...]) -> list[str]:
+        """Return up to three types with this name, or with similar names, in any package."""
+        import difflib
+
+        types = self.types(kinds)
+        stems = {type_.name for type_ in types}
+        near = (
+            [stem]
+            if stem in stems
+            else difflib.get_close_matches(stem, sorted(stems), 3, MIN_SIMILARITY)
+        )
+        return [type_.full_name for name in near for type_ in types if type_.name == name][:3]
 
 
 def load_class(type_: InterfaceType) -> Any:
     """Return the Python class of a type.
 
     Raises:
-        NotFoundError: its package has no Python module, or one without the type.
+        NoSuchNameError: its package has no Python module, or the module lacks the type.
     """
     try:
         return getattr(import_module(f"{type_.package}.{type_.kind}"), type_.name)
     except (ImportError, AttributeError) as error:
-        raise NotFoundError(
+        raise NoSuchNameError(
             f"{type_.full_name} is defined in {type_.path}, but cannot be used: {error}"
         ) from error

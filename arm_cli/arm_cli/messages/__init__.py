@@ -1,1 +1,1 @@
-"""Messages to text and text to messages. Knows the message classes, but no rclpy."""
+"""Converts messages to text and text to messages."""

@@ -1,4 +1,4 @@
-"""Field types of messages as .msg files write them, and the classes of nested messages."""
+"""Field types in the notation of .msg files, and the classes of nested messages."""
 
 from importlib import import_module
 from typing import Any
@@ -45,7 +45,7 @@ def type_name(slot_type: Any) -> str:
 
 
 def abbreviation(slot_type: AbstractNestedType, length: int) -> str:
-    """Return what stands for an array that is not printed, in ros2's words."""
+    """Return the placeholder for an array that is not printed, as in ros2."""
     value_type = slot_type.value_type
     name = value_type.typename if isinstance(value_type, BasicType) else type_name(value_type)
     if isinstance(slot_type, Array):

@@ -1,7 +1,7 @@
-"""YAML text into a message, with errors that name the field and what would have fitted.
+"""Fills messages from YAML text, with errors that name the field and the expected type.
 
-As ros2 does, a number with a fraction in an integer field is truncated; here it is said. `auto`
-for a header and `now` for a stamp stand for the time at which the message is sent.
+A number with a fraction in an integer field is truncated, as in ros2, but with a note. `auto` for a
+header and `now` for a stamp mean the time at which the message is sent.
 """
 
 from collections.abc import Callable
@@ -19,6 +19,7 @@ from rosidl_parser.definition import (
 
 from arm_cli.errors import MessageError
 from arm_cli.messages.field_types import FLOATS, INTEGER_RANGES, message_class, slots, type_name
+from arm_node.limited_yaml import YamlError, load_yaml, load_yaml_documents
 
 _TRUTH = {"true": True, "false": False, "1": True, "0": False}
 _NUMBER = (int, float, str)
@@ -30,8 +31,8 @@ class FilledMessage:
 
     Attributes:
         message: the message itself.
-        notes: what was taken differently from how it was written, a sentence each.
-        stamps: messages and their fields that get the time of sending.
+        notes: a sentence for each value that was changed.
+        stamps: the messages and fields that get the time of sending.
     """
 
     message: Any
@@ -39,59 +40,48 @@ class FilledMessage:
     stamps: list[tuple[Any, str]] = field(default_factory=list)
 
     def stamp(self, time: Any) -> None:
-        """Put a builtin_interfaces/Time into every field that asked for it."""
+        """Set every field that requested the time of sending to a builtin_interfaces/Time."""
         for owner, name in self.stamps:
             setattr(owner, name, time)
 
 
 def read_yaml(text: str, type_: str) -> Any:
-    """Return the values that a YAML text holds; empty text holds none.
+    """Return the values in a YAML text; an empty text has none.
 
     Raises:
-        MessageError: it is no YAML, or no mapping from fields to values.
+        MessageError: the text is not YAML, or not a mapping from fields to values.
     """
-    import yaml
-
-    values = _loaded(lambda: yaml.safe_load(text))
+    values = _loaded(load_yaml, text)
     if values is None:
         return {}
     if not isinstance(values, dict):
-        raise MessageError(f"{_no_mapping(type_, text, values)}; is it quoted for the shell?")
+        raise MessageError(f"{_not_a_mapping(type_, text, values)}; is it quoted for the shell?")
     return values
 
 
 def read_yaml_documents(text: str, type_: str) -> list[dict[str, Any]]:
-    """Return the values that each of a YAML text's documents holds, but for the empty ones.
+    """Return the values in each document of a YAML text, without the empty documents.
 
-    Such is what `arm topic echo` prints: `---` follows each message.
+    `arm topic echo` prints such texts, with `---` after each message.
 
     Raises:
-        MessageError: it is no YAML, or a document is no mapping from fields to values.
+        MessageError: the text is not YAML, or a document is not a mapping from fields to values.
     """
-    import yaml
-
-    loaded = _loaded(lambda: list(yaml.safe_load_all(text)))
-    documents = [document for document in loaded if document is not None]
+    documents = [d for d in _loaded(load_yaml_documents, text) if d is not None]
     for number, document in enumerate(documents, start=1):
         if not isinstance(document, dict):
-            raise MessageError(f"message {number}: {_no_mapping(type_, document, document)}")
+            raise MessageError(f"message {number}: {_not_a_mapping(type_, document, document)}")
     return documents
 
 
-def _loaded(load: Callable[[], Any]) -> Any:
-    import yaml
-
+def _loaded(load: Callable[[str], Any], text: str) -> Any:
     try:
-        return load()
-    # PyYAML's constructors raise a ValueError: the 45th of a month is no date.
-    except (yaml.YAMLError, ValueError) as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f" at character {mark.index + 1}" if mark else ""
-        problem = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise MessageError(f"the values are no YAML{where}: {problem}") from error
+        return load(text)
+    except YamlError as error:
+        raise MessageError(f"the values are not YAML: {error}") from error
 
 
-def _no_mapping(type_: str, shown: Any, values: Any) -> str:
+def _not_a_mapping(type_: str, shown: Any, values: Any) -> str:
     return (
         f"the values of a {type_} are written 'field: value', but {shown!r} is a "
         f"{type(values).__name__}"
@@ -102,7 +92,7 @@ def fill_message(message: Any, values: dict[str, Any]) -> FilledMessage:
     """Set a message's fields.
 
     Raises:
-        MessageError: no such field, or a value that does not fit.
+        MessageError: there is no such field, or a value does not fit.
     """
     filled = FilledMessage(message)
     _Filler(filled).fill(message, values, "")
@@ -149,14 +139,15 @@ class _Filler:
         if isinstance(value, str) and type_name(type_.value_type) in ("byte", "uint8", "char"):
             value = list(_encoded(value, path))
         if not isinstance(value, list):
-            raise MessageError(f"{path}: {value!r} is no list ({type_name(type_)})")
+            raise MessageError(f"{path}: {value!r} is not a list ({type_name(type_)})")
         if isinstance(type_, Array) and len(value) != type_.size:
             raise MessageError(
-                f"{path}: {len(value)} values, {type_name(type_)} holds {type_.size}"
+                f"{path}: {len(value)} values, but {type_name(type_)} holds {type_.size}"
             )
         if isinstance(type_, BoundedSequence) and len(value) > type_.maximum_size:
             raise MessageError(
-                f"{path}: {len(value)} values, {type_name(type_)} holds {type_.maximum_size}"
+                f"{path}: {len(value)} values, but {type_name(type_)} holds at most "
+                f"{type_.maximum_size}"
             )
         return [
             self._convert(type_.value_type, item, f"{path}[{index}]")
@@ -178,8 +169,8 @@ class _Filler:
     def _integer(self, value: Any, name: str, path: str) -> int:
         number = _number(value, name, path)
         if number != number or number in (float("inf"), float("-inf")):
-            raise MessageError(f"{path}: {value!r} is no whole number ({name})")
-        # A float has 53 bits: what is an int already must not go through one.
+            raise MessageError(f"{path}: {value!r} is not a whole number ({name})")
+        # A float has 53 bits, so an int must not be converted to one.
         whole = value if isinstance(value, int) else int(number)
         if not isinstance(value, int) and whole != number:
             self._filled.notes.append(f"{path}: {value} is truncated to {whole} ({name})")
@@ -190,23 +181,23 @@ class _Filler:
 
 
 def _number(value: Any, name: str, path: str) -> float:
-    # YAML 1.1 reads 1e-3, which has no point, as text.
+    # YAML 1.1 reads a number without a decimal point, such as 1e-3, as text.
     if isinstance(value, _NUMBER) and not isinstance(value, bool):
         try:
             return float(value)
         except (ValueError, OverflowError):
             pass
-    raise MessageError(f"{path}: {value!r} is no number ({name})")
+    raise MessageError(f"{path}: {value!r} is not a number ({name})")
 
 
 def _string(type_: AbstractGenericString, value: Any, path: str) -> str:
     if isinstance(value, (dict, list)):
-        raise MessageError(f"{path}: {value!r} is no text ({type_name(type_)})")
+        raise MessageError(f"{path}: {value!r} is not a text ({type_name(type_)})")
     text = "" if value is None else str(value)
     _encoded(text, path)
     if type_.has_maximum_size() and len(text) > type_.maximum_size:  # pyright: ignore[reportAttributeAccessIssue]
         raise MessageError(
-            f"{path}: {len(text)} characters, {type_name(type_)} holds {type_.maximum_size}"  # pyright: ignore[reportAttributeAccessIssue]
+            f"{path}: {len(text)} characters, but {type_name(type_)} holds {type_.maximum_size}"  # pyright: ignore[reportAttributeAccessIssue]
         )
     return text
 
@@ -216,7 +207,7 @@ def _encoded(text: str, path: str) -> bytes:
         return text.encode()
     except UnicodeEncodeError as error:
         raise MessageError(
-            f"{path}: {text[error.start]!r} at character {error.start + 1} is no character of UTF-8"
+            f"{path}: {text[error.start]!r} at character {error.start + 1} is not valid in UTF-8"
         ) from error
 
 

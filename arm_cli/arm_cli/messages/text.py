@@ -1,4 +1,4 @@
-"""Messages as YAML, CSV and JSON, in the formats of `ros2 topic echo`."""
+"""Converts messages to YAML, CSV and JSON, in the formats of `ros2 topic echo`."""
 
 import array
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ _SEQUENCES = (list, tuple, array.array, np.ndarray)
 
 @dataclass(frozen=True, slots=True)
 class Abridgement:
-    """What is left out.
+    """How much of a message to leave out.
 
     Attributes:
-        truncate_length: longer arrays, strings and bytes end in "..."; None: all is shown.
-        no_arr: whether arrays are only described.
-        no_str: whether strings are only described.
+        truncate_length: longer arrays, strings and bytes are cut and end in "..."; None cuts none.
+        no_arr: whether to print placeholders for arrays.
+        no_str: whether to print placeholders for strings.
     """
 
     truncate_length: int | None = None
@@ -37,7 +37,7 @@ COMPLETE = Abridgement()
 
 
 def is_message(value: Any) -> bool:
-    """Return whether a part of a message is a message itself."""
+    """Return whether a value is a message."""
     return hasattr(value, "get_fields_and_field_types")
 
 
@@ -73,7 +73,7 @@ def to_yaml(message: Any, abridgement: Abridgement = COMPLETE, flow_style: bool 
 
 
 def to_csv(value: Any, abridgement: Abridgement = COMPLETE, slot_type: Any = None) -> str:
-    """Return a message's values separated by commas, nested ones in place."""
+    """Return a message's values separated by commas, with nested values in place."""
     if is_message(value):
         return ",".join(
             to_csv(getattr(value, name), abridgement, type_) for name, type_ in slots(value).items()

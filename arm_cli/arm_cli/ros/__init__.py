@@ -1,1 +1,1 @@
-"""The parts of the command that talk to ROS: a node for a moment, and what it asks."""
+"""The node of a command, and its view of the ROS graph."""

@@ -1,34 +1,37 @@
-"""Where every verb that talks to ROS begins."""
+"""Connects a verb to ROS."""
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from arm_cli.errors import UsageError
+from arm_cli.errors import CommandUsageError
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
-from arm_node.local_profile import PROFILE, use_local_profile
-from launch_py.child_environment import dds_profile
-from launch_py.library_output import library_output_on_stderr
+from arm_node.workarounds.local_profile import PROFILE, use_local_profile
+from launch_py.fast_dds.abandoned_memory import remove_abandoned
+from launch_py.standard_streams import library_output_on_stderr
+from launch_py.system.child_environment import dds_profile
 
 if TYPE_CHECKING:
-    from arm_cli.ros.session import Session
+    from arm_cli.ros.session import CommandSession
 
 
 @contextmanager
-def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Session"]:
-    """Give a node for this command; see `open_session`.
+def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["CommandSession"]:
+    """Yield a session with a node for this command; see `open_session`.
 
-    The process announces itself as often as the launched ones do, unless the user has a profile:
-    whoever is there answers at once. Meanwhile stdout is for what Python prints alone.
+    Unless the user has a DDS profile, the process announces itself as often as launched processes
+    do, so that it discovers others at once. Shared memory of killed processes is removed. stdout is
+    reserved for Python's output meanwhile.
 
     Raises:
-        UsageError: ROS cannot start in this environment; the message says the fix.
+        CommandUsageError: ROS cannot start in this environment; the message says how to fix it.
     """
     try:
         prepare_environment()
     except UnusableEnvironmentError as error:
-        raise UsageError(str(error)) from error
+        raise CommandUsageError(str(error)) from error
+    remove_abandoned()
     profile = dds_profile(os.environ)
     if profile is not None:
         os.environ.setdefault(PROFILE, str(profile))

@@ -1,121 +1,108 @@
-"""A client of a controller manager's services, ours or a real one's."""
+"""A client of a controller manager for commands."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from typing import Any
 
-from builtin_interfaces.msg import Duration
-from controller_manager_msgs.srv import (
-    CleanupController,
-    ConfigureController,
-    ListControllers,
-    ListControllerTypes,
-    ListHardwareComponents,
-    ListHardwareInterfaces,
-    LoadController,
-    ReloadControllerLibraries,
-    SetHardwareComponentState,
-    SwitchController,
-    UnloadController,
-)
-from lifecycle_msgs.msg import State
+from arm_cli.errors import UnansweredError
+from arm_cli.output import complain
+from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, SERVER_TIMEOUT_S, call_service
+from arm_cli.ros.session import CommandSession
+from arm_node.controller_manager import SERVICES, ControllerManagerClient
 
-from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
-from arm_cli.ros.session import Session
-
-SWITCH_TIMEOUT_S = 5.0
-
-_STATE_IDS = {
-    "unconfigured": State.PRIMARY_STATE_UNCONFIGURED,
-    "inactive": State.PRIMARY_STATE_INACTIVE,
-    "active": State.PRIMARY_STATE_ACTIVE,
-}
+MARK = "/list_controllers"
+"""Every controller manager has this service, with the type MARK_TYPE."""
+MARK_TYPE = "controller_manager_msgs/srv/ListControllers"
+OTHERS_S = 0.5
+"""How long to wait for the requested manager after another one has been discovered."""
 
 
-class ControllerManagerClient:
-    """Asks one manager. Every method raises UnansweredError where it does not answer."""
+class _SessionCaller:
+    """A `ServiceTransport` that sends each request once, from a session's node."""
 
     def __init__(
-        self, session: Session, manager: str, answer_timeout_s: float = ANSWER_TIMEOUT_S
+        self,
+        session: CommandSession,
+        manager: str,
+        answer_timeout_s: float,
+        or_the_only_one: bool = False,
     ) -> None:
-        """Ask the manager whose node has that absolute name."""
+        """Call the services of the manager whose node has this absolute name.
+
+        With `or_the_only_one` it calls another manager if that is the only one on the graph.
+        """
         self._session = session
         self._manager = manager
         self._answer_timeout_s = answer_timeout_s
+        self._may_choose = or_the_only_one
 
-    def controllers(self) -> list[Any]:
-        """Return a ControllerState for each loaded controller, newest first."""
-        return list(self._call(ListControllers, "list_controllers").controller)
+    def query(self, service: str, request: Any) -> Any:
+        """Return the answer.
 
-    def controller_types(self) -> list[tuple[str, str]]:
-        """Return the types that can be loaded, and their base classes."""
-        answer = self._call(ListControllerTypes, "list_controller_types")
-        return list(zip(answer.types, answer.base_classes, strict=True))
-
-    def hardware_components(self) -> list[Any]:
-        """Return a HardwareComponentState for each component."""
-        return list(self._call(ListHardwareComponents, "list_hardware_components").component)
-
-    def hardware_interfaces(self) -> Any:
-        """Return the command and the state interfaces."""
-        return self._call(ListHardwareInterfaces, "list_hardware_interfaces")
-
-    def load(self, name: str) -> bool:
-        """Load a controller; return whether that worked, as all methods below."""
-        return self._call(LoadController, "load_controller", name=name).ok
-
-    def configure(self, name: str) -> bool:
-        """Configure a controller."""
-        return self._call(ConfigureController, "configure_controller", name=name).ok
-
-    def cleanup(self, name: str) -> bool:
-        """Take an inactive controller back to unconfigured."""
-        return self._call(CleanupController, "cleanup_controller", name=name).ok
-
-    def unload(self, name: str) -> bool:
-        """Unload a controller."""
-        return self._call(UnloadController, "unload_controller", name=name).ok
-
-    def reload_libraries(self, force_kill: bool) -> bool:
-        """Read the controllers' code anew."""
-        service = "reload_controller_libraries"
-        return self._call(ReloadControllerLibraries, service, force_kill=force_kill).ok
-
-    def switch(
-        self,
-        activate: Sequence[str] = (),
-        deactivate: Sequence[str] = (),
-        strictness: int = SwitchController.Request.STRICT,
-        asap: bool = True,
-        timeout_s: float = SWITCH_TIMEOUT_S,
-    ) -> Any:
-        """Activate and deactivate controllers in one step; return the response."""
-        whole_s = int(timeout_s)
-        return self._call(
-            SwitchController,
-            "switch_controller",
-            activate_controllers=list(activate),
-            deactivate_controllers=list(deactivate),
-            strictness=strictness,
-            activate_asap=asap,
-            timeout=Duration(sec=whole_s, nanosec=int((timeout_s - whole_s) * 1e9)),
-        )
-
-    def set_component_state(self, name: str, state: str) -> Any:
-        """Bring a hardware component to a state; return the response."""
-        return self._call(
-            SetHardwareComponentState,
-            "set_hardware_component_state",
-            name=name,
-            target_state=State(id=_STATE_IDS[state], label=state),
-        )
-
-    def _call(self, service_class: Any, service: str, **fields: Any) -> Any:
+        Raises:
+            UnansweredError: the service has no server, or the server does not answer.
+        """
+        if self._may_choose:
+            self._manager = self._existing(service)
+            self._may_choose = False
         name = f"{self._manager}/{service}"
-        request = service_class.Request(**fields)
         return call_service(
             self._session,
-            service_class,
+            SERVICES[service],
             name,
             request,
             answer_timeout_s=self._answer_timeout_s,
         )
+
+    def _existing(self, service: str) -> str:
+        """Return the requested manager, or else the only one on the graph.
+
+        Raises:
+            UnansweredError: there is no manager, or there are several others.
+        """
+        wanted, name = self._manager, f"{self._manager}/{service}"
+        if not self._session.wait_until(
+            lambda: bool(managers(self._session)),
+            lambda: f"waiting for service {name}",
+            SERVER_TIMEOUT_S,
+        ):
+            raise UnansweredError(f"service {name} has no server (waited {SERVER_TIMEOUT_S:g} s)")
+        self._session.wait_until(lambda: wanted in managers(self._session), timeout_s=OTHERS_S)
+        found = managers(self._session)
+        if wanted in found:
+            return wanted
+        if len(found) > 1:
+            raise UnansweredError(
+                f"there is no {wanted}, but there are {', '.join(found)}: choose one with -c"
+            )
+        complain(f"there is no {wanted}: asking {found[0]}")
+        return found[0]
+
+    def change(self, service: str, request: Any, is_done: Callable[[], bool]) -> Any:
+        """Return the answer; errors as `query`."""
+        return self.query(service, request)
+
+
+def managers(session: CommandSession) -> list[str]:
+    """Return the absolute names of the controller managers that are discovered, sorted."""
+    services = session.node.get_service_names_and_types()
+    return sorted(
+        name.removesuffix(MARK)
+        for name, types in services
+        if name.endswith(MARK) and MARK_TYPE in types
+    )
+
+
+def manager_client(
+    session: CommandSession,
+    manager: str,
+    answer_timeout_s: float = ANSWER_TIMEOUT_S,
+    or_the_only_one: bool = False,
+) -> ControllerManagerClient:
+    """Return a client of the manager whose node has this absolute name.
+
+    With `or_the_only_one` it uses another manager if that is the only one on the graph. The
+    client's methods raise UnansweredError if the manager does not answer.
+    """
+    return ControllerManagerClient(
+        _SessionCaller(session, manager, answer_timeout_s, or_the_only_one)
+    )

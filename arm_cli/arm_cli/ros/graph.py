@@ -1,10 +1,10 @@
 """The ROS graph as this process has discovered it.
 
-There is no daemon that knows the graph already: every command discovers it anew, in some tenths
-of a second. `settle` says when that is enough for a list: nothing new has come for a while, and
-every end point has been attributed to a node, which its process says by a message of its own. What
-is asked for by name is there as soon as it has been discovered; only what is missing waits, and
-longer: a wrong "there is no such node" is worse than a late one.
+There is no daemon that knows the graph already, so every command discovers it in a few tenths of a
+second. `settle` waits until a list can be complete: nothing new has appeared for a while, and every
+endpoint has been attributed to a node, which its process announces in a separate message. A lookup
+by name returns as soon as the name is discovered. Only a missing name waits, and for longer: a
+wrong "there is no such node" is worse than a late one.
 """
 
 import time
@@ -13,27 +13,22 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
-from rclpy.action.graph import (
-    get_action_client_names_and_types_by_node,
-    get_action_names_and_types,
-    get_action_server_names_and_types_by_node,
-)
 from rclpy.node import NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from arm_cli.errors import NotFoundError
+from arm_cli.errors import NoSuchNameError
 from arm_cli.names import absolute_name, is_hidden, this_domain
-from arm_cli.ros.session import Session
-from launch_py.near_names import describe_known
+from arm_cli.ros.session import CommandSession
+from arm_node.names import describe_known
 
 QUIET_S = 0.3
-"""So long nothing new has come: more than the 0.25 s between announcements of launched nodes."""
+"""A graph without changes for this long is complete. Launched nodes announce every 0.25 s."""
 EMPTY_S = 1.0
-"""Nobody else has been found for so long: there is nobody."""
+"""If no other node has been found for this long, there is none."""
 MISSING_S = 2.0
-"""What is asked for by name is not said to be missing before."""
+"""A name is not reported as missing before this time."""
 SETTLED_S = 3.0
-"""A graph that never comes to rest is as good as it gets by now."""
+"""A graph that keeps changing is used as it is after this time."""
 
 _UNATTRIBUTED = "_NODE_NAME_UNKNOWN_"
 
@@ -57,14 +52,14 @@ class NodeName:
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class GraphSurvey:
     """How much of the graph is known.
 
     Attributes:
-        nodes: other nodes.
-        endpoints: their publishers and subscriptions.
-        services: servers of services.
-        attributed: whether it is known of every end point which node it belongs to.
+        nodes: the number of other nodes.
+        endpoints: the number of their publishers and subscriptions.
+        services: the number of service servers.
+        attributed: whether the node of every endpoint is known.
     """
 
     nodes: int
@@ -73,25 +68,48 @@ class Survey:
     attributed: bool
 
 
-class Graph:
-    """Looks at the graph through a session's node."""
+@dataclass(frozen=True, slots=True)
+class SettleTimes:
+    """How long to wait for the graph to settle.
 
-    def __init__(self, session: Session) -> None:
-        """Use the session's node."""
+    Attributes:
+        quiet_s: the graph is complete if nothing new has appeared for this long.
+        empty_s: the graph is empty if no other node has been found for this long.
+        settled_s: the longest wait.
+    """
+
+    quiet_s: float = QUIET_S
+    empty_s: float = EMPTY_S
+    settled_s: float = SETTLED_S
+
+
+DEFAULT_TIMES = SettleTimes()
+
+
+class Graph:
+    """The graph as seen by a session's node."""
+
+    def __init__(self, session: CommandSession) -> None:
+        """View the graph from the session's node."""
         self._session = session
         self._node = session.node
         self._own = absolute_name(session.node.get_name())
 
-    def settle(self) -> None:
-        """Wait until the graph is complete, as far as one can tell."""
-        self._session.wait_until(_Settling(self, self._session.started_s).done)
+    def settle(self, times: SettleTimes = DEFAULT_TIMES) -> None:
+        """Wait until the graph is complete, as far as that can be known.
 
-    def survey(self) -> "Survey":
-        """Return what is known of others right now."""
+        Args:
+            times: how long to wait; the default suffices for a correct list.
+        """
+        settling = _Settling(self, self._session.started_s, times=times)
+        self._session.wait_until(settling.done)
+
+    def survey(self) -> "GraphSurvey":
+        """Return how much of the graph is known now."""
         names = [name for name, _ in self._node.get_topic_names_and_types()]
         infos = [i for name in names for i in (*self.publishers(name), *self.subscriptions(name))]
         services = self._node.get_service_names_and_types()
-        return Survey(
+        return GraphSurvey(
             nodes=len(self.nodes(hidden=True)),
             endpoints=len(infos),
             services=sum(self.server_count(name) for name, _ in services),
@@ -99,7 +117,7 @@ class Graph:
         )
 
     def nodes(self, hidden: bool = False) -> list[NodeName]:
-        """Return the nodes but this command's own, sorted; one entry for each of a name."""
+        """Return all nodes except this command's own, sorted, with duplicates of a name."""
         names = [
             NodeName(namespace, name)
             for name, namespace in self._node.get_node_names_and_namespaces()
@@ -111,7 +129,7 @@ class Graph:
         )
 
     def topics(self, hidden: bool = False) -> Types:
-        """Return the topics that somebody else has, with their types."""
+        """Return the topics of other nodes, with their types."""
         found = _sorted(self._node.get_topic_names_and_types(), hidden)
         return {
             name: types
@@ -120,27 +138,30 @@ class Graph:
         }
 
     def services(self, hidden: bool = False) -> Types:
-        """Return the services that somebody offers or uses, with their types."""
+        """Return the services with a server or a client, with their types."""
         return _sorted(self._node.get_service_names_and_types(), hidden)
 
     def actions(self) -> Types:
         """Return the actions with their types."""
+        # Imported late, here and below: rclpy.action takes 0.1 s, and few commands need it.
+        from rclpy.action.graph import get_action_names_and_types
+
         return _sorted(get_action_names_and_types(self._node), hidden=True)
 
     def publishers(self, topic: str) -> list[TopicEndpointInfo]:
-        """Return who else publishes a topic."""
+        """Return the other nodes' publishers of a topic."""
         return self._others(self._node.get_publishers_info_by_topic(topic))
 
     def subscriptions(self, topic: str) -> list[TopicEndpointInfo]:
-        """Return who else subscribes to a topic."""
+        """Return the other nodes' subscriptions to a topic."""
         return self._others(self._node.get_subscriptions_info_by_topic(topic))
 
     def client_count(self, service: str) -> int:
-        """Return how many clients a service has."""
+        """Return the number of a service's clients."""
         return self._node.count_clients(service)
 
     def server_count(self, service: str) -> int:
-        """Return how many servers a service has."""
+        """Return the number of a service's servers."""
         return self._node.count_services(service)
 
     def offered_types(self, service: str) -> list[str]:
@@ -169,22 +190,26 @@ class Graph:
 
     def action_servers_of(self, node: NodeName) -> Types:
         """Return the actions that a node serves."""
+        from rclpy.action.graph import get_action_server_names_and_types_by_node
+
         return self._by_node(partial(get_action_server_names_and_types_by_node, self._node), node)
 
     def action_clients_of(self, node: NodeName) -> Types:
         """Return the actions that a node has clients of."""
+        from rclpy.action.graph import get_action_client_names_and_types_by_node
+
         return self._by_node(partial(get_action_client_names_and_types_by_node, self._node), node)
 
     def find_topic(self, name: str) -> list[str]:
         """Return the types of a topic as soon as it is discovered.
 
         Raises:
-            NotFoundError: there is none; the message names near ones.
+            NoSuchNameError: there is no such topic; the message suggests similar names.
         """
         return self._find("topic", name, lambda: self.topics(hidden=True))
 
     def find_publishers(self, topic: str) -> list[TopicEndpointInfo]:
-        """Return a topic's publishers as soon as one is discovered; none where there is none."""
+        """Return a topic's publishers as soon as one is discovered, or an empty list."""
         settling = _Settling(self, self._session.started_s, MISSING_S)
         self._session.wait_until(lambda: bool(self.publishers(topic)) or settling.done())
         return self.publishers(topic)
@@ -193,7 +218,7 @@ class Graph:
         """Return the types of a service as soon as it is discovered.
 
         Raises:
-            NotFoundError: there is none; the message names near ones.
+            NoSuchNameError: there is no such service; the message suggests similar names.
         """
         return self._find("service", name, lambda: self.services(hidden=True))
 
@@ -201,7 +226,7 @@ class Graph:
         """Return the types of an action as soon as it is discovered.
 
         Raises:
-            NotFoundError: there is none; the message names near ones.
+            NoSuchNameError: there is no such action; the message suggests similar names.
         """
         return self._find("action", name, self.actions)
 
@@ -209,7 +234,7 @@ class Graph:
         """Return a node as soon as it is discovered.
 
         Raises:
-            NotFoundError: there is none; the message names near ones.
+            NoSuchNameError: there is no such node; the message suggests similar names.
         """
         full_name = absolute_name(name)
 
@@ -222,11 +247,13 @@ class Graph:
         name = absolute_name(name)
         settling = _Settling(self, self._session.started_s, MISSING_S)
         self._session.wait_until(lambda: name in found() or settling.done())
-        there = found()
-        if name in there:
-            return there[name]
-        known = [other for other in there if not is_hidden(other)]
-        raise NotFoundError(f"no {what} {name!r} on {this_domain()}; {describe_known(name, known)}")
+        discovered = found()
+        if name in discovered:
+            return discovered[name]
+        known = [other for other in discovered if not is_hidden(other)]
+        raise NoSuchNameError(
+            f"no {what} {name!r} on {this_domain()}; {describe_known(name, known)}"
+        )
 
     def _others(self, infos: list[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
         own = self._own
@@ -242,18 +269,25 @@ class Graph:
         try:
             return _sorted(ask(node.name, node.namespace), hidden=True)
         except NodeNameNonExistentError:
-            # It went away since it was listed.
+            # The node has ended since it was listed.
             return {}
 
 
 class _Settling:
-    """Says when the graph has come to rest."""
+    """Tells when the graph has settled."""
 
-    def __init__(self, graph: Graph, started_s: float, least_s: float = 0.0) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        started_s: float,
+        least_s: float = 0.0,
+        times: SettleTimes = DEFAULT_TIMES,
+    ) -> None:
+        self._times = times
         self._graph = graph
         self._least_s = least_s
         self._started_s = started_s
-        self._seen: Survey | None = None
+        self._seen: GraphSurvey | None = None
         self._changed_s = started_s
 
     def done(self) -> bool:
@@ -262,9 +296,9 @@ class _Settling:
         if survey != self._seen:
             self._seen, self._changed_s = survey, now
         age_s = now - self._started_s
-        quiet = survey.attributed and now - self._changed_s >= QUIET_S
-        least_s = max(self._least_s, 0.0 if survey.nodes else EMPTY_S)
-        return age_s >= SETTLED_S or (quiet and age_s >= least_s)
+        quiet = survey.attributed and now - self._changed_s >= self._times.quiet_s
+        least_s = max(self._least_s, 0.0 if survey.nodes else self._times.empty_s)
+        return age_s >= self._times.settled_s or (quiet and age_s >= least_s)
 
 
 def _sorted(found: list[tuple[str, list[str]]], hidden: bool) -> Types:

@@ -11,20 +11,20 @@ from rcl_interfaces.srv import (
     SetParameters,
 )
 
-from arm_cli.errors import NotFoundError
+from arm_cli.errors import NoSuchNameError
 from arm_cli.ros.graph import NodeName
 from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
-from arm_cli.ros.session import Session
-from launch_py.near_names import describe_known
+from arm_cli.ros.session import CommandSession
+from arm_node.names import describe_known
 
 
 class NodeParameters:
-    """Asks one node. Every method raises UnansweredError where it does not answer."""
+    """Calls one node's parameter services. Every method may raise UnansweredError."""
 
     def __init__(
-        self, session: Session, node: NodeName, answer_timeout_s: float = ANSWER_TIMEOUT_S
+        self, session: CommandSession, node: NodeName, answer_timeout_s: float = ANSWER_TIMEOUT_S
     ) -> None:
-        """Ask a node, with a session's node."""
+        """Call the services of a node, from a session's node."""
         self._session = session
         self._node = node
         self._answer_timeout_s = answer_timeout_s
@@ -35,7 +35,7 @@ class NodeParameters:
         return sorted(self._call(ListParameters, "list_parameters", request).result.names)
 
     def values(self, names: Sequence[str]) -> list[ParameterValue]:
-        """Return the values of parameters, in their order; fewer where one is not declared."""
+        """Return the values of parameters in their order; undeclared parameters are missing."""
         request = GetParameters.Request(names=list(names))
         return list(self._call(GetParameters, "get_parameters", request).values)
 
@@ -43,7 +43,7 @@ class NodeParameters:
         """Return the value of one parameter.
 
         Raises:
-            NotFoundError: the node has no such parameter; the message names near ones.
+            NoSuchNameError: the node has no such parameter; the message suggests similar names.
         """
         values = self.values([name])
         if values and values[0].type:
@@ -57,7 +57,7 @@ class NodeParameters:
         return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
 
     def set(self, values: Mapping[str, ParameterValue]) -> list[Any]:
-        """Set parameters, each on its own; return a SetParametersResult for each."""
+        """Set parameters one by one; return a SetParametersResult for each."""
         parameters = [Parameter(name=name, value=value) for name, value in values.items()]
         request = SetParameters.Request(parameters=parameters)
         return list(self._call(SetParameters, "set_parameters", request).results)
@@ -66,13 +66,13 @@ class NodeParameters:
         """Check that the node has parameters.
 
         Raises:
-            NotFoundError: it does not have one; the message names near ones.
+            NoSuchNameError: it lacks a parameter; the message suggests similar names.
         """
         known = self.names()
         for name in names:
             if name not in known:
                 hint = describe_known(name, known, "it has")
-                raise NotFoundError(f"{self._node.full_name} has no parameter {name!r}; {hint}")
+                raise NoSuchNameError(f"{self._node.full_name} has no parameter {name!r}; {hint}")
 
     def _call(self, service_class: Any, service: str, request: Any) -> Any:
         name = f"{self._node.full_name}/{service}"

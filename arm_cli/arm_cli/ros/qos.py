@@ -1,4 +1,4 @@
-"""Quality of service for what the command publishes and subscribes."""
+"""QoS profiles of a command's publishers and subscriptions."""
 
 import copy
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from arm_cli.qos_options import QosChoice
 
 MEASURING = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Matches every publisher, and drops nothing while the terminal is slow."""
+"""Matches every publisher, and has room for messages while the terminal is slow."""
 
 
 def qos_profile(choice: QosChoice, preset: str) -> QoSProfile:
-    """Return the profile of a choice; `preset` holds where it names none."""
+    """Return the profile of a choice; without a profile it starts from `preset`."""
     profile = copy.copy(QoSPresetProfiles.get_from_short_key(choice.profile or preset))
     if choice.history:
         profile.history = HistoryPolicy.get_from_short_key(choice.history)
@@ -41,7 +41,7 @@ def qos_profile(choice: QosChoice, preset: str) -> QoSProfile:
 
 
 def matching_profile(publishers: Sequence[TopicEndpointInfo]) -> QoSProfile:
-    """Return a subscription's profile that gets all that every one of the publishers offers."""
+    """Return the strictest profile of a subscription that matches all publishers."""
     profile = copy.copy(QoSPresetProfiles.get_from_short_key("sensor_data"))
     offers = [info.qos_profile for info in publishers]
     if offers and all(o.reliability == ReliabilityPolicy.RELIABLE for o in offers):

@@ -1,49 +1,59 @@
-"""Calls of services, and how long to wait for them."""
+"""Calls services and waits for their answers."""
 
 from typing import Any
 
 from rclpy.client import Client
 
 from arm_cli.errors import UnansweredError
-from arm_cli.ros.session import Session
+from arm_cli.ros.session import CommandSession
 
 SERVER_TIMEOUT_S = 10.0
 ANSWER_TIMEOUT_S = 30.0
 
 
 def call_service(
-    session: Session,
+    session: CommandSession,
     service_class: Any,
     name: str,
     request: Any,
     server_timeout_s: float | None = SERVER_TIMEOUT_S,
-    answer_timeout_s: float = ANSWER_TIMEOUT_S,
+    answer_timeout_s: float | None = ANSWER_TIMEOUT_S,
 ) -> Any:
-    """Call a service of a node of the suite, or one that is like it; return the answer.
+    """Call a service and return its answer.
+
+    An answer time-out of None waits as long as the service has a server.
 
     Raises:
-        UnansweredError: nobody offers it, or nobody answers.
+        UnansweredError: the service has no server, or the server does not answer.
     """
     client = session.node.create_client(service_class, session.full_name(name))
     try:
         wait_for_server(session, client, server_timeout_s)
-        answer = session.result(client.call_async(request), answer_timeout_s)
+        future = client.call_async(request)
+        session.wait_until(
+            lambda: future.done() or (answer_timeout_s is None and not client.service_is_ready()),
+            timeout_s=answer_timeout_s,
+        )
     finally:
         session.node.destroy_client(client)
-    if answer is None:
-        raise UnansweredError(f"no answer from {name} within {answer_timeout_s:g} s")
-    return answer
+    if not future.done():
+        raise UnansweredError(
+            f"no answer from {name}: its server has ended"
+            if answer_timeout_s is None
+            else f"no answer from {name} within {answer_timeout_s:g} s"
+        )
+    return future.result()
 
 
-def wait_for_server(session: Session, client: Client, timeout_s: float | None) -> None:
-    """Wait until a service is offered.
+def wait_for_server(session: CommandSession, client: Client, timeout_s: float | None) -> None:
+    """Wait until a service has a server.
 
     Raises:
-        UnansweredError: it is not, within the time-out.
+        UnansweredError: there is no server before the timeout.
     """
     name = client.srv_name
     there = session.wait_until(
         client.service_is_ready, lambda: f"waiting for service {name}", timeout_s
     )
     if not there:
-        raise UnansweredError(f"nobody offers the service {name} (waited {timeout_s:g} s)")
+        raise UnansweredError(f"service {name} has no server (waited {timeout_s:g} s)")

@@ -1,13 +1,12 @@
 """A node for the duration of one command.
 
-Everything happens in the main thread: what waits, spins. SIGINT and SIGTERM set a flag that is
-looked at between two spins, so a command never ends in the middle of a callback and can tidy up
-(a goal is cancelled) while its node still works.
+Everything happens in the main thread, and all waiting spins. SIGINT and SIGTERM set a flag that is
+checked between two spins, so a command never ends in the middle of a callback, and can clean up
+(for example cancel a goal) while its node still works.
 """
 
 import os
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -26,33 +25,35 @@ from rclpy.task import Future
 from rclpy.utilities import try_shutdown
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
-from arm_cli.errors import StoppedError, UsageError
+from arm_cli.errors import CommandUsageError, StoppedError
 from arm_cli.names import absolute_name
-from arm_node.discovery import answers_held_back
-from arm_node.process import first_line
+from arm_cli.output import complain
+from arm_node.printable import first_line
+from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.private_files import made_private
 
 POLL_S = 0.02
-PATIENCE_S = 1.0
-"""Whoever waits longer than this is told what for."""
-ACKNOWLEDGED_WITHIN_S = 1.0
+NOTICE_AFTER_S = 1.0
+"""After this time of waiting, the user is told what the command waits for."""
+ACKNOWLEDGE_TIMEOUT_S = 1.0
 
 
-class Session:
-    """The node of this command, and the ways to wait with it. Use it in the main thread."""
+class CommandSession:
+    """The node of this command, and methods that wait while it spins. Use it in the main thread."""
 
     def __init__(self, node: Node, executor: Executor) -> None:
-        """Take over a node that the executor has."""
+        """Use a node that has been added to the executor."""
         self.node = node
         self.started_s = time.monotonic()
         self._executor = executor
         self._stopped_by: int | None = None
 
     def stop(self, number: int, _frame: FrameType | None = None) -> None:
-        """Let whatever waits raise a StoppedError; a signal handler."""
+        """Make the waiting method raise a StoppedError; a signal handler."""
         self._stopped_by = number
 
-    def go_on(self) -> None:
-        """Forget a signal, to tidy up with a working node."""
+    def clear_stop(self) -> None:
+        """Forget a signal, to clean up with a working node."""
         self._stopped_by = None
 
     def clock_ns(self) -> int:
@@ -64,20 +65,20 @@ class Session:
         return self.clock_ns() * 1e-9
 
     def full_name(self, name: str) -> str:
-        """Return the name of a topic, service or action as the graph has it.
+        """Return the name of a topic, service or action as the graph shows it.
 
         Raises:
-            NameValidationException: there can be no such name; `open_session` says so to the user.
+            NameValidationException: the name is not valid; `open_session` reports that.
         """
         full_name = absolute_name(name)
         validate_full_topic_name(full_name)
         return full_name
 
     def spin_once(self, timeout_s: float = POLL_S) -> None:
-        """Serve one callback, or wait that long for one.
+        """Run one callback, waiting up to `timeout_s` for it.
 
         Raises:
-            StoppedError: a signal came.
+            StoppedError: a signal arrived.
         """
         self._executor.spin_once(timeout_sec=timeout_s)
         if self._stopped_by is not None:
@@ -89,91 +90,103 @@ class Session:
         waiting_for: Callable[[], str] | None = None,
         timeout_s: float | None = None,
     ) -> bool:
-        """Spin until the condition holds; return whether it does, within the time-out.
+        """Spin until the condition holds; return whether it held before the timeout.
 
         Args:
-            condition: asked after every callback and every 20 ms.
-            waiting_for: says after a second, on stderr, what is waited for; None says nothing.
-            timeout_s: None waits for ever.
+            condition: checked after every callback and every 20 ms.
+            waiting_for: returns a notice, printed on stderr after a second; None prints nothing.
+            timeout_s: None waits forever.
 
         Raises:
-            StoppedError: a signal came.
+            StoppedError: a signal arrived.
         """
         start = time.monotonic()
         while not condition():
             waited = time.monotonic() - start
             if timeout_s is not None and waited >= timeout_s:
                 return False
-            if waiting_for is not None and waited >= PATIENCE_S:
-                print(waiting_for(), file=sys.stderr, flush=True)
+            if waiting_for is not None and waited >= NOTICE_AFTER_S:
+                complain(waiting_for())
                 waiting_for = None
             self.spin_once()
         return True
 
     def spin_for(self, duration_s: float) -> None:
-        """Spin for some seconds.
+        """Spin for a duration.
 
         Raises:
-            StoppedError: a signal came.
+            StoppedError: a signal arrived.
         """
         self.wait_until(lambda: False, timeout_s=duration_s)
 
-    def let_arrive(self, publishers: Iterable[Publisher], keep_alive_s: float) -> None:
-        """Wait for the last messages of publishers to be acknowledged, and then some seconds.
+    def wait_for_delivery(self, publishers: Iterable[Publisher], keep_alive_s: float) -> None:
+        """Wait until the last messages of publishers are acknowledged, then for `keep_alive_s`.
 
-        What a reader has not taken when its publisher ends is gone, acknowledged or not; hence
-        the seconds after it. A reader that does not acknowledge holds this up for one second.
+        A message that a reader has not taken when its publisher ends is lost even if it was
+        acknowledged, hence the additional time. A reader that does not acknowledge delays this by
+        one second.
 
         Raises:
-            StoppedError: a signal came.
+            StoppedError: a signal arrived.
         """
-        deadline_s = time.monotonic() + ACKNOWLEDGED_WITHIN_S
+        deadline_s = time.monotonic() + ACKNOWLEDGE_TIMEOUT_S
         for publisher in publishers:
             left_s = deadline_s - time.monotonic()
             if left_s > 0 and publisher.get_subscription_count():
                 publisher.wait_for_all_acked(Duration(seconds=left_s))
         self.spin_for(keep_alive_s)
 
-    def result(self, future: Future, timeout_s: float | None = None) -> Any:
-        """Return a future's result, None where it has none within the time-out.
+    def result(
+        self,
+        future: Future,
+        timeout_s: float | None = None,
+        waiting_for: Callable[[], str] | None = None,
+    ) -> Any:
+        """Return a future's result, or None if it has none before the timeout.
+
+        Args:
+            future: a future that this node's executor completes.
+            timeout_s: None waits forever.
+            waiting_for: returns a notice, printed on stderr after a second; None prints nothing.
 
         Raises:
-            StoppedError: a signal came.
+            StoppedError: a signal arrived.
         """
-        self.wait_until(future.done, timeout_s=timeout_s)
+        self.wait_until(future.done, waiting_for, timeout_s)
         return future.result() if future.done() else None
 
 
 @contextmanager
-def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterator[Session]:
-    """Give a node that is hidden from lists, and as light as can be.
+def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterator[CommandSession]:
+    """Yield a session with a light node that is hidden from lists.
 
     Args:
-        name: of the node; by default hidden and unique.
+        name: the node's name; by default hidden and unique.
         use_sim_time: whether the node's clock follows /clock.
 
     Raises:
-        UsageError: ROS cannot start; its log folder may not be writable. Or nothing in ROS can have
-            a name that was given.
+        CommandUsageError: ROS cannot start, for example because its log folder is not writable, or
+            a given name is not valid.
     """
     try:
-        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        with made_private():  # The log file.
+            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
-        raise UsageError(f"cannot start ROS: {first_line(error)}") from error
+        raise CommandUsageError(f"cannot start ROS: {first_line(error)}") from error
     try:
-        with answers_held_back():
+        with prompt_discovery():
             node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
         try:
             with SingleThreadedExecutor() as executor:
                 executor.add_node(node)
-                session = Session(node, executor)
+                session = CommandSession(node, executor)
                 with _signals_handled(session):
                     yield session
         finally:
             node.destroy_node()
     except NameValidationException as error:
         reason, quoted_name, *_ = str(error).splitlines()
-        raise UsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error
+        raise CommandUsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error
     finally:
         try_shutdown()
 
@@ -189,7 +202,7 @@ def _make_node(name: str, use_sim_time: bool) -> Node:
 
 
 @contextmanager
-def _signals_handled(session: Session) -> Iterator[None]:
+def _signals_handled(session: CommandSession) -> Iterator[None]:
     numbers = (signal.SIGINT, signal.SIGTERM)
     previous = {number: signal.signal(number, session.stop) for number in numbers}
     try:

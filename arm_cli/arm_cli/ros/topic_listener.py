@@ -1,4 +1,4 @@
-"""A subscription to a topic whose type the graph tells."""
+"""Subscribes to a topic with the type and the QoS found on the graph."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,27 +6,27 @@ from typing import Any
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-from arm_cli.errors import NotFoundError
+from arm_cli.errors import NoSuchNameError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.names import is_hidden, this_domain
 from arm_cli.ros.graph import Graph
 from arm_cli.ros.qos import MEASURING, matching_profile
-from arm_cli.ros.session import Session
-from launch_py.near_names import describe_known
+from arm_cli.ros.session import CommandSession
+from arm_node.names import describe_known
 
 
 class TopicListener:
     """Listens to one topic.
 
     Attributes:
-        topic: its absolute name.
+        topic: the topic's absolute name.
     """
 
-    def __init__(self, session: Session, topic: str) -> None:
+    def __init__(self, session: CommandSession, topic: str) -> None:
         """Prepare to listen with a session's node.
 
         Raises:
-            NameValidationException: no topic can have this name.
+            NameValidationException: the name is not a valid topic name.
         """
         self.topic = session.full_name(topic)
         self._session = session
@@ -36,15 +36,15 @@ class TopicListener:
         """Return the message class of the topic as soon as it is discovered.
 
         Raises:
-            NotFoundError: there is no such topic, or its type is not installed.
+            NoSuchNameError: there is no such topic, or its type is not installed.
         """
         return self._class_of(self._graph.find_topic(self.topic))
 
     def wait_for_class(self) -> type:
-        """Return the message class of the topic, once somebody publishes it.
+        """Return the message class of the topic once it has a publisher or a subscription.
 
         Raises:
-            NotFoundError: its type is not installed.
+            NoSuchNameError: its type is not installed.
         """
         types: list[str] = []
 
@@ -52,11 +52,11 @@ class TopicListener:
             types[:] = self._graph.topics(hidden=True).get(self.topic, [])
             return bool(types)
 
-        self._session.wait_until(found, self._not_there)
+        self._session.wait_until(found, self._missing_topic)
         return self._class_of(types)
 
     def matching_profile(self) -> QoSProfile:
-        """Return the quality of service that fits those who publish the topic by now."""
+        """Return a QoS profile that matches the topic's present publishers."""
         return matching_profile(self._graph.find_publishers(self.topic))
 
     def subscribe(
@@ -66,17 +66,17 @@ class TopicListener:
         profile: QoSProfile = MEASURING,
         raw: bool = False,
     ) -> Subscription:
-        """Subscribe; the callback gets the messages, as bytes where `raw`."""
+        """Subscribe; the callback gets the messages, as bytes if `raw`."""
         node = self._session.node
         return node.create_subscription(message_class, self.topic, callback, profile, raw=raw)
 
     def silence(self) -> str:
-        """Say why no message may have come."""
+        """Return a notice that says why no message has arrived yet."""
         if self._graph.publishers(self.topic):
             return f"waiting for a message on {self.topic}"
         return f"waiting for a publisher of {self.topic}"
 
-    def _not_there(self) -> str:
+    def _missing_topic(self) -> str:
         known = [name for name in self._graph.topics() if not is_hidden(name)]
         near = describe_known(self.topic, known)
         hint = f"; {near}" if near.startswith("did") else ""
@@ -84,7 +84,7 @@ class TopicListener:
 
     def _class_of(self, types: list[str]) -> Any:
         if len(types) > 1:
-            raise NotFoundError(
-                f"{self.topic} carries messages of several types: {', '.join(types)}; name one"
+            raise NoSuchNameError(
+                f"{self.topic} has messages of several types: {', '.join(types)}; name one of them"
             )
         return load_class(InterfaceIndex().find(types[0], ("msg",)))

@@ -1,1 +1,1 @@
-"""The verbs of `arm service`."""
+"""`arm service call` and `arm service echo`."""

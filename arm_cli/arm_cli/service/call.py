@@ -1,18 +1,21 @@
-"""`arm service call`: call a service."""
+"""`arm service call`: calls a service and prints its answer."""
 
 import argparse
 import sys
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arm_cli.command_parser import positive_number
-from arm_cli.errors import UsageError
+from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.output import add_json_argument, complain, print_json, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with
-from launch_py.near_names import describe_known
+from arm_node.names import describe_known
+
+if TYPE_CHECKING:
+    from arm_cli.ros.session import CommandSession
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,7 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
     parser.add_argument(
-        "-r", "--rate", type=positive_number, metavar="HZ", help="call again and again"
+        "-r", "--rate", type=positive_number, metavar="HZ", help="call repeatedly at this rate"
+    )
+    parser.add_argument(
+        "--timeout",
+        type=positive_number,
+        metavar="SECONDS",
+        help="how long to wait for the service, and then for its answer",
     )
     add_json_argument(parser)
 
@@ -36,9 +45,10 @@ def run(options: argparse.Namespace) -> None:
     """Call the service and print its answer.
 
     Raises:
-        NotFoundError: there is no such type.
-        UsageError: the service has another type.
+        NoSuchNameError: there is no such type.
+        CommandUsageError: the service has another type.
         MessageError: the values do not fit the request.
+        UnansweredError: there is no service, or no answer, within `--timeout`.
     """
     type_ = InterfaceIndex().find(options.service_type, ("srv",))
     from arm_cli.messages.filling import fill_message, read_yaml
@@ -47,28 +57,40 @@ def run(options: argparse.Namespace) -> None:
     text = sys.stdin.read() if options.stdin else options.values
     filled = fill_message(class_.Request(), read_yaml(text, f"{type_.full_name} request"))
     for note in filled.notes:
-        print(f"arm service call: {note}", file=sys.stderr)
+        complain(f"arm service call: {note}")
     with connect() as session:
         client = session.node.create_client(class_, session.full_name(options.service_name))
-        _wait_for_server(session, client, type_.full_name)
+        _wait_for_server(session, client, type_.full_name, options.timeout)
         while True:
             start_s = time.monotonic()
             filled.stamp(session.node.get_clock().now().to_msg())
             if not options.json:
-                print(f"requester: making request: {filled.message!r}\n")
-            answer = session.result(client.call_async(filled.message))
+                say_document(f"requester: making request: {filled.message!r}\n")
+            answer = _answer(session, client, filled.message, options.timeout)
             if options.json:
                 from arm_cli.messages.text import to_plain
 
                 print_json(to_plain(answer))
             else:
-                print(f"response:\n{answer!r}\n")
+                say_document(f"response:\n{answer!r}\n")
             if options.rate is None:
                 return
             session.spin_for(max(0.0, start_s + 1.0 / options.rate - time.monotonic()))
 
 
-def _wait_for_server(session: Any, client: Any, type_name: str) -> None:
+def _answer(session: "CommandSession", client: Any, request: Any, timeout_s: float | None) -> Any:
+    name = client.srv_name
+    answer = session.result(
+        client.call_async(request), timeout_s, lambda: f"waiting for the answer of {name}..."
+    )
+    if answer is None:
+        raise UnansweredError(f"no answer from {name} within {timeout_s:g} s")
+    return answer
+
+
+def _wait_for_server(
+    session: "CommandSession", client: Any, type_name: str, timeout_s: float | None
+) -> None:
     from arm_cli.ros.graph import Graph
 
     graph = Graph(session)
@@ -77,12 +99,13 @@ def _wait_for_server(session: Any, client: Any, type_name: str) -> None:
     def ready() -> bool:
         offered = graph.offered_types(name)
         if offered and type_name not in offered:
-            raise UsageError(f"{name} is a {', '.join(offered)}, not a {type_name}")
+            raise CommandUsageError(f"{name} is a {', '.join(offered)}, not a {type_name}")
         return client.service_is_ready()
 
     def notice() -> str:
         near = describe_known(name, [known for known in graph.services() if known != name])
-        hint = f" {near}" if near.startswith("did") else ""
-        return f"waiting for service to become available...{hint}"
+        hint = f"; {near}" if near.startswith("did") else ""
+        return f"waiting for service to become available... {name}{hint}"
 
-    session.wait_until(ready, notice)
+    if not session.wait_until(ready, notice, timeout_s):
+        raise UnansweredError(f"service {name} has no server (waited {timeout_s:g} s)")

@@ -1,1 +1,1 @@
-"""The verbs of `arm sim`."""
+"""The verbs of `arm sim`, which query and change a running simulation."""

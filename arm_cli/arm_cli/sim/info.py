@@ -1,9 +1,9 @@
-"""`arm sim info`: what a simulation holds, and how fast its time goes."""
+"""`arm sim info`: shows a simulation's state, world, entities, sensors and real-time factor."""
 
 import argparse
 from typing import Any
 
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.output import add_json_argument, print_json, say
 from arm_cli.sim.simulation import (
     STATE_NAMES,
     SimulationClient,
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Print what the simulation holds.
+    """Print the simulation's state and contents.
 
     Raises:
         UnansweredError: no simulation answers.
@@ -38,22 +38,24 @@ def run(options: argparse.Namespace) -> None:
     if options.json:
         print_json(report)
         return
-    print(f"state: {report['state']}")
-    print(f"world: {report['world'] or 'none'}")
-    print(f"time: {report['time_s']:.3f} s, real-time factor {report['real_time_factor']:.2f}")
-    print(f"steps: {report['about']}")
-    print("entities:")
+    say(f"state: {report['state']}")
+    say(f"world: {report['world'] or 'none'}")
+    if report["world_description"]:
+        say(f"  {report['world_description']}")
+    say(f"time: {report['time_s']:.3f} s, real-time factor {report['real_time_factor']:.2f}")
+    say(f"steps: {report['about']}")
+    say("entities:")
     for entity in report["entities"]:
         x, y, z = entity["position"]
-        print(f"  {entity['name']} [{entity['category']}] at {x:.3f} {y:.3f} {z:.3f}")
-    print("cameras and sensors:" if report["sensors"] else "cameras and sensors: none")
+        say(f"  {entity['name']} [{entity['category']}] at {x:.3f} {y:.3f} {z:.3f}")
+    say("cameras and sensors:" if report["sensors"] else "cameras and sensors: none")
     for topic, type_ in report["sensors"].items():
-        print(f"  {topic} [{type_}]")
+        say(f"  {topic} [{type_}]")
 
 
 def _report(simulation: SimulationClient) -> dict[str, Any]:
+    from arm_cli.ros.clock_listener import ClockListener
     from arm_cli.ros.graph import Graph
-    from arm_cli.ros.simulation_listener import ClockListener
 
     clock = ClockListener(simulation.session)
     state = simulation.ask("GetSimulationState", "get_simulation_state").state.state
@@ -66,9 +68,11 @@ def _report(simulation: SimulationClient) -> dict[str, Any]:
     simulation.session.spin_for(MEASURED_S)
     graph = Graph(simulation.session)
     graph.settle()
+    world, description = _world(simulation)
     return {
         "state": STATE_NAMES[state],
-        "world": _world(simulation),
+        "world": world,
+        "world_description": description,
         "time_s": clock.now_s,
         "real_time_factor": clock.simulated_s / clock.wall_s if clock.wall_s else 0.0,
         "about": about,
@@ -79,13 +83,15 @@ def _report(simulation: SimulationClient) -> dict[str, Any]:
     }
 
 
-def _world(simulation: SimulationClient) -> str:
-    from arm_cli.errors import RefusedError
+def _world(simulation: SimulationClient) -> tuple[str, str]:
+    """Return the world's name and description, which says what the simulation leaves out."""
+    from arm_cli.errors import SimulationRefusedError
 
     try:
-        return str(simulation.ask("GetCurrentWorld", "get_current_world").world.name)
-    except RefusedError:
-        return ""
+        world = simulation.ask("GetCurrentWorld", "get_current_world").world
+    except SimulationRefusedError:
+        return "", ""
+    return str(world.name), str(world.description)
 
 
 def _entity(simulation: SimulationClient, name: str, state: Any) -> dict[str, Any]:

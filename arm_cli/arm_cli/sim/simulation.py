@@ -1,17 +1,22 @@
-"""The simulation that a verb asks, by the services of simulation_interfaces."""
+"""A client of a simulation's simulation_interfaces services, for the verbs of `arm sim`."""
 
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.errors import RefusedError
+from arm_cli.errors import SimulationRefusedError
 from arm_cli.names import absolute_name
 from arm_cli.ros.connection import connect
 
 if TYPE_CHECKING:
-    from arm_cli.ros.session import Session
+    from arm_cli.ros.parameters import NodeParameters
+    from arm_cli.ros.session import CommandSession
 
+NODE = "arm_gazebo"
+"""The node with the simulation's parameters."""
+SERVING_NODE = "simulation"
+"""The node that serves its figures."""
 RESULT_OK = 1
 STOPPED, PLAYING, PAUSED, QUITTING, NO_WORLD, LOADING_WORLD = range(6)
 """The states of SimulationState."""
@@ -19,52 +24,94 @@ STATE_NAMES = ("stopped", "playing", "paused", "quitting", "no world", "loading 
 
 
 def add_namespace_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the choice of the simulation."""
+    """Add the option that selects the simulation."""
     parser.add_argument(
-        "-n", "--namespace", default="/", metavar="NS", help="of the simulation's services"
+        "-n",
+        "--namespace",
+        default="/",
+        metavar="NS",
+        help="namespace of the simulation's services",
     )
 
 
 class SimulationClient:
-    """Asks one simulation. Every method raises UnansweredError where it does not answer."""
+    """Calls one simulation's services. Every method may raise UnansweredError."""
 
-    def __init__(self, session: "Session", namespace: str) -> None:
-        """Ask the simulation whose services are in a namespace."""
+    def __init__(self, session: "CommandSession", namespace: str) -> None:
+        """Call the services in a namespace."""
         self.session = session
         self._namespace = absolute_name(namespace).rstrip("/")
 
-    def ask(self, type_: str, service: str, **fields: Any) -> Any:
+    def ask(
+        self,
+        type_: str,
+        service: str,
+        *,
+        patiently: bool = False,
+        **fields: Any,
+    ) -> Any:
         """Call a service of simulation_interfaces; return the answer.
 
         Args:
-            type_: such as "GetEntities".
-            service: such as "get_entities".
-            fields: of the request.
+            type_: the type, such as "GetEntities".
+            service: the name, such as "get_entities".
+            patiently: whether to wait for the answer as long as the simulation is there.
+            fields: the fields of the request.
 
         Raises:
-            RefusedError: the answer is that it cannot be done.
+            SimulationRefusedError: the simulation refuses the request.
         """
         import simulation_interfaces.srv as services
 
-        from arm_cli.ros.service_call import call_service
+        from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
 
         class_ = getattr(services, type_)
         request = class_.Request(**fields)
-        answer = call_service(self.session, class_, f"{self._namespace}/{service}", request)
+        answer = call_service(
+            self.session,
+            class_,
+            f"{self._namespace}/{service}",
+            request,
+            answer_timeout_s=None if patiently else ANSWER_TIMEOUT_S,
+        )
         result = getattr(answer, "result", None)
         if result is not None and result.result != RESULT_OK:
-            raise RefusedError(f"{result.error_message or 'refused'} (result {result.result})")
+            raise SimulationRefusedError(
+                f"{result.error_message or 'refused'} (result {result.result})"
+            )
         return answer
 
-    def go_to(self, state: int) -> None:
-        """Change the simulation's state, to one of the numbers above."""
+    def set_state(self, state: int) -> None:
+        """Set the simulation's state, one of the constants above."""
         from simulation_interfaces.msg import SimulationState
 
         self.ask("SetSimulationState", "set_simulation_state", state=SimulationState(state=state))
 
+    def statistics(self) -> dict[str, dict[str, str]]:
+        """Return the figures of the run: by part, such as "tick", then by name."""
+        from diagnostic_msgs.srv import SelfTest
+
+        from arm_cli.ros.service_call import call_service
+
+        service = f"{self._namespace}/{SERVING_NODE}/get_statistics"
+        answer = call_service(self.session, SelfTest, service, SelfTest.Request())
+        if answer.passed != b"\x01":
+            raise SimulationRefusedError("; ".join(status.message for status in answer.status))
+        return {
+            status.name: {pair.key: pair.value for pair in status.values}
+            for status in answer.status
+        }
+
+    def parameters(self) -> "NodeParameters":
+        """Return the parameters of the simulation's node."""
+        from arm_cli.ros.graph import NodeName
+        from arm_cli.ros.parameters import NodeParameters
+
+        return NodeParameters(self.session, NodeName(self._namespace or "/", NODE))
+
 
 @contextmanager
 def ask_simulation(options: argparse.Namespace) -> Iterator[SimulationClient]:
-    """Give a client of the simulation's services."""
+    """Yield a client of the simulation's services."""
     with connect() as session:
         yield SimulationClient(session, options.namespace)

@@ -1,1 +1,1 @@
-"""The verbs of `arm tf`."""
+"""Coordinate frames from /tf and /tf_static, and the verbs of `arm tf`."""

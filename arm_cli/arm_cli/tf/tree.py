@@ -1,35 +1,45 @@
-"""`arm tf tree`: the tree of frames as text."""
+"""`arm tf tree` and `view_frames`: prints and draws the tree of frames."""
 
 import argparse
+import time
+from pathlib import Path
 
 from arm_cli.command_parser import positive_number
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.graph_files import has_graphviz, write_picture
+from arm_cli.output import add_json_argument, print_json, say
 from arm_cli.ros.connection import connect
-from arm_cli.tf.listening import listen
+from arm_cli.tf.frame_log import FrameHistory, FrameLog
+from arm_cli.verb import VerbFunctions
+from arm_node.drawing.digraph import Digraph, Edge, Vertex
 
-LISTEN_S = 1.0
+TREE_LISTEN_S, VIEW_LISTEN_S = 1.0, 5.0
+
+BROADCASTER = "default_authority"
+"""The name that tf2 gives to every broadcaster on ROS 2."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_print_tree_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parser.add_argument(
         "-t",
         "--wait-time",
         type=positive_number,
-        default=LISTEN_S,
+        default=TREE_LISTEN_S,
         metavar="SECONDS",
-        help=f"listen so long (default {LISTEN_S:g})",
+        help=f"how long to listen (default {TREE_LISTEN_S:g})",
     )
     add_json_argument(parser)
 
 
-def run(options: argparse.Namespace) -> None:
+def print_tree(options: argparse.Namespace) -> None:
     """Print the tree.
 
     Raises:
         UnansweredError: nobody publishes transforms.
     """
     with connect() as session:
+        from arm_cli.tf.ros_listener import listen
+
         log = listen(session, options.wait_time)
     if options.json:
         print_json(
@@ -39,4 +49,77 @@ def run(options: argparse.Namespace) -> None:
             }
         )
     else:
-        print(*log.draw_tree(), sep="\n")
+        say(*log.draw_tree())
+
+
+def add_view_frames_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "-t",
+        "--wait-time",
+        type=positive_number,
+        default=VIEW_LISTEN_S,
+        metavar="SECONDS",
+        help=f"how long to listen (default {VIEW_LISTEN_S:g})",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="STEM", help="file name without suffix (default frames_DATE)"
+    )
+
+
+def view_frames(options: argparse.Namespace) -> None:
+    """Write the picture and its graphviz source.
+
+    Raises:
+        UnansweredError: nobody publishes transforms.
+        CommandUsageError: the file cannot be written.
+    """
+    stem = options.output or time.strftime("frames_%Y-%m-%d_%H.%M.%S")
+    say(f"Listening to tf data for {options.wait_time:g} seconds...")
+    with connect() as session:
+        from arm_cli.tf.ros_listener import listen
+
+        log = listen(session, options.wait_time)
+    say("Generating graph...")
+    say(export(log, Path(stem)))
+
+
+def export(log: FrameLog, stem: Path) -> str:
+    """Write the tree of frames; return a message for the user.
+
+    Raises:
+        CommandUsageError: the file cannot be written.
+    """
+    picture = write_picture(frame_graph(log), stem, downward=True)
+    message = f"Exported graph to {picture}"
+    if picture.suffix == ".pdf":
+        return message
+    if has_graphviz():
+        source = picture.with_suffix(".gv")
+        return f"{message}; no PDF, because graphviz' dot failed: dot -Tpdf {source}"
+    return f"{message}; no PDF, because graphviz is not installed: apt install graphviz"
+
+
+def frame_graph(log: FrameLog) -> Digraph:
+    """Return the graph to draw for the tree of frames."""
+    return Digraph(
+        tuple(Vertex(name, name) for name in log.names()),
+        tuple(Edge(h.parent, name, _describe(h)) for name, h in sorted(log.frames.items())),
+    )
+
+
+def _describe(history: FrameHistory) -> str:
+    oldest, latest = (0.0, 0.0) if history.static else (history.stamps_s[0], history.stamps_s[-1])
+    return "\n".join(
+        [
+            f"Broadcaster: {BROADCASTER}",
+            f"Average rate: {history.rate_hz:.3f}",
+            f"Buffer length: {0.0 if history.static else history.span_s:.3f}",
+            f"Most recent transform: {latest:.6f}",
+            f"Oldest transform: {oldest:.6f}",
+        ]
+    )
+
+
+PRINT_TREE = VerbFunctions(add_print_tree_arguments, print_tree)
+VIEW_FRAMES = VerbFunctions(add_view_frames_arguments, view_frames)

@@ -1,1 +1,1 @@
-"""The verbs of `arm topic`."""
+"""The verbs of `arm topic` that publish, print and measure messages."""

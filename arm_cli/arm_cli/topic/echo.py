@@ -1,4 +1,4 @@
-"""`arm topic echo`: the messages of a topic."""
+"""`arm topic echo`: prints the messages of a topic."""
 
 import argparse
 import time
@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
-from arm_cli.errors import UnansweredError, UsageError
+from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.messages.message_filter import add_filter_argument, message_filter
-from arm_cli.output import add_json_argument, print_json
+from arm_cli.messages.selection import add_filter_argument, message_filter
+from arm_cli.output import add_json_argument, print_json, say, say_document
 from arm_cli.qos_options import add_qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
     )
     complete_with(
-        parser.add_argument("message_type", nargs="?", help="by default the topic's own"),
+        parser.add_argument("message_type", nargs="?", help="default: the topic's own type"),
         message_names,
     )
     parser.add_argument("--once", action="store_true", help="end after one message")
@@ -33,27 +33,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "-n", "--times", type=positive_whole_number, metavar="N", help="end after N messages"
     )
     parser.add_argument(
-        "--timeout", type=positive_number, metavar="SECONDS", help="end after so many seconds"
+        "--timeout", type=positive_number, metavar="SECONDS", help="end after this time"
     )
-    parser.add_argument("--field", metavar="PATH", help="only a part, such as pose.position")
+    parser.add_argument("--field", metavar="PATH", help="print only a part, such as pose.position")
     add_filter_argument(parser)
     parser.add_argument(
-        "-i", "--include-message-info", action="store_true", help="also when it was sent and came"
+        "-i", "--include-message-info", action="store_true", help="also print its times and number"
     )
-    # What they are about goes without saying here; but lines written for ros2 have them.
+    # Accepted because command lines for ros2 use them. They are not needed here.
     for options in (("-s", "--use-sim-time"), ("--no-lost-messages",)):
         parser.add_argument(*options, action="store_true", help=argparse.SUPPRESS)
     _add_format_arguments(parser)
-    add_qos_arguments(parser, "what fits the topic's publishers")
+    add_qos_arguments(parser, "a profile that matches the topic's publishers")
 
 
 def _add_format_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--csv", action="store_true", help="values separated by commas")
+    parser.add_argument("--csv", action="store_true", help="print values separated by commas")
     add_json_argument(parser)
-    parser.add_argument("--raw", action="store_true", help="the bytes as they came")
-    parser.add_argument("--flow-style", action="store_true", help="collections in one line")
-    parser.add_argument("--no-arr", action="store_true", help="arrays are only described")
-    parser.add_argument("--no-str", action="store_true", help="strings are only described")
+    parser.add_argument("--raw", action="store_true", help="print the serialized bytes")
+    parser.add_argument("--flow-style", action="store_true", help="print collections in one line")
+    parser.add_argument("--no-arr", action="store_true", help="print placeholders for arrays")
+    parser.add_argument("--no-str", action="store_true", help="print placeholders for strings")
     parser.add_argument("-f", "--full-length", action="store_true", help="truncate nothing")
     parser.add_argument(
         "-l",
@@ -61,7 +61,7 @@ def _add_format_arguments(parser: argparse.ArgumentParser) -> None:
         type=whole_number,
         default=TRUNCATE_LENGTH,
         metavar="N",
-        help=f"longer arrays and strings are cut (default {TRUNCATE_LENGTH})",
+        help=f"cut longer arrays and strings (default {TRUNCATE_LENGTH})",
     )
 
 
@@ -69,9 +69,9 @@ def run(options: argparse.Namespace) -> None:
     """Print the messages.
 
     Raises:
-        UsageError: options that exclude each other, or a filter that is no Python.
-        NotFoundError: no such topic, type or field.
-        UnansweredError: no message within `--timeout`.
+        CommandUsageError: options exclude each other, or the filter is not Python.
+        NoSuchNameError: there is no such topic, type or field.
+        UnansweredError: there is no message within `--timeout`.
     """
     printer = _printer(options)
     class_ = None
@@ -100,13 +100,13 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _printer(options: argparse.Namespace) -> "MessagePrinter":
-    from arm_cli.messages.field_path import FieldPath
+    from arm_cli.messages.selection import FieldPath
     from arm_cli.messages.text import Abridgement
 
     if options.once and options.times is not None:
-        raise UsageError("--once or --times, not both")
+        raise CommandUsageError("--once and --times exclude each other")
     if options.raw and (options.field or options.csv or options.json or options.filter):
-        raise UsageError("--raw prints bytes: no --field, --filter, --csv or --json with it")
+        raise CommandUsageError("--raw excludes --field, --filter, --csv and --json")
     return MessagePrinter(
         style=next((s for s in ("raw", "json", "csv") if getattr(options, s)), "yaml"),
         flow_style=options.flow_style,
@@ -124,10 +124,10 @@ def _printer(options: argparse.Namespace) -> "MessagePrinter":
 
 @dataclass(slots=True)
 class MessagePrinter:
-    """Prints messages in one of the styles, until there have been enough.
+    """Prints messages in one of the styles, up to a limit.
 
     Attributes:
-        count: messages printed so far.
+        count: the number of messages printed so far.
     """
 
     style: str
@@ -149,11 +149,11 @@ class MessagePrinter:
             self.path.check(message_class)
 
     def is_done(self) -> bool:
-        """Return whether there have been enough."""
+        """Return whether the limit is reached."""
         return self.limit is not None and self.count >= self.limit
 
     def take(self, message: Any, info: dict[str, Any]) -> None:
-        """Print a message; what comes after the last one is dropped."""
+        """Print a message, unless the limit is reached."""
         if self.is_done():
             return
         part = message if self.path is None else self.path.of(message)
@@ -169,10 +169,13 @@ class MessagePrinter:
             print_json({"info": info, "message": plain} if info else plain)
         elif self.style == "csv":
             values = [str(value) for value in info.values()]
-            print(",".join([*values, to_csv(part, self.abridgement)]))
+            say(",".join([*values, to_csv(part, self.abridgement)]))
         else:
-            shown = to_yaml(part, self.abridgement, self.flow_style) if is_message(part) else part
             header = "".join(f"{key}: {value}\n" for key, value in info.items())
             if header:
-                print(header, end="---\n")
-            print(shown, end="---\n" if is_message(part) else "\n---\n")
+                say_document(header, end="---\n")
+            if is_message(part):
+                say_document(to_yaml(part, self.abridgement, self.flow_style), end="---\n")
+            else:
+                (say if isinstance(part, str) else say_document)(str(part))
+                say("---")

@@ -1,21 +1,36 @@
-"""What `arm topic hz`, `bw` and `delay` share: their arguments, and a report every second."""
+"""`arm topic hz`, `bw` and `delay`: measures a topic and reports every second."""
 
 import argparse
+import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from arm_cli.command_parser import positive_whole_number
+from arm_cli.errors import MessageError
+from arm_cli.messages.selection import add_filter_argument, message_filter
+from arm_cli.output import complain, say, say_document
 from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.topic.windows import BandwidthWindow, DelayWindow, RateWindow
+from arm_cli.verb import VerbFunctions
 from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
-    from arm_cli.ros.session import Session
+    from arm_cli.ros.session import CommandSession
 
 REPORT_PERIOD_S = 1.0
+MANY_MESSAGES, FEW_MESSAGES = 10000, 100
+"""The default windows of ros2 topic."""
+
+YEAR_NS = 365 * 24 * 3600 * 1_000_000_000
+SIMULATED = (
+    "the stamps of {topic} are about {stamp_s} s after the start of a clock, not the time of day: "
+    "use -s to measure the delay in simulation time (/clock)"
+)
 
 
 def add_measuring_arguments(parser: argparse.ArgumentParser, window: int) -> None:
-    """Add the topic, the window and the choice of clock."""
+    """Add the arguments for the topic, the window and the clock."""
     complete_with(
         parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
     )
@@ -28,24 +43,24 @@ def add_measuring_arguments(parser: argparse.ArgumentParser, window: int) -> Non
         help=f"number of messages to look back at (default {window})",
     )
     parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="go by /clock instead of the wall clock"
+        "-s", "--use-sim-time", action="store_true", help="use /clock instead of the wall clock"
     )
 
 
 def report_every_second(
-    session: "Session",
+    session: "CommandSession",
     describe: Callable[[], str | None],
     silence: Callable[[], str],
     taken: Callable[[], int] | None = None,
 ) -> None:
-    """Print what is measured, every second in which there is something, until a signal comes.
+    """Print the measurement every second until a signal arrives.
 
     Args:
-        session: to wait with.
-        describe: returns the report; None while there is nothing to say.
-        silence: says what is waited for while nothing has come yet.
-        taken: returns the number of messages so far; there is no report where none came since
-            the last one. None: what is measured changes without messages, too.
+        session: the session to wait with.
+        describe: returns the report, or None if there is none yet.
+        silence: returns a notice to print if no message arrives at first.
+        taken: returns the number of messages so far; a second without new messages is not
+            reported. None if the measurement also changes without messages.
     """
     reported: int | None = None
     session.wait_until(lambda: describe() is not None, silence)
@@ -54,5 +69,104 @@ def report_every_second(
         count = None if taken is None else taken()
         report = describe()
         if report is not None and (count is None or count != reported):
-            print(report)
+            say_document(report)
             reported = count
+
+
+def add_hz_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_measuring_arguments(parser, MANY_MESSAGES)
+    parser.add_argument(
+        "--wall-time",
+        dest="use_sim_time",
+        action="store_false",
+        help="use the wall clock (default)",
+    )
+    add_filter_argument(parser)
+
+
+def hz(options: argparse.Namespace) -> None:
+    """Print the rate every second.
+
+    Raises:
+        CommandUsageError: the filter is not a Python expression.
+        MessageError: the filter does not fit the messages.
+        StoppedError: a signal arrived.
+    """
+    fits = message_filter(options.filter) if options.filter else None
+    window = RateWindow(options.window)
+    with connect(use_sim_time=options.use_sim_time) as session:
+        from arm_cli.ros.topic_listener import TopicListener
+
+        clock = session.clock_ns if options.use_sim_time else time.monotonic_ns
+        listener = TopicListener(session, options.topic_name)
+
+        def take(message: Any) -> None:
+            if fits is None or fits(message):
+                window.add(clock())
+
+        listener.subscribe(listener.wait_for_class(), take, raw=fits is None)
+        report_every_second(session, window.describe, listener.silence, lambda: window.taken)
+
+
+def add_bw_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_measuring_arguments(parser, FEW_MESSAGES)
+
+
+def bw(options: argparse.Namespace) -> None:
+    """Print the bandwidth every second.
+
+    Raises:
+        StoppedError: a signal arrived.
+    """
+    window = BandwidthWindow(options.window)
+    with connect(use_sim_time=options.use_sim_time) as session:
+        from arm_cli.ros.topic_listener import TopicListener
+
+        clock = session.clock_s if options.use_sim_time else time.monotonic
+        listener = TopicListener(session, options.topic_name)
+
+        def take(data: bytes) -> None:
+            window.add(clock(), len(data))
+
+        listener.subscribe(listener.wait_for_class(), take, raw=True)
+        say(f"Subscribed to [{listener.topic}]")
+        report_every_second(session, lambda: window.describe(clock()), listener.silence)
+
+
+def add_delay_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_measuring_arguments(parser, MANY_MESSAGES)
+
+
+def delay(options: argparse.Namespace) -> None:
+    """Print the age of the stamps on arrival, every second.
+
+    Raises:
+        MessageError: the topic's messages have no header.
+        StoppedError: a signal arrived.
+    """
+    window = DelayWindow(options.window)
+    with connect(use_sim_time=options.use_sim_time) as session:
+        from arm_cli.ros.topic_listener import TopicListener
+
+        listener = TopicListener(session, options.topic_name)
+        message_class: Any = listener.wait_for_class()
+        if "header" not in message_class.get_fields_and_field_types():
+            raise MessageError(f"the messages of {listener.topic} have no header with a stamp")
+
+        def take(message: Any) -> None:
+            stamp = message.header.stamp
+            delay_ns = session.clock_ns() - stamp.sec * 1_000_000_000 - stamp.nanosec
+            if window.taken == 0 and delay_ns > YEAR_NS and not options.use_sim_time:
+                complain(SIMULATED.format(topic=listener.topic, stamp_s=stamp.sec))
+            window.add(delay_ns)
+
+        listener.subscribe(message_class, take)
+        report_every_second(session, window.describe, listener.silence, lambda: window.taken)
+
+
+HZ = VerbFunctions(add_hz_arguments, hz)
+BW = VerbFunctions(add_bw_arguments, bw)
+DELAY = VerbFunctions(add_delay_arguments, delay)

@@ -1,11 +1,10 @@
-"""`arm topic pub`: publish a message, at a rate or some times."""
+"""`arm topic pub`: publishes messages once, several times or at a rate."""
 
 import argparse
 import itertools
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.command_parser import (
@@ -15,21 +14,23 @@ from arm_cli.command_parser import (
     positive_whole_number,
     whole_number,
 )
-from arm_cli.errors import MessageError, NotFoundError, UnansweredError, UsageError
+from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, InterfaceType, load_class
+from arm_cli.output import complain, say, say_document
 from arm_cli.qos_options import add_qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import complete_with, message_names
-from launch_py.near_names import describe_known
+from arm_node.names import describe_known
+from arm_node.user_file import read_text
 
 if TYPE_CHECKING:
     from arm_cli.messages.filling import FilledMessage
-    from arm_cli.ros.session import Session
+    from arm_cli.ros.session import CommandSession
 
 KEEP_ALIVE_S = 0.1
 AFTER_MATCH_S = 0.4
-"""What is sent at the very moment of the match may be lost."""
+"""How long to wait after a match, because messages sent at that very moment may be lost."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,8 +50,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--yaml-file",
         metavar="FILE",
-        help="publish the messages of a file, as `arm topic echo` prints them, one after another",
+        help="publish the messages in a file, one after another, in the form of `arm topic echo`",
     )
+    _add_pace_arguments(parser)
+    parser.add_argument(
+        "-n", "--node-name", type=node_name, metavar="NAME", help="name of the publishing node"
+    )
+    parser.add_argument(
+        "-s", "--use-sim-time", action="store_true", help="let 'auto' and 'now' use /clock"
+    )
+    add_qos_arguments(parser, "reliable, volatile, the last 10")
+
+
+def _add_pace_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add when it publishes, how often, and what it waits for."""
     parser.add_argument(
         "-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"
     )
@@ -64,10 +77,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--wait-matching-subscriptions",
         type=whole_number,
         metavar="N",
-        help="begin when N subscriptions are there (default 1 with --once or --times, else 0)",
+        help="wait for N matching subscriptions (default 1 with --once or --times, else 0)",
     )
     parser.add_argument(
-        "--max-wait-time-secs", type=positive_number, metavar="SECONDS", help="for them"
+        "--max-wait-time-secs",
+        type=positive_number,
+        metavar="SECONDS",
+        help="how long to wait for them (default: forever)",
     )
     parser.add_argument(
         "-p",
@@ -75,31 +91,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=whole_number,
         default=1,
         metavar="N",
-        help="print every Nth message only; 0 prints none",
+        help="print only every Nth message; 0 prints none",
     )
     parser.add_argument(
         "--keep-alive",
         type=positive_number_or_zero,
         default=KEEP_ALIVE_S,
         metavar="SECONDS",
-        help=f"stay so long after the last message has arrived (default {KEEP_ALIVE_S})",
+        help=f"how long to stay after the last message has arrived (default {KEEP_ALIVE_S})",
     )
-    parser.add_argument(
-        "-n", "--node-name", type=node_name, metavar="NAME", help="name of the publishing node"
-    )
-    parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="'auto' and 'now' go by /clock"
-    )
-    add_qos_arguments(parser, "reliable, volatile, the last 10")
 
 
 def run(options: argparse.Namespace) -> None:
-    """Publish.
+    """Publish the messages.
 
     Raises:
-        NotFoundError: there is no such type.
-        MessageError: the values do not fit it, or a file holds none.
-        UnansweredError: no subscription within `--max-wait-time-secs`.
+        NoSuchNameError: there is no such type.
+        MessageError: the values do not fit the type, or the file holds no message.
+        UnansweredError: there are not enough subscriptions within `--max-wait-time-secs`.
     """
     type_ = InterfaceIndex().find(options.message_type, ("msg",))
     messages = _messages(options, type_)
@@ -119,18 +128,18 @@ def run(options: argparse.Namespace) -> None:
         )
         publication.open(options)
         publication.wait_for(wanted, options.max_wait_time_secs)
-        print("publisher: beginning loop")
+        say("publisher: beginning loop")
         publication.repeat(times, 1.0 / options.rate)
-        session.let_arrive([publication.publisher], options.keep_alive)
+        session.wait_for_delivery([publication.publisher], options.keep_alive)
 
 
 def _messages(options: argparse.Namespace, type_: InterfaceType) -> list["FilledMessage"]:
-    """Return what is published: one message, or those of a file."""
+    """Return the messages to publish: one message, or those of a file."""
     from arm_cli.messages.filling import fill_message, read_yaml
 
     given = [bool(options.values), options.stdin, options.yaml_file is not None]
     if sum(given) > 1:
-        raise UsageError("the values: as a word, by --stdin or by --yaml-file, not twice")
+        raise CommandUsageError("give the values once: as an argument, with --stdin or --yaml-file")
     class_ = load_class(type_)
     if options.yaml_file is not None:
         return _messages_of_file(options.yaml_file, class_, type_.full_name)
@@ -144,15 +153,15 @@ def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMe
     from arm_cli.messages.filling import fill_message, read_yaml_documents
 
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = read_text(path)
     except (OSError, UnicodeDecodeError) as error:
-        raise NotFoundError(f"--yaml-file {path}: {error}") from error
+        raise NoSuchNameError(f"--yaml-file {path}: {error}") from error
     try:
         documents = read_yaml_documents(text, type_name)
     except MessageError as error:
         raise MessageError(f"--yaml-file {path}: {error}") from error
     if not documents:
-        raise MessageError(f"--yaml-file {path}: there is no message in it")
+        raise MessageError(f"--yaml-file {path}: the file holds no message")
     messages: list[FilledMessage] = []
     for number, values in enumerate(documents, start=1):
         place = f"--yaml-file {path}: message {number}: "
@@ -166,12 +175,12 @@ def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMe
 
 def _say_notes(filled: "FilledMessage", place: str) -> None:
     for note in filled.notes:
-        print(f"arm topic pub: {place}{note}", file=sys.stderr)
+        complain(f"arm topic pub: {place}{note}")
 
 
 @dataclass(slots=True)
 class _Publication:
-    session: "Session"
+    session: "CommandSession"
     topic: str
     type_name: str
     messages: Sequence["FilledMessage"]
@@ -205,19 +214,19 @@ class _Publication:
 
         if not self.session.wait_until(matched, notice, timeout_s):
             raise UnansweredError(
-                f"{subscriptions} subscription(s) of {self.topic} did not come within "
+                f"{self.topic} has fewer than {subscriptions} matching subscription(s) after "
                 f"{timeout_s:g} s"
             )
         self.session.spin_for(AFTER_MATCH_S)
 
     def _check_type(self, types: set[str]) -> None:
         if types and self.type_name not in types:
-            raise UsageError(
-                f"{self.topic} carries {', '.join(sorted(types))}, not {self.type_name}"
+            raise CommandUsageError(
+                f"the type of {self.topic} is {', '.join(sorted(types))}, not {self.type_name}"
             )
 
     def repeat(self, times: int | None, period_s: float) -> None:
-        """Publish the messages one after another, and again from the first, some times in all."""
+        """Publish the messages in turn, from the first again after the last, `times` in total."""
         count = 0
         following = itertools.cycle(self.messages)
 
@@ -229,7 +238,7 @@ class _Publication:
             filled = next(following)
             filled.stamp(self.session.node.get_clock().now().to_msg())
             if self.print_every and count % self.print_every == 0:
-                print(f"publishing #{count}: {filled.message!r}\n")
+                say_document(f"publishing #{count}: {filled.message!r}\n")
             self.publisher.publish(filled.message)
 
         publish()

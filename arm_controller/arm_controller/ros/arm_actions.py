@@ -1,4 +1,4 @@
-"""An arm and its gripper, moved by their actions; every movement is awaited to its real result."""
+"""Moves an arm and its gripper through actions, and waits for the result of each movement."""
 
 import threading
 from collections.abc import Sequence
@@ -7,12 +7,12 @@ from typing import Any
 from control_msgs.action import FollowJointTrajectory, GripperCommand
 from rclpy.action.client import ActionClient, ClientGoalHandle
 from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.task import Future
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_controller.ros.clock_time import steady_clock
-from arm_controller.way import WayPoint
+from arm_controller.joint_path import PathPoint
 
 ARM_ACTION = "arm_controller/follow_joint_trajectory"
 GRIPPER_ACTION = "gripper_action_controller/gripper_cmd"
@@ -23,11 +23,13 @@ GONE = "its action server is gone"
 
 
 class ArmActions:
-    """The coroutines run in the executor's thread, `stop` in any other.
+    """The action clients of an arm and its gripper.
+
+    The coroutines run in the executor's thread, `stop` in any other.
 
     Args:
-        node: gets the clients.
-        joints: of the arm, in the order of all positions.
+        node: node of the clients.
+        joints: joints of the arm, in the order of all positions.
     """
 
     def __init__(self, node: Node, joints: Sequence[str]) -> None:
@@ -35,25 +37,25 @@ class ArmActions:
         self._joints = list(joints)
         self._arm = ActionClient(node, FollowJointTrajectory, ARM_ACTION)
         self._gripper = ActionClient(node, GripperCommand, GRIPPER_ACTION)
-        self._under_way: ClientGoalHandle | None = None
+        self._running_goal: ClientGoalHandle | None = None
 
     async def connect(self) -> None:
-        """Return once both action servers are there; say so, and what is missing."""
+        """Wait for both action servers, and log which are missing."""
         if not self._missing():
             return
         logger = self._node.get_logger()
         logger.info("Waiting for action servers...")
         polls = 0
         while missing := self._missing():
-            await self.wait(POLL_S, steady_clock())
+            await self.wait(POLL_S, Clock(clock_type=ClockType.STEADY_TIME))
             polls += 1
             if polls % round(REMINDER_S / POLL_S) == 0:
                 names = " and ".join(missing)
                 logger.warning(f"no action server for {names}: does the robot run?")
         logger.info("Action servers connected!")
 
-    async def follow(self, points: Sequence[WayPoint]) -> str | None:
-        """Move the arm; return why it did not get there."""
+    async def follow(self, points: Sequence[PathPoint]) -> str | None:
+        """Move the arm; return why it did not reach its goal, or None."""
         trajectory = JointTrajectory(joint_names=self._joints, points=list(map(_message, points)))
         result = await self._carry_out(self._arm, FollowJointTrajectory.Goal(trajectory=trajectory))
         if isinstance(result, str):
@@ -63,21 +65,21 @@ class ArmActions:
         return result.error_string or f"error {result.error_code}"
 
     async def grip(self, position: float, max_effort: float) -> "GripperCommand.Result | str":
-        """Move the gripper to a position in rad; a phrase says why there is no result."""
+        """Move the gripper to a position in rad; return a phrase if there is no result."""
         goal = GripperCommand.Goal()
         goal.command.position, goal.command.max_effort = position, max_effort
         return await self._carry_out(self._gripper, goal)
 
     async def wait(self, seconds: float, clock: Clock) -> None:
-        """Return after some time of a clock."""
+        """Return after a time on a clock."""
         over = Future(executor=self._node.executor)
         timer = self._node.create_timer(seconds, lambda: over.set_result(None), clock=clock)
         await over
         self._node.destroy_timer(timer)
 
     def stop(self) -> None:
-        """Stop what is under way; blocks until that is confirmed, for two seconds at most."""
-        goal = self._under_way
+        """Cancel the running movement; block until that is confirmed, for at most two seconds."""
+        goal = self._running_goal
         if goal is not None:
             confirmed = threading.Event()
             goal.cancel_goal_async().add_done_callback(lambda _: confirmed.set())
@@ -92,27 +94,27 @@ class ArmActions:
         ]
 
     async def _carry_out(self, client: ActionClient, goal: Any) -> Any:
-        """Return the result of a goal, or a phrase that says why there is none."""
+        """Return the result of a goal, or a phrase with the reason why there is none."""
         handle = await self._answer(client, client.send_goal_async(goal))
         if handle is None:
             return GONE
         if not handle.accepted:
             return "the goal was rejected"
-        self._under_way = handle
+        self._running_goal = handle
         ended = await self._answer(client, handle.get_result_async())
-        self._under_way = None
+        self._running_goal = None
         return GONE if ended is None else ended.result
 
     async def _answer(self, client: ActionClient, future: Future) -> Any:
-        """Return what a future brings, None where the server goes away first."""
+        """Return the result of a future, None if the server disappears first."""
         while not future.done():
             if not client.server_is_ready():
                 return None
-            await self.wait(POLL_S, steady_clock())
+            await self.wait(POLL_S, Clock(clock_type=ClockType.STEADY_TIME))
         return future.result()
 
 
-def _message(point: WayPoint) -> JointTrajectoryPoint:
+def _message(point: PathPoint) -> JointTrajectoryPoint:
     message = JointTrajectoryPoint(positions=point.positions, velocities=point.velocities)
     message.time_from_start.sec = int(point.time_s)
     message.time_from_start.nanosec = int(point.time_s % 1 * 1e9)

@@ -1,6 +1,7 @@
-"""Brings /joint_states into the core's readings."""
+"""Reads /joint_states into the core's readings."""
 
 import logging
+import time
 from typing import Any
 
 from rclpy.node import Node
@@ -8,9 +9,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from arm_controller.joint_readings import JointReadings
-from arm_controller.ros.clock_time import seconds, steady_clock
-from arm_controller.silence_watch import PATIENCE_S, SilenceWatch
+from arm_controller.joint_states import PATIENCE_S, JointReadings, SilenceWatch
 from arm_node.polled_subscriptions import PolledSubscriptions
 
 TOPIC = "joint_states"
@@ -22,24 +21,23 @@ logger = logging.getLogger(__name__)
 
 
 class JointStateInput:
-    """Updates readings with the messages that came, when asked to; tells when none come.
+    """Updates readings with new messages on request, and warns if there are none.
 
-    At 500 Hz a callback for each message would take a sixth of a core.
+    At 500 Hz, a callback for each message would take a sixth of a core.
 
     Args:
         node: the node that subscribes.
-        readings: what to update.
+        readings: the readings to update.
     """
 
     def __init__(self, node: Node, readings: JointReadings) -> None:
         self._readings = readings
         self._polled = PolledSubscriptions(node)
         self._subscription = self._polled.subscribe(JointState, TOPIC, QOS)
-        self._steady = steady_clock()
-        self._silence = SilenceWatch(seconds(self._steady))
+        self._silence = SilenceWatch(time.monotonic())
 
     def take(self) -> bool:
-        """Take in what came since the last call; return whether it was anything of use."""
+        """Process the messages since the last call; return whether any could be used."""
         taken = self._polled.take(self._subscription, DEPTH)
         messages: list[Any] = [deserialize_message(data, JointState) for data, _ in taken]
         useful = [
@@ -48,7 +46,7 @@ class JointStateInput:
             )
             for message in messages
         ]
-        now_s = seconds(self._steady)
+        now_s = time.monotonic()
         if messages:
             self._silence.hear(now_s)
         elif self._silence.notices(now_s):

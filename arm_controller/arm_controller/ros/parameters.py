@@ -1,44 +1,61 @@
-"""Declares parameters whose type the user need not get right."""
+"""Declares parameters, among them those that several nodes of this package share."""
 
-from collections.abc import Callable
-from typing import TypeVar
-
-from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 
-from arm_controller.errors import ArmControllerError, ParameterValueError
-from arm_controller.parameter_values import read_joint_names, read_number, read_topic
+from arm_control.course import COURSES, NO_COURSE, course_parameters
+from arm_controller.errors import ArmControllerError
+from arm_controller.parameter_values import read_joint_names, read_positive
+from arm_node.parameter_values import (
+    ParameterValueError,
+    Reader,
+    Value,
+    one_of,
+    read_filled_text,
+    wanted_by,
+)
+from arm_node.parameters import declare_untyped
 
-Value = TypeVar("Value")
+COURSE = "course"
 
 JOINT_MARK = "{joint}"
-"""What stands for a joint's name in the name of a topic."""
+"""Placeholder for a joint's name in the name of a topic."""
 
 
 def declare(
     node: Node,
     name: str,
     default: object,
-    read: Callable[[object], Value],
+    read: Reader[Value],
     description: str,
     *,
     read_only: bool = True,
 ) -> Value:
-    """Declare a parameter and return what `read` makes of its value.
-
-    The declaration is dynamically typed: rclpy itself would refuse an integer for a double.
+    """Declare a parameter and return its value, converted by `read`.
 
     Raises:
-        ParameterValueError: `read` refused the value that the user gave.
+        ParameterValueError: `read` refuses the given value.
     """
-    descriptor = ParameterDescriptor(
-        description=description, dynamic_typing=True, read_only=read_only
-    )
+    if node.has_parameter(COURSE):
+        course = node.get_parameter(COURSE).value
+        default = course_parameters(course, node.get_name()).get(name, default)
     try:
-        return read(node.declare_parameter(name, default, descriptor).value)
-    except (ArmControllerError, ParameterException) as error:
+        return read(
+            declare_untyped(node, name, default, description, wanted_by(read), read_only=read_only)
+        )
+    except (ArmControllerError, ParameterValueError, ParameterException) as error:
         raise ParameterValueError(f"parameter {name}: {error}") from error
+
+
+def declare_course(node: Node) -> None:
+    """Declare the parameter `course`, whose file has the defaults of those declared after it."""
+    declare(
+        node,
+        COURSE,
+        NO_COURSE,
+        one_of((NO_COURSE, *COURSES)),
+        "Whose tutorial the node follows; its file has the defaults of the other parameters",
+    )
 
 
 def declare_joints(node: Node) -> tuple[str, ...]:
@@ -58,9 +75,9 @@ def declare_command_topic(node: Node) -> str:
         node,
         "command_topic",
         "position_controller/commands",
-        read_topic,
-        "Where poses go: one std_msgs/msg/Float64MultiArray or, where it holds {joint}, "
-        "one std_msgs/msg/Float64 for each joint",
+        _read_topic,
+        "Topic of the poses: one std_msgs/msg/Float64MultiArray or, if it contains {joint}, "
+        "one std_msgs/msg/Float64 per joint",
     )
 
 
@@ -70,6 +87,10 @@ def declare_match_timeout_s(node: Node) -> float:
         node,
         "match_timeout",
         10.0,
-        read_number,
-        "How long to wait for somebody who listens to the commands (s)",
+        read_positive,
+        "How long to wait for a subscriber to the commands (s)",
     )
+
+
+def _read_topic(value: object) -> str:
+    return read_filled_text(value, "the name of a topic")

@@ -1,42 +1,49 @@
-"""The node publisher_defined: goes through the poses of a file."""
+"""The node publisher_defined: moves the arm to the poses in a file."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 from ament_index_python.packages import get_package_share_directory
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_controller.errors import PoseError
-from arm_controller.joint_readings import JointReadings
-from arm_controller.parameter_values import read_number, read_path
-from arm_controller.pose import JointPose
+from arm_controller.joint_pose import JointPose
+from arm_controller.joint_states import JointReadings
+from arm_controller.parameter_values import read_positive, read_zero_or_more
 from arm_controller.pose_file import read_pose_file
 from arm_controller.pose_sequence import PoseSequence
-from arm_controller.ros.clock_time import seconds, steady_clock
 from arm_controller.ros.command_publisher import (
     GRACE_S,
     POLL_S,
     CommandPublisher,
 )
 from arm_controller.ros.joint_state_input import JointStateInput
-from arm_controller.ros.parameters import declare, declare_joints, declare_match_timeout_s
+from arm_controller.ros.parameters import (
+    declare,
+    declare_course,
+    declare_joints,
+    declare_match_timeout_s,
+)
+from arm_node.parameter_values import read_path
+from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess
 
 
 class PublisherDefined(Node):
-    """Publishes a pose, waits until the joints are there, goes on with the next.
+    """Publishes a pose, waits until the joints reach it, and goes on with the next.
 
     Args:
-        on_end: called in the executor's thread when all is done, with the number of poses that
-            were not reached.
+        process: ends after the last pose; with exit code 1 if a pose was not reached.
 
     Raises:
-        ParameterValueError: a parameter that was given makes no sense.
+        ParameterValueError: a given parameter is invalid.
         PoseFileError: the file of poses cannot be used.
     """
 
-    def __init__(self, on_end: Callable[[int], None]) -> None:
+    def __init__(self, process: NodeProcess) -> None:
         super().__init__("publisher_defined")
-        self._on_end = on_end
+        self._process = process
+        declare_course(self)
         joint_names = declare_joints(self)
         default_file = Path(get_package_share_directory("arm_controller")) / "config/poses.yaml"
         poses_file = declare(
@@ -46,15 +53,26 @@ class PublisherDefined(Node):
         self._sequence = PoseSequence(
             read_pose_file(poses_file, joint_names),
             tolerance=declare(
-                self, "tolerance", 0.02, read_number, "How near each joint must come (rad or m)"
+                self, "tolerance", 0.02, read_positive, "How close each joint must come (rad or m)"
             ),
-            timeout_s=declare(self, "timeout", 30.0, read_number, "How long one pose may take (s)"),
+            timeout_s=declare(
+                self, "timeout", 30.0, read_positive, "How long one pose may take (s)"
+            ),
+            pause_s=declare(
+                self,
+                "pause",
+                0.0,
+                read_zero_or_more,
+                "Shortest time from one pose to the next (s); 0 = as soon as it is reached",
+            ),
         )
         self._readings = JointReadings()
         self._states = JointStateInput(self, self._readings)
         self._commands = CommandPublisher(self, joint_names)
-        # A simulation that stands still must be noticed, so its clock does not drive the timer.
-        self._timer = self.create_timer(POLL_S, self._go_on, clock=steady_clock())
+        # The timer uses the steady clock, so that it also runs while a simulation is paused.
+        self._timer = self.create_timer(
+            POLL_S, self._go_on, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
 
     def _go_on(self) -> None:
         self._commands.observe()
@@ -67,8 +85,8 @@ class PublisherDefined(Node):
         if self._sequence.finished:
             self._end()
         elif self._commands.silence_s >= self._match_timeout_s:
-            self._give_up(f"{self._commands.audience}: is the position_controller active?")
-        elif pose is not None:
+            self._give_up(f"{self._commands.listeners}: is the position_controller active?")
+        elif pose is not None and not self._sequence.is_pausing(self._now_s()):
             self._publish_if_ready(pose)
 
     def _say_if_reached(self) -> None:
@@ -81,14 +99,14 @@ class PublisherDefined(Node):
         try:
             self._commands.limits.check(pose)
         except PoseError as error:
-            self.get_logger().error(f"{label} {pose} is left out: {error}")
+            self.get_logger().error(f"{label} {pose} is skipped: {error}")
             self._sequence.refuse()
             return
         if not self._commands.is_ready:
             return
-        waited_s = self._commands.lasting_s
+        waited_s = self._commands.unchanged_s
         if self._now_s() == 0.0:
-            # With use_sim_time the clock shows 0 until /clock comes; no time-out would ever pass.
+            # With use_sim_time the clock is 0 until /clock arrives, so no time-out would pass.
             if waited_s >= self._match_timeout_s:
                 self._give_up("use_sim_time is true and /clock is silent: does a simulation run?")
             return
@@ -114,7 +132,7 @@ class PublisherDefined(Node):
             self.get_logger().error(f"{missed} of {count} poses not reached")
         else:
             self.get_logger().info(f"All {count} poses reached")
-        self._on_end(missed)
+        self._process.stop(EXIT_FAILED if missed else EXIT_OK)
 
     def _now_s(self) -> float:
-        return seconds(self.get_clock())
+        return self.get_clock().now().nanoseconds * 1e-9

@@ -1,4 +1,4 @@
-"""The node publisher_terminal: its half of the dialogue that needs ROS."""
+"""The node publisher_terminal: the ROS half of the dialogue."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from rclpy.node import Node
 
 from arm_controller.errors import DeliveryError
-from arm_controller.pose import JointPose
+from arm_controller.joint_pose import JointPose
 from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
 from arm_controller.ros.parameters import declare_joints, declare_match_timeout_s
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from arm_node.process import NodeProcess
 
 PACE_S = 0.1
-"""The controller keeps the latest command only: lines from a pipe must not overtake each other."""
+"""The controller keeps only the latest command, so lines from a pipe need a pause between them."""
 
 
 class PublisherTerminal(Node):
-    """Delivers poses, one after the other, for a thread that may wait.
+    """Delivers poses one after the other; the calling thread waits.
 
     Args:
-        process: the process, whose end ends every waiting.
+        process: the process, whose shutdown ends every wait.
 
     Raises:
-        ParameterValueError: a parameter that was given makes no sense.
+        ParameterValueError: a given parameter is invalid.
     """
 
     def __init__(self, process: "NodeProcess") -> None:
@@ -35,17 +35,17 @@ class PublisherTerminal(Node):
         self._commands = CommandPublisher(self, self.joint_names)
 
     def deliver(self, pose: JointPose, announce: Callable[[], None]) -> None:
-        """Publish a pose as soon as it can arrive, and give it the time to.
+        """Publish a pose as soon as it can arrive, and wait until it has.
 
-        Not in the executor's thread, which must stay free meanwhile.
+        Call it outside the executor's thread, which must keep running meanwhile.
 
         Args:
-            pose: what to publish.
-            announce: called right before.
+            pose: the pose to publish.
+            announce: called right before the pose is published.
 
         Raises:
-            PoseError: beyond the robot's limits.
-            DeliveryError: nobody has listened for the parameter match_timeout.
+            PoseError: the pose exceeds the robot's limits.
+            DeliveryError: there was no subscriber for match_timeout.
         """
         while not self._process.stopping:
             self._commands.observe()
@@ -57,7 +57,7 @@ class PublisherTerminal(Node):
                 return
             if self._commands.silence_s >= self._match_timeout_s:
                 raise DeliveryError(
-                    f"Not published: {self._commands.audience}. Is the position_controller active?"
+                    f"Not published: {self._commands.listeners}. Is the position_controller active?"
                 )
             self._process.wait(POLL_S)
-        raise DeliveryError("Not published: the program ends.")
+        raise DeliveryError("Not published: the program is shutting down.")

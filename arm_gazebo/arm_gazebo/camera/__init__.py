@@ -1,1 +1,1 @@
-"""The cameras' pictures, made in a process of their own, and what feeds it."""
+"""The camera process, which renders the images, and the feed that sends it states."""

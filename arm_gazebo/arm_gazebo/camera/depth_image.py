@@ -1,4 +1,4 @@
-"""What a depth camera says of the distances that were drawn: REP 117's limits, and points."""
+"""Convert rendered depth to a depth camera's output: REP 117's limits, and point clouds."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,14 +6,14 @@ from numpy.typing import NDArray
 from arm_gazebo.sensors.camera import CameraSensor
 
 CHANNELS = 4
-"""Of a point: x, y, z, and its colour."""
+"""Values of a point: x, y, z, and its colour."""
 
 
 def mark_limits(depth: NDArray[np.float32], sensor: CameraSensor) -> None:
-    """Say of distances out of range on which side they are, as REP 117 has it; in place.
+    """Mark distances out of range as REP 117 requires, in place.
 
     Args:
-        depth: in m; what is nearer than the near clip becomes -inf, farther than the far one inf.
+        depth: distances in m. Below the near clip they become -inf, beyond the far clip inf.
         sensor: the camera.
     """
     depth[depth < sensor.near] = -np.inf
@@ -21,7 +21,7 @@ def mark_limits(depth: NDArray[np.float32], sensor: CameraSensor) -> None:
 
 
 class PointGrid:
-    """Makes points of distances. One thread."""
+    """Converts distances to points. One thread."""
 
     def __init__(self, sensor: CameraSensor) -> None:
         columns = np.arange(sensor.width) + 0.5 - sensor.width / 2
@@ -43,12 +43,13 @@ class PointGrid:
 
         Args:
             points: (height, width, 4), overwritten: x, y, z in the camera's frame in m, all NaN
-                where the depth is no number, and the colour as PCL packs it into a float's bits.
+                where the depth is not finite, and the colour in the bits of a float as PCL packs
+                it.
             depth: (height, width) in m.
             picture: (height, width, 3) RGB; None for points without colour.
         """
         known = np.where(np.isfinite(depth), depth, np.float32(np.nan))
-        # Axis by axis: over the three numbers of a point NumPy takes twenty times as long.
+        # Axis by axis, because NumPy is twenty times slower over the three values of each point.
         for axis, (rays, origin) in enumerate(zip(self._rays, self._origin, strict=True)):
             np.multiply(rays, known, out=points[..., axis])
             points[..., axis] += origin

@@ -1,4 +1,4 @@
-"""Hands states of the simulation to the camera process, whenever a camera takes a picture."""
+"""Sends states of the simulation to the camera process when a camera frame is due."""
 
 import math
 import time
@@ -8,24 +8,27 @@ import mujoco
 
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.camera.settings import CameraSettings
+from arm_gazebo.feed.channel import CameraProgress
 from arm_gazebo.feed.schedule import FrameDue, FrameSchedule
 from arm_gazebo.feed.state_feed import PreparedModel, StateFeed
+from arm_gazebo.feed.stream_count import StreamCount
 from arm_gazebo.rendering.backend_selection import backend_order
 from arm_gazebo.rendering.renderer import camera_id
 from arm_gazebo.sensors.camera import CameraSensor
 
 LEAST_INTERVAL_S = 0.002
-"""Wall time between two states for one camera. A simulation that runs as fast as possible would
-keep the camera process busy with more than anybody can look at."""
+"""Smallest wall time between two states for one camera. A simulation that runs as fast as possible
+would otherwise overload the camera process with images that nobody can look at."""
 
 
 class CameraFeed:
-    """The simulation's side of its cameras. Nothing that happens to them reaches the physics.
+    """The simulation's side of its cameras. A fault of the cameras never affects the physics.
 
-    Pictures are drawn and published by a child process, which gets the states in which they are
-    due; where it cannot follow, frames are lost, and it counts them.
+    A child process renders and publishes the images. It receives a state whenever a frame is due.
+    If it cannot keep up, frames are lost, and it counts them.
 
-    `start`, `set_model`, then `publish_due` at each tick and `supervise` now and then; `close`.
+    Call `start` and `set_model`, then `publish_due` at each tick and `supervise` about once a
+    second, and finally `close`.
     """
 
     def __init__(
@@ -37,18 +40,18 @@ class CameraFeed:
         make_process: Callable[[CameraSettings, Sequence[str]], CameraProcess] = CameraProcess,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Prepare; nothing is started, but `close` is needed from here on.
+        """Prepare without starting the process; `close` is required afterwards.
 
         Args:
             cameras: the cameras of the model; at least one.
             render_backend: auto, egl, osmesa or raycast.
-            seed: of the cameras' noise.
-            ros_arguments: what the camera node gets after --ros-args, such as `-r __ns:=/lab`.
-            make_process: makes what runs the child.
+            seed: seed of the cameras' noise.
+            ros_arguments: the camera node's arguments after --ros-args, such as `-r __ns:=/lab`.
+            make_process: creates the object that runs the child process.
             clock: wall time in s.
 
         Raises:
-            CameraError: an unknown backend; the message names the known ones.
+            CameraError: the backend is unknown; the message names the known ones.
         """
         backend_order(render_backend)
         self._cameras = tuple(cameras)
@@ -57,12 +60,15 @@ class CameraFeed:
         self._schedule = FrameSchedule([camera.rate_hz for camera in self._cameras])
         self._clock = clock
         self._sent_s = [-math.inf] * len(self._cameras)
+        self._sent = [-1] * len(self._cameras)
+        self._sent_version = 0
+        self._missed = [0] * len(self._cameras)
 
     def start(self, model: mujoco.MjModel | None = None) -> None:
         """Start the camera process; see `StateFeed.start`.
 
         Raises:
-            CameraError: as `set_model`, where a model is given.
+            CameraError: see `set_model`, if a model is given.
         """
         self._feed.start()
         if model is not None:
@@ -77,7 +83,7 @@ class CameraFeed:
         self.prepare(model).show()
 
     def prepare(self, model: mujoco.MjModel) -> PreparedModel:
-        """Return a model to be drawn later; see `StateFeed.prepare`.
+        """Return a model to draw later; see `StateFeed.prepare`.
 
         Raises:
             CameraError: the model lacks one of the cameras, or its state is too large to send.
@@ -86,10 +92,13 @@ class CameraFeed:
             camera_id(model, camera)
         return self._feed.prepare(model)
 
-    def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
-        """Send the state if a camera takes a picture at this tick; loop thread only.
+    @property
+    def schedule(self) -> FrameSchedule:
+        """When the next readings or pictures are due; it is part of the state of a run."""
+        return self._schedule
 
-        Never waits.
+    def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
+        """Send the state if a camera frame is due at this tick. Loop thread only; never waits.
 
         Args:
             time_s: simulation time of the state.
@@ -98,19 +107,67 @@ class CameraFeed:
         if self._schedule.nothing_due(time_s):
             return
         now_s = self._clock()
-        frames = tuple(
-            frame for frame in self._schedule.take_due(time_s) if self._may_send(frame, now_s)
+        due = self._schedule.take_due(time_s)
+        frames = tuple(frame for frame in due if self._may_send(frame, now_s))
+        if not (frames and self._feed.send(time_s, frames, data)):
+            frames = ()
+        if frames and self._sent_version != self._feed.version:
+            self._sent_version = self._feed.version
+            self._sent = [-1] * len(self._cameras)
+        for frame in frames:
+            self._sent[frame.camera] = frame.serial
+        if len(frames) < len(due):
+            for frame in due:
+                self._missed[frame.camera] += frame not in frames
+
+    def counts(self) -> tuple[StreamCount, ...]:
+        """Return the cameras' figures; those of the camera process are up to half a second old."""
+        progress = self._feed.progress or (CameraProgress(),) * len(self._cameras)
+        return tuple(
+            StreamCount(camera.name, "camera", camera.rate_hz, due, done.rendered, done.dropped)
+            for camera, due, done in zip(
+                self._cameras, self._schedule.serials, progress, strict=True
+            )
         )
-        if frames:
-            self._feed.send(time_s, frames, data)
+
+    def missed(self) -> dict[str, int]:
+        """Return how many due frames of each camera were never sent; the loop is paused."""
+        names = (camera.name for camera in self._cameras)
+        return dict(zip(names, self._missed, strict=True))
+
+    def unpublished(self, timeout_s: float) -> tuple[str, ...]:
+        """Return the cameras whose last frame is not out yet, while the loop is paused.
+
+        Args:
+            timeout_s: how long to wait for the camera process to publish something.
+        """
+        found = self._late()
+        if found:
+            self._feed.hear(timeout_s)
+            found = self._late()
+        return found
+
+    def forget_pace(self) -> None:
+        """Let the next frame follow at once, because all earlier ones are out. Loop thread."""
+        self._sent_s = [-math.inf] * len(self._cameras)
 
     def supervise(self) -> None:
-        """Start the camera process again if it has died; see `StateFeed.supervise`."""
+        """Restart the camera process if it has died; see `StateFeed.supervise`."""
         self._feed.supervise()
 
     def close(self) -> None:
-        """End the camera process and wait for it, some seconds at most; idempotent. Any thread."""
+        """End the camera process and wait some seconds at most for it. Idempotent; any thread."""
         self._feed.close()
+
+    def _late(self) -> tuple[str, ...]:
+        if self._sent_version != self._feed.version:
+            return ()  # A frame of the model before, which the process may never have received.
+        progress = self._feed.progress or (CameraProgress(),) * len(self._cameras)
+        return tuple(
+            camera.name
+            for camera, sent, done in zip(self._cameras, self._sent, progress, strict=True)
+            if done.serial < sent
+        )
 
     def _may_send(self, frame: FrameDue, now_s: float) -> bool:
         if not self._feed.flowing or now_s - self._sent_s[frame.camera] < LEAST_INTERVAL_S:

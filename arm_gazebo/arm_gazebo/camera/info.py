@@ -1,4 +1,4 @@
-"""The intrinsic matrix of a camera, as ROS's CameraInfo has it."""
+"""The intrinsics of a camera in the form of ROS's CameraInfo."""
 
 from dataclasses import dataclass
 
@@ -11,8 +11,8 @@ DISTORTION_MODEL = "plumb_bob"
 class Intrinsics:
     """Projection of a camera without distortion, row by row, in pixels.
 
-    A point (x, y, z) of the optical frame is seen at u = fx x / z + cx, v = fy y / z + cy, where
-    the picture's upper left corner is (0, 0) and the centre of the first pixel (0.5, 0.5).
+    A point (x, y, z) in the optical frame appears at u = fx x / z + cx, v = fy y / z + cy. The
+    image's upper left corner is (0, 0), and the centre of the first pixel is (0.5, 0.5).
 
     Attributes:
         k: (9,) camera matrix.
@@ -28,7 +28,7 @@ class Intrinsics:
 
     @classmethod
     def of(cls, sensor: CameraSensor) -> "Intrinsics":
-        """Return the intrinsics of a camera: its pixels are square, its centre the picture's."""
+        """Return the intrinsics of a camera with square pixels and a centred optical axis."""
         f, cx, cy = sensor.focal_length, sensor.width / 2, sensor.height / 2
         return cls(
             k=(f, 0.0, cx, 0.0, f, cy, 0.0, 0.0, 1.0),

@@ -1,4 +1,4 @@
-"""From the simulation's messages to pictures: what the camera process does all day."""
+"""The main work of the camera process: turn the simulation's messages into images."""
 
 import os
 import time
@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.camera.depth_image import mark_limits
-from arm_gazebo.camera.depth_noise import DepthNoise
-from arm_gazebo.camera.noise_bank import NoiseBank, noise_for
+from arm_gazebo.camera.drawing import FrameDrawing
 from arm_gazebo.camera.statistics import CameraStatistics
 from arm_gazebo.feed.channel import ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
@@ -21,22 +19,23 @@ from arm_gazebo.sensors.camera import CameraSensor
 
 if TYPE_CHECKING:
     from arm_gazebo.rendering.renderer import Renderer
-    from arm_gazebo.rendering.scene import Scene
+    from arm_gazebo.rendering.scene import RenderScene
 
 
 BACKLOG = 2
-"""Frames of one camera worked off at once: a short stall costs none, a long one is not redone."""
+"""Limit on the pending frames of one camera: a short stall loses no frame, and a long one is not
+caught up."""
 
 
 class FrameSink(Protocol):
-    """Where one camera's pictures and distances go."""
+    """Publishes one camera's images and depth."""
 
     def wants_picture(self) -> bool:
-        """Return whether anybody looks at the colours now."""
+        """Return whether the colour image has subscribers now."""
         ...
 
     def wants_depth(self) -> bool:
-        """Return whether anybody looks at the distances now."""
+        """Return whether the depth has subscribers now."""
         ...
 
     @property
@@ -46,27 +45,27 @@ class FrameSink(Protocol):
 
     @property
     def depth(self) -> NDArray[np.float32] | None:
-        """The (height, width) array for the distances; None for a camera that has none."""
+        """The (height, width) array for the depth; None for a camera without depth."""
         ...
 
     def publish_info(self, time_s: float) -> None:
-        """Publish the intrinsics, stamped with the time of a state."""
+        """Publish the camera info, stamped with the time of a state."""
         ...
 
     def publish_picture(self, time_s: float) -> None:
-        """Publish what stands in `picture`, stamped with the time of its state."""
+        """Publish the content of `picture`, stamped with the time of its state."""
         ...
 
     def publish_depth(self, time_s: float) -> None:
-        """Publish what stands in `depth`, likewise."""
+        """Publish the content of `depth`, stamped with the time of its state."""
         ...
 
 
 class CameraPipeline:
-    """Draws the newest state for each camera that somebody looks at. One thread.
+    """Renders the newest state for each camera that has subscribers. One thread.
 
-    MuJoCo and OpenGL are loaded when the first picture is wanted, in this thread: a simulation
-    whose cameras nobody looks at pays for neither.
+    MuJoCo and OpenGL are loaded in this thread when the first image is wanted, so a simulation
+    without camera subscribers pays for neither.
 
     Attributes:
         statistics: one per camera, in the cameras' order; readable from any thread.
@@ -80,50 +79,47 @@ class CameraPipeline:
         open_renderer: Callable[[], "Renderer"],
         seed: int = 0,
     ) -> None:
-        """Connect cameras with the sinks of their pictures.
+        """Connect cameras with their sinks.
 
         Args:
             sensors: the cameras, in the order of the frames' indices.
-            sinks: where each camera's pictures go.
-            open_renderer: called once, when the first picture is wanted.
-            seed: of the noise.
+            sinks: the publisher of each camera.
+            open_renderer: called once, when the first image is wanted.
+            seed: seed of the noise.
         """
         self.time_s = 0.0
         self.statistics = tuple(CameraStatistics() for _ in sensors)
         self._sensors = tuple(sensors)
         self._sinks = tuple(sinks)
-        self._open_renderer = open_renderer
-        self._seed = seed
-        self._renderer: Renderer | None = None
-        self._noises: dict[int, NoiseBank | DepthNoise | None] = {}
+        self._drawing = FrameDrawing(sensors, open_renderer, seed)
         self._model: ModelMessage | None = None
-        self._scene: Scene | None = None
+        self._scene: RenderScene | None = None
         self._posed: CameraSnapshot | None = None
 
     @property
     def backend(self) -> str:
-        """Name of what draws; "none" before the first picture."""
-        return "none" if self._renderer is None else self._renderer.backend
+        """Name of the render backend; "none" before the first image."""
+        return self._drawing.backend
 
     def handle(self, messages: Iterable[ModelMessage | CameraSnapshot]) -> None:
-        """Work off messages that arrived together: all models, each camera's newest frames."""
+        """Process messages that arrived together: all models, and each camera's newest frames."""
         newest = [deque[tuple[CameraSnapshot, FrameDue]](maxlen=BACKLOG) for _ in self._sensors]
         for message in messages:
             if isinstance(message, ModelMessage):
                 self._take_model(message)
                 for frames in newest:
                     frames.clear()
-            elif self._model is not None and message.model_version == self._model.version:
-                for frame in message.frames:
+                continue
+            for frame in message.frames:
+                self.statistics[frame.camera].count_arrived(frame)
+                if self._model is not None and message.model_version == self._model.version:
                     newest[frame.camera].append((message, frame))
         for snapshot, frame in chain.from_iterable(newest):
             self._take_frame(snapshot, frame)
 
     def close(self) -> None:
         """Free the renderer and the model."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
+        self._drawing.close()
         if self._model is not None:
             os.close(self._model.file)
             self._model = None
@@ -160,29 +156,17 @@ class CameraPipeline:
         picture: NDArray[np.uint8] | None,
         depth: NDArray[np.float32] | None,
     ) -> None:
-        renderer, scene = self._ready()
+        scene = self._ready()
         if self._posed is not snapshot:
             scene.pose(snapshot)
             self._posed = snapshot
-        sensor = self._sensors[frame.camera]
-        renderer.render(scene.data, sensor, picture, depth)
-        noise = self._noises.get(frame.camera)
-        if frame.camera not in self._noises:
-            noise = self._noises[frame.camera] = noise_for(sensor, self._seed)
-        if depth is not None:
-            if isinstance(noise, DepthNoise):
-                noise.add_to(depth, frame.number)
-            mark_limits(depth, sensor)
-        if picture is not None and isinstance(noise, NoiseBank):
-            noise.add_to(picture, frame.number)
+        self._drawing.draw(scene.data, frame.camera, frame.number, picture, depth)
 
-    def _ready(self) -> "tuple[Renderer, Scene]":
-        if self._renderer is None:
-            self._renderer = self._open_renderer()
+    def _ready(self) -> "RenderScene":
         if self._scene is None:
-            from arm_gazebo.rendering.scene import Scene
+            from arm_gazebo.rendering.scene import RenderScene, read_model
 
             assert self._model is not None
-            self._scene = Scene(self._model.file)
-            self._renderer.set_model(self._scene.model)
-        return self._renderer, self._scene
+            self._scene = RenderScene(read_model(self._model.file))
+            self._drawing.show(self._scene.model)
+        return self._scene

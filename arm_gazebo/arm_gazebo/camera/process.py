@@ -1,4 +1,4 @@
-"""The child process that renders, seen from the simulation: start, watch, start again, end."""
+"""Run the camera process from the simulation: start, watch, restart and end it."""
 
 import logging
 import math
@@ -8,10 +8,69 @@ import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 
-from arm_gazebo.camera.environment import camera_environment
+from arm_description.package_search import share_folders, suite_package
 from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
-from arm_gazebo.feed.child_process import FedProcess, Spawn, describe_exit
+from arm_gazebo.feed.child_process import NOT_INHERITED, Spawn, WorkerProcess, describe_exit
+from arm_node.workarounds.local_profile import use_general_profile
+
+PROFILE_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+PACKAGE = "arm_gazebo"
+LARGE_PROFILE = "config/dds_images.xml"
+SMALL_PROFILE = "config/dds_images_small.xml"
+ROOM_FOR_LARGE_BYTES = 128 << 20
+"""Free shared memory required to use the large segment (32 MiB); Docker's default is 64 MiB."""
+LAUNCHER = "launch_py"
+
+
+def camera_environment(environ: Mapping[str, str], shm: str = "/dev/shm") -> dict[str, str]:
+    """Return the environment for a camera process.
+
+    Args:
+        environ: the simulation's own environment.
+        shm: folder of the shared memory, whose free space selects the profile.
+    """
+    own = {name: value for name, value in environ.items() if name not in NOT_INHERITED}
+    # Otherwise importing mujoco loads a window toolkit.
+    own["MUJOCO_GL"] = "off"
+    use_general_profile(own)
+    profile = _profile(own, shm)
+    if profile is not None:
+        own[PROFILE_VARIABLES[0]] = str(profile)
+    return own
+
+
+def _profile(environ: Mapping[str, str], shm: str) -> Path | None:
+    """Return the profile to use; None to keep the user's."""
+    if any(environ.get(name) and not _is_launchers(environ[name]) for name in PROFILE_VARIABLES):
+        return None
+    folder = suite_package(PACKAGE)
+    if folder is None:
+        return None
+    has_room = _free_bytes(shm) >= ROOM_FOR_LARGE_BYTES
+    profile = folder / (LARGE_PROFILE if has_room else SMALL_PROFILE)
+    return profile if profile.is_file() else None
+
+
+def _is_launchers(profile: str) -> bool:
+    """Return whether a profile is the launcher's general one and not one that the user chose."""
+    folders = (folder / LAUNCHER for folder in share_folders())
+    return any(
+        Path(profile).is_relative_to(folder)
+        or Path(profile).resolve().is_relative_to((folder / "config").resolve())
+        for folder in folders
+        if folder.exists()
+    )
+
+
+def _free_bytes(folder: str) -> int:
+    try:
+        status = os.statvfs(folder)
+    except OSError:
+        return 0
+    return status.f_bavail * status.f_frsize
+
 
 logger = logging.getLogger(__name__)
 
@@ -19,16 +78,16 @@ MODULE = "arm_gazebo.camera_node"
 LAST_RESORT = "raycast"
 CRASHES = (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL)
 FIRST_DELAY_S = 1.0
-LONGEST_DELAY_S = 30.0
+MAX_DELAY_S = 30.0
 HEALTHY_AFTER_S = 60.0
-"""A process that lived so long starts the row of delays anew."""
+"""A process that ran this long resets the restart delay."""
 
 
 class CameraProcess:
-    """Runs camera processes, one at a time. One thread at a time.
+    """Runs camera processes, at most one at a time. Call it from one thread at a time.
 
-    A process that died is started again after a delay that doubles each time. When it died of a
-    crash while it drew with OpenGL, the next one starts at once and leaves that backend out.
+    A process that died is restarted after a delay that doubles each time. If it crashed while it
+    rendered with OpenGL, the next one starts at once and does not use that backend.
     """
 
     def __init__(
@@ -39,20 +98,20 @@ class CameraProcess:
         clock: Callable[[], float] = time.monotonic,
         spawn: Spawn = subprocess.Popen,
     ) -> None:
-        """Prepare; nothing is started.
+        """Prepare without starting a process.
 
         Args:
-            settings: what each process is told; backends that fail are added to `excluded`.
-            ros_arguments: what follows --ros-args, such as remappings.
+            settings: settings of each process; backends that fail are added to `excluded`.
+            ros_arguments: the arguments after --ros-args, such as remappings.
             environ: the simulation's environment.
             clock: monotonic time in s.
-            spawn: makes a process; as subprocess.Popen.
+            spawn: starts a process, like subprocess.Popen.
         """
         self._settings = settings
         self._ros_arguments = tuple(ros_arguments)
         self._environ = environ
         self._clock = clock
-        self._child = FedProcess(MODULE, "the camera process", spawn)
+        self._child = WorkerProcess(MODULE, "the camera process", spawn)
         self._backend: str | None = None
         self._delay_s = FIRST_DELAY_S
         self._started_s = 0.0
@@ -65,11 +124,11 @@ class CameraProcess:
 
     @property
     def settings(self) -> CameraSettings:
-        """What the next process is told."""
+        """The settings of the next process."""
         return self._settings
 
     def start(self, socket_fd: int) -> None:
-        """Start a process that inherits this socket; see `FedProcess.start` about the thread."""
+        """Start a process that inherits this socket; see `WorkerProcess.start` about the thread."""
         arguments = [
             *("--settings", self._settings.to_json()),
             *(("--ros-args", *self._ros_arguments) if self._ros_arguments else ()),
@@ -79,26 +138,26 @@ class CameraProcess:
         try:
             self._child.start(socket_fd, arguments, camera_environment(self._environ))
         except OSError as error:
-            self._try_later(f"the camera process cannot be started ({error})")
+            self._restart_later(f"the camera process cannot be started ({error})")
 
     def start_again_due(self, backends_tried: Sequence[str]) -> bool:
-        """Return whether the process has died and is to be started again now.
+        """Return whether the process has died and should be restarted now.
 
         Args:
-            backends_tried: backends that the process said it would try, since the last call.
+            backends_tried: backends that the process has announced since the last call.
         """
         if backends_tried:
             self._backend = backends_tried[-1]
         code = self._child.take_exit_code()
         if code is not None:
-            self._note_death(code)
+            self._handle_exit(code)
         return self._child.pid is None and self._clock() >= self._start_again_s
 
     def end(self) -> None:
-        """Wait until the process has ended, whose socket is closed already; insist if need be."""
+        """Wait for the process to end after its socket was closed; terminate it if necessary."""
         self._child.end()
 
-    def _note_death(self, code: int) -> None:
+    def _handle_exit(self, code: int) -> None:
         now = self._clock()
         if now - self._started_s >= HEALTHY_AFTER_S:
             self._delay_s = FIRST_DELAY_S
@@ -108,16 +167,16 @@ class CameraProcess:
             self._settings = replace(self._settings, excluded=(*self._settings.excluded, failed))
             self._start_again_s = now
             logger.warning(
-                "the camera process ended %s while it drew with %s; the next one does without %s",
+                "the camera process ended %s while it used %s; the next one runs without %s",
                 *(how, failed, failed),
             )
             return
-        self._try_later(f"the camera process ended {how}")
+        self._restart_later(f"the camera process ended {how}")
 
-    def _try_later(self, what: str) -> None:
+    def _restart_later(self, what: str) -> None:
         self._start_again_s = self._clock() + self._delay_s
         logger.warning("%s; it starts again in %g s", what, self._delay_s)
-        self._delay_s = min(2 * self._delay_s, LONGEST_DELAY_S)
+        self._delay_s = min(2 * self._delay_s, MAX_DELAY_S)
 
     def _backend_failed(self, code: int) -> bool:
         if self._backend is None or self._backend == LAST_RESORT:

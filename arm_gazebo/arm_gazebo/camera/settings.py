@@ -1,4 +1,4 @@
-"""What a camera process is told when it starts, as one command-line argument."""
+"""The settings of a camera process, passed as one command-line argument."""
 
 import json
 from collections.abc import Mapping
@@ -9,18 +9,18 @@ from arm_gazebo.errors import CameraError
 from arm_gazebo.sensors.camera import CameraSensor
 
 EXIT_BACKEND = 3
-"""Exit code of a camera process whose render backend does not work: try another one."""
+"""Exit code of a camera process whose render backend does not work; another one should be tried."""
 
 
 @dataclass(frozen=True, slots=True)
 class CameraSettings:
-    """What does not change while the simulation runs.
+    """Settings that do not change while the simulation runs.
 
     Attributes:
         cameras: the cameras, in the order of the frames' indices.
-        seed: of the noise.
-        backend: what to draw with: auto, egl, osmesa or raycast.
-        excluded: backends that ended a process before.
+        seed: seed of the noise.
+        backend: the render backend: auto, egl, osmesa or raycast.
+        excluded: backends that crashed an earlier process.
     """
 
     cameras: tuple[CameraSensor, ...]
@@ -34,21 +34,21 @@ class CameraSettings:
 
     @classmethod
     def from_json(cls, text: str) -> "CameraSettings":
-        """Return the settings that the text holds.
+        """Return the settings from their JSON text.
 
         Raises:
-            CameraError: the text is not that of settings of this version.
+            CameraError: the text does not hold settings of this version.
         """
         try:
             values = json.loads(text)
             cameras = tuple(_sensor(camera) for camera in values.pop("cameras"))
             return cls(cameras, excluded=tuple(values.pop("excluded")), **values)
         except (ValueError, TypeError, KeyError, AttributeError) as error:
-            raise CameraError(f"not the settings of a camera process: {error}") from error
+            raise CameraError(f"these are not settings of a camera process: {error}") from error
 
 
 def _sensor(values: Mapping[str, Any]) -> CameraSensor:
-    """Return the sensor; JSON has no tuples."""
+    """Return the sensor with lists converted to tuples, which JSON lacks."""
     fixed: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in values.items()
     }

@@ -1,20 +1,21 @@
-"""How well a camera keeps up, counted over a window."""
+"""Count how well a camera keeps its rate."""
 
 import threading
 from dataclasses import dataclass
 
+from arm_gazebo.feed.channel import CameraProgress
 from arm_gazebo.feed.schedule import FrameDue
 
 
 @dataclass(frozen=True, slots=True)
 class CameraReport:
-    """One window's figures of a camera.
+    """The figures of a camera over one time window.
 
     Attributes:
-        achieved: share of the wanted frames that were rendered, 0..1; None if none was wanted.
-        rendered: frames rendered since the start.
-        dropped: frames since the start that were due and lost for want of time.
-        render_s: mean time to render one, in s; None if none was rendered.
+        achieved: fraction of the wanted frames that were rendered, 0..1; None if none was wanted.
+        rendered: number of frames rendered since the start.
+        dropped: number of due frames since the start that were lost for lack of time.
+        render_s: mean time in s to render a frame; None if none was rendered.
     """
 
     achieved: float | None
@@ -28,19 +29,25 @@ class CameraStatistics:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
+        self._arrived = -1
         self._last: FrameDue | None = None
         self._rendered = 0
         self._dropped = 0
         self._start_window()
 
+    def count_arrived(self, frame: FrameDue) -> None:
+        """Note a frame that may still be passed over for a newer one."""
+        with self._lock:
+            self._arrived = frame.serial
+
     def count_due(self, frame: FrameDue, wanted: bool) -> None:
-        """Count a frame that arrived, and those lost before it."""
+        """Count a frame that arrived, and the frames lost before it."""
         with self._lock:
             last, self._last = self._last, frame
             steps = 1
             if last is not None:
                 self._dropped += max(frame.serial - last.serial - 1, 0)
-                # Time that jumped back makes the difference negative.
+                # The difference is negative if time jumped back.
                 steps = max(frame.number - last.number, 1)
             if wanted:
                 self._window_wanted += steps
@@ -51,6 +58,11 @@ class CameraStatistics:
             self._rendered += 1
             self._window_rendered += 1
             self._window_render_s += duration_s
+
+    def progress(self) -> CameraProgress:
+        """Return the figures since the start."""
+        with self._lock:
+            return CameraProgress(self._arrived, self._rendered, self._dropped)
 
     def report(self) -> CameraReport:
         """Return the figures and start a new window."""

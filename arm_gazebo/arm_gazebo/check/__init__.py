@@ -1,1 +1,1 @@
-"""What `arm check` says of a description, without starting anything."""
+"""The checks of `arm check`, which start nothing."""

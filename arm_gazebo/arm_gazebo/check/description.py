@@ -1,35 +1,36 @@
-"""Reads a robot description as the simulation would, without starting it, and tells all."""
+"""Read a robot description as the simulation would, and report all findings."""
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import mujoco
 
 from arm_control.errors import ArmControlError
-from arm_control.hardware_info import HardwareInfo, parse_hardware_info
+from arm_control.hardware.info import HardwareInfo, parse_hardware_info
 from arm_description.errors import DescriptionError
-from arm_description.robot import Mesh, Robot
-from arm_description.urdf import parse_urdf
-from arm_description.urdf_element import Remark
-from arm_gazebo.build_report import BuildReport, Finding, Outcome
-from arm_gazebo.check.leftovers import leftovers
+from arm_description.package_search import PackagePlace
+from arm_description.urdf.element import Remark
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Mesh, Robot
+from arm_gazebo.check.mesh_sizes import mesh_sizes
+from arm_gazebo.check.unread_elements import unread_elements
 from arm_gazebo.drives.servo_tuning import too_weak, tune
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.hardware.simulated_hardware import MAX_EFFORT, STATES
 from arm_gazebo.launching.default_control import commandable_joints, with_hardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.gazebo_tags import GazeboTags, parse_gazebo_tags
-from arm_gazebo.robot.mimic_joints import without_released
-from arm_gazebo.robot.part import DEFAULT_OPTIONS
+from arm_gazebo.robot.mimic_joints import without_independent_mimics
+from arm_gazebo.robot.part import DEFAULT_OPTIONS, BuildOptions
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.link_sensor import LinkSensor
 from arm_gazebo.sensors.reader import parse_link_sensors
+from arm_gazebo.spec.report import BuildOutcome, BuildReport, Finding
 
 PERIOD_S = 0.01
 JOINT_INTERFACES = (*STATES, MAX_EFFORT)
@@ -38,20 +39,20 @@ _LINE = re.compile(r"\bline (\d+)")
 
 @dataclass(frozen=True, slots=True)
 class RobotSummary:
-    """What was read of a robot.
+    """A summary of a robot.
 
     Attributes:
-        name: of the robot.
-        root: its root link.
-        links: how many.
-        joints: how many of each type.
-        driven: joints that are commanded.
-        mimicking: joints that follow others.
+        name: name of the robot.
+        root: name of its root link.
+        links: number of links.
+        joints: number of joints of each type.
+        driven: names of the commanded joints.
+        mimicking: names of the mimic joints.
         cameras: names of the cameras.
         sensors: types and names of the other sensors.
-        meshes: mesh files used.
-        triangles: of all meshes in the model.
-        mass_kg: of all links, repaired ones as repaired.
+        meshes: number of mesh files.
+        triangles: number of triangles of all meshes in the model.
+        mass_kg: total mass, after repairs.
     """
 
     name: str
@@ -67,7 +68,7 @@ class RobotSummary:
     mass_kg: float
 
     def __str__(self) -> str:
-        parts = [_counted(self.links, "link"), _counted(sum(self.joints.values()), "joint")]
+        parts = [counted(self.links, "link"), counted(sum(self.joints.values()), "joint")]
         if self.joints:
             types = ", ".join(f"{count} {kind}" for kind, count in self.joints.items())
             parts[-1] += f" ({types})"
@@ -75,39 +76,49 @@ class RobotSummary:
         parts += [f"{len(self.mimicking)} mimicking"] if self.mimicking else []
         parts.append(f"{self.mass_kg:.4g} kg")
         if self.meshes:
-            triangles = _counted(self.triangles, "triangle")
-            parts.append(f"{_counted(self.meshes, 'mesh', 'meshes')} of {triangles}")
+            triangles = counted(self.triangles, "triangle")
+            parts.append(f"{counted(self.meshes, 'mesh', 'meshes')} of {triangles}")
         parts += [f"camera {name}" for name in self.cameras]
         parts += self.sensors
         return f"robot '{self.name}', root '{self.root}': {', '.join(parts)}"
 
 
-def _counted(number: int, one: str, many: str = "") -> str:
+def counted(number: int, one: str, many: str = "") -> str:
+    """Return a number with its noun; the plural is the noun and an s unless given."""
     return f"{number} {one if number == 1 else many or one + 's'}"
 
 
 @dataclass(frozen=True, slots=True)
 class DescriptionCheck:
-    """The result: `robot` is None where there is no model."""
+    """The result of a check.
+
+    Attributes:
+        robot: summary of the robot; None if no model could be built.
+        findings: the findings.
+        packages: the places of the packages that the description names.
+    """
 
     robot: RobotSummary | None
     findings: tuple[Finding, ...]
+    packages: Mapping[str, tuple[PackagePlace, ...]] = field(
+        default_factory=dict[str, tuple[PackagePlace, ...]]
+    )
 
     @property
     def is_usable(self) -> bool:
         """Whether the robot can be simulated."""
-        return not any(finding.outcome is Outcome.FAILED for finding in self.findings)
+        return not any(finding.outcome is BuildOutcome.FAILED for finding in self.findings)
 
 
 def check_description(
     urdf: str, source: str, options: BuildOptions = DEFAULT_OPTIONS
 ) -> DescriptionCheck:
-    """Return what becomes of a description.
+    """Check a description.
 
     Args:
-        urdf: the text, xacro expanded.
-        source: what the text is called in messages.
-        options: for the model; `strict` makes a mesh that cannot be had an error.
+        urdf: the URDF text, with xacro expanded.
+        source: name of the text in messages.
+        options: options of the model; `strict` makes an unavailable mesh an error.
     """
     report = BuildReport()
     robot: Robot | None = None
@@ -119,53 +130,54 @@ def check_description(
     def note(remark: Remark) -> None:
         report.repair(remark.element, remark.problem, remark.line)
 
-    with _failures(report, source):
-        report.add(*leftovers(urdf, source))
-    if report.findings and report.findings[-1].outcome is Outcome.FAILED:
-        # What is not XML says nothing to anybody else either.
-        return DescriptionCheck(None, report.findings)
-    with _failures(report, source):
+    with failures(report, source):
+        report.add(*unread_elements(urdf, source))
+    if report.findings and report.findings[-1].outcome is BuildOutcome.FAILED:
+        # Without XML no other check is possible.
+        return DescriptionCheck(None, report.findings, options.resources.used)
+    with failures(report, source):
         robot = parse_urdf(urdf, source, note)
-    with _failures(report, source):
+    with failures(report, source):
         cameras = parse_cameras(urdf)
         tags = parse_gazebo_tags(urdf)
     if robot is not None:
-        with _failures(report, source):
+        with failures(report, source):
             sensors = parse_link_sensors(urdf, robot)
-    with _failures(report, source):
+    with failures(report, source):
         hardware = parse_hardware_info(urdf)
         if not hardware and robot is not None:
-            hardware = _made_up(urdf, robot, report)
+            hardware = _default_hardware(urdf, robot, report)
         _check_interfaces(hardware, sensors, report)
     summary = None
     if robot is not None:
-        with _failures(report, source):
+        with failures(report, source):
             built = build_model(
                 robot, hardware, cameras, options=options, tags=tags, sensors=sensors
             )
             report.add(*built.report.findings)
             _check_strength(built, report)
-            summary = _summary(without_released(robot, hardware), built, cameras, sensors)
-    return DescriptionCheck(summary, _without_repeats(report.findings))
+            report.add(*mesh_sizes(robot, built))
+            summary = _summary(without_independent_mimics(robot, hardware), built, cameras, sensors)
+    return DescriptionCheck(summary, _without_repeats(report.findings), options.resources.used)
 
 
 @contextmanager
-def _failures(report: BuildReport, source: str) -> Iterator[None]:
-    """Turn an error into a finding, so that the other parts are looked at all the same."""
+def failures(report: BuildReport, source: str) -> Iterator[None]:
+    """Turn an error into a finding, so that the remaining checks still run."""
     try:
         yield
     except (DescriptionError, ArmControlError, GazeboError) as error:
         message = str(error).removeprefix(source).removeprefix(", ").removeprefix(" ")
         line = int(found.group(1)) if (found := _LINE.search(message)) else 0
         message = message.removeprefix(f"line {line}: ")
-        report.add(Finding(Outcome.FAILED, source, message, line))
+        report.add(Finding(BuildOutcome.FAILED, source, message, line))
 
 
-def _made_up(urdf: str, robot: Robot, report: BuildReport) -> tuple[HardwareInfo, ...]:
+def _default_hardware(urdf: str, robot: Robot, report: BuildReport) -> tuple[HardwareInfo, ...]:
     joints = commandable_joints(robot)
     report.inform(
         f"robot '{robot.name}'",
-        "it has no <ros2_control> block; sim.launch.py makes one up that commands "
+        "it has no <ros2_control> block; sim.launch.py adds a default one that commands "
         f"{', '.join(joints) or 'nothing'}",
     )
     return parse_hardware_info(with_hardware(urdf, robot))
@@ -197,7 +209,7 @@ def _check_interfaces(
             others = f" and {len(unread) - 1} more" if len(unread) > 1 else ""
             report.drop(
                 f"<ros2_control name='{component.name}'>",
-                f"{unread[0]}{others}: no number, so no limit",
+                f"{unread[0]}{others}: not a number, so there is no limit",
                 component.line,
             )
 
@@ -225,7 +237,7 @@ def _summary(
         name=robot.name,
         root=robot.root,
         links=len(robot.links),
-        joints=dict(Counter(joint.type for joint in robot.joints)),
+        joints=dict(Counter(joint.type.value for joint in robot.joints)),
         driven=tuple(name for name, j in built.joints.items() if j.actuator is not None),
         mimicking=tuple(joint.name for joint in robot.joints if joint.mimic is not None),
         cameras=tuple(camera.name for camera in cameras),

@@ -1,1 +1,1 @@
-"""The servos of a robot's joints: commands in, efforts out."""
+"""The servos of a robot's joints, which turn commands into efforts."""

@@ -1,23 +1,107 @@
-"""One driven joint: its mode, its command and the set-point that comes of them."""
+"""One driven joint: its mode, its command and the resulting set-point."""
 
-from arm_gazebo.drives.command_stream import CommandStream
-from arm_gazebo.drives.mode import SERVOED, DriveMode
+from enum import Enum
+from typing import Any
+
 from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, MotionBounds
 from arm_gazebo.drives.setpoint import Setpoint
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
+
+
+class DriveMode(Enum):
+    """How a joint is driven; the values of the last three are ros2_control's interface names."""
+
+    FREE = "free"
+    """The drive exerts no effort: the joint moves freely."""
+    HOLD = "hold"
+    """Brake, then hold the position."""
+    POSITION = "position"
+    """Go to the commanded position, in rad or m."""
+    VELOCITY = "velocity"
+    """Move at the commanded velocity, in rad/s or m/s; stop before the joint's limit."""
+    EFFORT = "effort"
+    """Exert the commanded effort, in N m or N."""
+
+
+SERVOED = frozenset({DriveMode.HOLD, DriveMode.POSITION, DriveMode.VELOCITY})
+"""Modes in which the joint follows a set-point."""
+
+
+LANDING_SPEED = 1e-5
+"""A proportional approach ends below this speed (rad/s or m/s)."""
+
+MAX_INTERVAL_S = 0.05
+"""Commands farther apart than this are steps; closer ones are samples of one motion."""
+
+
+class CommandStream:
+    """Turns the commands of a joint into a target with a velocity.
+
+    A single command is a step: the target jumps and stays. Commands that follow each other
+    within 50 ms are samples of a motion: the target moves from one to the next in the time
+    between them, so the joint follows a trajectory without stopping at every sample.
+
+    Attributes:
+        target: position of the target at the end of this control period.
+        velocity: velocity of the target.
+    """
+
+    __slots__ = ("_command", "_last_change", "_left", "_period_s", "target", "velocity")
+
+    def __init__(self, position: float, period_s: float) -> None:
+        self.target = position
+        self.velocity = 0.0
+        self._period_s = period_s
+        self._command = position
+        self._left = 0
+        self._last_change = -1_000_000
+
+    def command(self, position: float, tick: int) -> None:
+        """Take the command of the control period with number `tick`."""
+        if position == self._command:
+            return
+        interval = tick - self._last_change
+        self._command = position
+        self._last_change = tick
+        if interval * self._period_s > MAX_INTERVAL_S:
+            self._left = 0
+            self.target = position
+            self.velocity = 0.0
+        else:
+            self._left = max(interval, 1)
+            self.velocity = (position - self.target) / (self._left * self._period_s)
+
+    def save_state(self) -> tuple[float, float, float, int, int]:
+        """Return the target and the last command."""
+        return self.target, self.velocity, self._command, self._left, self._last_change
+
+    def load_state(self, state: tuple[float, float, float, int, int]) -> None:
+        """Go on with a saved target."""
+        self.target, self.velocity, self._command, self._left, self._last_change = state
+
+    def advance(self) -> None:
+        """Advance by one control period; called once in each, after its commands."""
+        if self._left > 1:
+            self._left -= 1
+            self.target += self.velocity * self._period_s
+        elif self._left == 1:
+            self._left = 0
+            self.target = self._command
+        else:
+            self.velocity = 0.0
 
 
 class DrivenJoint:
-    """The planning half of a servo; `Servo` owns the physics half. rad or m, N m or N.
+    """The planning half of a servo; `Servo` owns the physics half. Units: rad or m, N m or N.
 
     Attributes:
-        joint: what the model says about the joint.
+        joint: the joint in the model.
         mode: how it is driven.
         effort: commanded effort, in the mode EFFORT.
-        effort_limit: what the drive may spend now, at most the joint's own limit.
-        setpoint: where the joint is to be at the end of the current control period.
-        start_position: where the set-point was at its start.
-        start_velocity: its velocity then.
+        effort_limit: largest effort of the drive now, at most the joint's own limit.
+        setpoint: the set-point at the end of the current control period.
+        start_position: position of the set-point at the start of the period.
+        start_velocity: velocity of the set-point at the start of the period.
     """
 
     __slots__ = (
@@ -25,6 +109,7 @@ class DrivenJoint:
         "_braking",
         "_jerkless",
         "_period_s",
+        "_rate_per_s",
         "_slack",
         "_speed",
         "_stream",
@@ -38,20 +123,37 @@ class DrivenJoint:
         "start_velocity",
     )
 
-    def __init__(self, joint: RobotJoint, bounds: MotionBounds, period_s: float) -> None:
+    def __init__(
+        self,
+        joint: RobotJoint,
+        bounds: MotionBounds,
+        period_s: float,
+        proportional_gain: float = 0.0,
+    ) -> None:
+        """Start at the joint's first position, without a command.
+
+        Args:
+            joint: the joint in the model.
+            bounds: bounds on the set-point.
+            period_s: control period.
+            proportional_gain: fraction of the distance to a position command that the set-point
+                moves in a period, as gz_ros2_control's position_proportional_gain; 0 moves as
+                fast as the bounds allow.
+        """
         self.joint = joint
-        self.mode = DriveMode.LIMP
+        self.mode = DriveMode.FREE
         self.effort = 0.0
         self.setpoint = Setpoint(joint.initial)
         self.start_position = joint.initial
         self.start_velocity = 0.0
-        # Looked up in every tick, so copied out of their classes.
+        # Copied because they are read in every tick.
         self._speed = joint.velocity
         self._jerkless = bounds.jerkless
         self._slack = bounds.slack
         self._bounds = bounds
         self.limit_effort(joint.effort, 1.0)
         self._period_s = period_s
+        self._rate_per_s = proportional_gain / period_s
         self._stream = CommandStream(joint.initial, period_s)
         self._velocity = 0.0
 
@@ -59,14 +161,14 @@ class DrivenJoint:
         """Plan with less effort than the joint's own limit.
 
         Args:
-            limit: what may be spent, N m or N.
-            share: how much of its usual braking the joint can still have.
+            limit: largest effort, N m or N.
+            share: fraction of the normal braking deceleration that this effort allows.
         """
         self.effort_limit = limit
         self._braking = share * self._bounds.braking
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
-        """Change the mode; a set-point starts from the state of the joint if it had none."""
+        """Change the mode; a new set-point starts from the state of the joint."""
         if self.mode not in SERVOED:
             speed = self.joint.velocity_limit
             self.setpoint = Setpoint(position, min(max(velocity, -speed), speed))
@@ -75,13 +177,36 @@ class DrivenJoint:
         self._velocity = 0.0
         self._stream = CommandStream(self.stopping_point(), self._period_s)
 
+    def save_state(self) -> tuple[Any, ...]:
+        """Return the mode, the limit, the command and the set-point: the mode, then numbers."""
+        setpoint = self.setpoint
+        return (
+            self.mode,
+            self.effort,
+            self.effort_limit,
+            self._braking,
+            self._velocity,
+            setpoint.position,
+            setpoint.velocity,
+            self.start_position,
+            self.start_velocity,
+            *self._stream.save_state(),
+        )
+
+    def load_state(self, state: tuple[Any, ...]) -> None:
+        """Go on from a saved state."""
+        self.mode, self.effort, self.effort_limit, self._braking, self._velocity = state[:5]
+        self.setpoint = Setpoint(*state[5:7])
+        self.start_position, self.start_velocity = state[7:9]
+        self._stream.load_state(state[9:])
+
     def stopping_point(self) -> float:
-        """Return where the joint will stand if nothing new is commanded, within its limits."""
+        """Return where the joint will stop without a new command, within its limits."""
         point = self.setpoint.stopping_point(self._braking)
         return min(max(point, self.joint.lower), self.joint.upper)
 
     def command(self, value: float, tick: int) -> None:
-        """Take a command in the unit of the mode; HOLD and LIMP take none."""
+        """Take a command in the unit of the mode; HOLD and FREE ignore it."""
         if self.mode is DriveMode.POSITION:
             self._stream.command(value, tick)
         elif self.mode is DriveMode.VELOCITY:
@@ -90,19 +215,19 @@ class DrivenJoint:
             self.effort = value
 
     def plan(self, position: float, velocity: float, inertia: float, gravity: float) -> bool:
-        """Move the set-point on by one control period; return whether it moves.
+        """Advance the set-point by one control period; return whether it moves.
 
         Args:
-            position: of the joint, now.
-            velocity: of the joint, now.
-            inertia: that it feels in this pose.
-            gravity: effort that it needs in this pose to stay as it moves.
+            position: present position of the joint.
+            velocity: present velocity of the joint.
+            inertia: inertia of the joint in this pose.
+            gravity: effort against gravity and Coriolis forces in this state.
         """
         setpoint = self.setpoint
         lead = setpoint.position - position
         slack = self._slack
-        # Something holds the joint or drags it. A set-point that ran on would fling it, once free;
-        # but one that the joint merely ran ahead of between two ticks keeps its speed.
+        # Something holds or drags the joint. If the set-point ran on, it would fling the joint once
+        # it is free. A set-point that the joint overtook between two ticks keeps its speed.
         if lead > slack:
             setpoint.position = position + slack
             fastest = velocity if velocity > 0.0 else 0.0
@@ -116,17 +241,19 @@ class DrivenJoint:
         start = self.start_position = setpoint.position
         self.start_velocity = setpoint.velocity
         if self.mode is DriveMode.VELOCITY:
-            # A velocity is a way to the limit of the joint at that speed.
+            # A velocity command moves towards the joint's limit at that speed.
             speed = abs(self._velocity)
             target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
             target_velocity = 0.0
         else:
-            # Holding is going to where the joint could stop when it was told to.
+            # HOLD moves to the point where the joint could stop when the mode began.
             stream = self._stream
             stream.advance()
             target, target_velocity, speed = stream.target, stream.velocity, self._speed
             if target == start and not target_velocity and not setpoint.velocity:
                 return False
+            if self._rate_per_s and self.mode is DriveMode.POSITION:
+                target_velocity, speed = 0.0, self._proportional_speed(target)
         acceleration = EFFORT_SHARE * (self.effort_limit - abs(gravity)) / inertia
         if acceleration > self._jerkless:
             acceleration = self._jerkless
@@ -137,8 +264,20 @@ class DrivenJoint:
         )
         return setpoint.velocity != 0.0 or setpoint.position != start
 
-    def gain_less(self, share: float) -> None:
-        """Let the set-point gain only this share of the speed it was to gain in this period."""
+    def _proportional_speed(self, target: float) -> float:
+        """Return the velocity limit at which the distance to the target decays exponentially.
+
+        The velocity at the end of the period is the rate times the distance at its end, so the
+        time constant is 1 / rate at every control period.
+        """
+        setpoint, half_s = self.setpoint, 0.5 * self._period_s
+        distance = abs(target - setpoint.position) - half_s * abs(setpoint.velocity)
+        speed = self._rate_per_s * distance / (1.0 + self._rate_per_s * half_s)
+        # At the end of the decay the set-point lands, so that the drive can sleep.
+        return min(speed, self._speed) if speed > LANDING_SPEED else self._speed
+
+    def scale_acceleration(self, share: float) -> None:
+        """Reduce the speed that the set-point gains in this period to this fraction of it."""
         gain = self.setpoint.velocity - self.start_velocity
         if gain * self.setpoint.velocity > 0:
             self.setpoint.velocity = self.start_velocity + share * gain

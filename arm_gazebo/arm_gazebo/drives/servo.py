@@ -1,50 +1,64 @@
-"""The drives of a robot's joints: commands in, efforts out, no gain set by hand.
+"""The drives of a robot's joints, which turn commands into efforts without hand-tuned gains.
 
 Each drive is a MuJoCo actuator whose force is
 
     stiffness (act - q - T q') with T = damping / stiffness, within the effort limit,
 
-where the activation `act` = r + T r' + f / stiffness carries the set-point r, its velocity and
-the effort f that the model says the motion needs: inertia times acceleration, gravity, Coriolis
-forces and friction. The control of the actuator is the rate of `act`, so that MuJoCo moves the
-set-point on between two control ticks by itself.
+where the activation `act` = r + T r' + f / stiffness contains the set-point r, its velocity and
+the feed-forward effort f that the motion needs according to the model: inertia times acceleration,
+gravity, Coriolis forces and friction. The control of the actuator is the rate of `act`, so that
+MuJoCo itself moves the set-point between two control ticks.
 """
 
 import math
+import struct
 from collections.abc import Sequence
+from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.drives.driven_joint import DrivenJoint
-from arm_gazebo.drives.mode import SERVOED, DriveMode
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, ServoTuning, resistance
-from arm_gazebo.index_slice import as_slice
-from arm_gazebo.physics_timing import PhysicsTiming
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.drives.driven_joint import SERVOED, DriveMode, DrivenJoint
+from arm_gazebo.drives.servo_tuning import (
+    EFFORT_SHARE,
+    TIME_CONSTANT_S,
+    ServoTuning,
+    resistance,
+    set_armature,
+)
+from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.spec.physics_timing import PhysicsTiming
+from arm_node.index_slice import as_slice
 
 Array = NDArray[np.float64]
 
 USABLE_EFFORT = 0.9
-"""Share of the effort limit that planned motion may use; the rest is for what is not planned."""
+"""Fraction of the effort limit that planned motion may use; the rest is for disturbances."""
 SETTLE_S = 0.1
-LOOK_EVERY_S = 0.01
-STIRRED = 5e-4
-"""Resting joints that together moved by this much, in rad or m, are looked after again."""
+CHECK_EVERY_S = 0.01
+WAKE_DISTANCE = 5e-4
+"""Distance in rad or m, over all joints together, that wakes the servo from rest."""
+
+MODE_NUMBERS = {mode: number for number, mode in enumerate(DriveMode)}
 
 
 class Servo:
-    """Drives joints; used by one thread, the one that steps the simulation.
+    """Drives joints; used only by the thread that steps the simulation.
 
-    A robot at rest costs nothing: the drives sleep until a command, or a joint that is moved.
+    A robot at rest costs nothing: the drives sleep until a command arrives or a joint is moved.
 
     Args:
-        model: its gains are set; tuned by `servo_tuning.tune` before.
-        data: state; its positions are valid.
+        model: the model, tuned by `servo_tuning.tune`; its gains are set here.
+        data: a state with valid positions.
         joints: the driven joints; their actuators and activations are contiguous.
         tuning: gains and bounds.
         timing: control period and physics step.
+        proportional_gain: see `DrivenJoint`.
+
+    Attributes:
+        timing: control period and physics step.
+        proportional_gain: see `DrivenJoint`.
     """
 
     def __init__(
@@ -54,13 +68,16 @@ class Servo:
         joints: Sequence[RobotJoint],
         tuning: ServoTuning,
         timing: PhysicsTiming,
+        proportional_gain: float = 0.0,
     ) -> None:
+        self.timing = timing
+        self.proportional_gain = proportional_gain
         self._period_s = timing.period_s
-        # The force sees the position at the start of a step and the set-point of its end: at
-        # constant speed they lie one step apart.
+        # The force uses the position at the start of a step and the set-point at its end. At
+        # constant speed they are one step apart.
         self._lead_s = TIME_CONSTANT_S - timing.step_s
         self._joints = tuple(
-            DrivenJoint(joint, tuning.bounds(index), timing.period_s)
+            DrivenJoint(joint, tuning.bounds(index), timing.period_s, proportional_gain)
             for index, joint in enumerate(joints)
         )
         self._servoed: tuple[tuple[int, DrivenJoint], ...] = ()
@@ -71,7 +88,7 @@ class Servo:
         self._bind(model, data, joints, tuning)
         self._still: list[float] = []
         self._settle_ticks = math.ceil(SETTLE_S / timing.period_s)
-        self._look_ticks = max(1, round(LOOK_EVERY_S / timing.period_s))
+        self._check_ticks = max(1, round(CHECK_EVERY_S / timing.period_s))
         self._tick = 0
         self._awake_ticks = self._settle_ticks
 
@@ -82,18 +99,18 @@ class Servo:
         joints: Sequence[RobotJoint],
         tuning: ServoTuning,
     ) -> None:
-        """Go on in another model: the drives stay as they are, with all that they plan.
+        """Continue in another model; the drives keep their modes and their planned motion.
 
         Args:
-            model: has the same driven joints, in the same order, with the gains that they have.
-            data: state that the joints' present one was carried to.
-            joints: the driven joints at their places there.
-            tuning: see `servo_tuning.tuned_again`.
+            model: has the same driven joints, in the same order, with the same gains.
+            data: state of that model, with the joints' present state copied to it.
+            joints: the driven joints in that model.
+            tuning: see `servo_tuning.retune`.
         """
         self._bind(model, data, joints, tuning)
         for driven, joint in zip(self._joints, joints, strict=True):
             driven.joint = joint
-        # What holds a resting joint was in the state before.
+        # The activations that hold a resting joint must be written to the new state.
         self._awake_ticks = self._settle_ticks
 
     def _bind(
@@ -103,10 +120,10 @@ class Servo:
         joints: Sequence[RobotJoint],
         tuning: ServoTuning,
     ) -> None:
-        """Take hold of MuJoCo's arrays; each look-up of an attribute costs as much as a sum."""
+        """Store views of MuJoCo's arrays: looking up an attribute costs as much as a sum."""
         self._model, self._data, self._tuning = model, data, tuning
         self._spread = tuning.coupling / self._period_s
-        self._coupling = np.ascontiguousarray(tuning.coupling.T)
+        self._ratios = tuning.follower_ratios()
         self._friction, self._drag = resistance(model, tuning.coupling)
         self._motion = np.zeros(model.nv)
         self._load = np.zeros(model.nv)
@@ -125,8 +142,13 @@ class Servo:
 
     @property
     def joints(self) -> tuple[RobotJoint, ...]:
-        """The driven joints; their order is that of the indices below."""
+        """The driven joints, in the order of the indices that the methods take."""
         return tuple(driven.joint for driven in self._joints)
+
+    @property
+    def tuning(self) -> ServoTuning:
+        """Gains and bounds of the joints."""
+        return self._tuning
 
     def mode(self, index: int) -> DriveMode:
         """Return how a joint is driven."""
@@ -138,9 +160,7 @@ class Servo:
         position = float(self._qpos[driven.joint.qpos_address])
         driven.enter(mode, position, float(self._qvel[driven.joint.dof_address]))
         self._set_gains(index, mode)
-        self._servoed = tuple(
-            (each, joint) for each, joint in enumerate(self._joints) if joint.mode in SERVOED
-        )
+        self._find_servoed()
         self._awake_ticks = self._settle_ticks
 
     def command(self, index: int, value: float) -> None:
@@ -149,7 +169,7 @@ class Servo:
         self._awake_ticks = self._settle_ticks
 
     def limit_effort(self, index: int, limit: float) -> None:
-        """Let a joint's drive spend no more than this, N m or N; only above 0 is it a limit."""
+        """Limit the effort of a joint's drive, N m or N; a value of 0 or less lifts the limit."""
         driven = self._joints[index]
         own = driven.joint.effort
         limit = limit if 0.0 < limit < own else own
@@ -159,24 +179,52 @@ class Servo:
         self._awake_ticks = self._settle_ticks
 
     def stopping_point(self, index: int) -> float:
-        """Return where a joint will stand if nothing new is commanded, in rad or m."""
+        """Return where a joint will stop without a new command, in rad or m."""
         return self._joints[index].stopping_point()
 
     def reset(self) -> None:
-        """Start anew from the joints' state, which was changed from outside; modes stay."""
+        """Restart from the joints' state after it was changed from outside; modes are kept."""
         for index, driven in enumerate(self._joints):
             mode = driven.mode
-            driven.mode = DriveMode.LIMP
+            driven.mode = DriveMode.FREE
             self.set_mode(index, mode)
+        self._tick = 0
+
+    def save_state(self) -> dict[str, Any]:
+        """Return what the next periods depend on, apart from MuJoCo's model and state."""
+        return {
+            "joints": [driven.save_state() for driven in self._joints],
+            "gains": self._gains,
+            "still": self._still,
+            "tick": self._tick,
+            "awake_ticks": self._awake_ticks,
+        }
+
+    def load_state(self, state: dict[str, Any]) -> None:
+        """Go on from a saved state, after MuJoCo's model and state were restored."""
+        for driven, saved in zip(self._joints, state["joints"], strict=True):
+            driven.load_state(saved)
+        self._find_servoed()
+        self._gains, self._still = list(state["gains"]), list(state["still"])
+        self._tick, self._awake_ticks = state["tick"], state["awake_ticks"]
+
+    def fingerprint(self) -> bytes:
+        """Return bytes that differ if the state does."""
+        numbers: list[float] = [self._tick, self._awake_ticks]
+        for driven in self._joints:
+            mode, *rest = driven.save_state()
+            numbers.append(MODE_NUMBERS[mode])
+            numbers += rest
+        return struct.pack(f"<{len(numbers)}d", *numbers)
 
     def update(self) -> None:
-        """Drive the joints for one control period; called before each, commands or not."""
+        """Drive the joints for one control period; called before each, even without commands."""
         self._tick += 1
         if not self._awake_ticks:
-            if self._tick % self._look_ticks or not self._is_stirred():
+            if self._tick % self._check_ticks or not self._has_moved():
                 return
             self._awake_ticks = self._settle_ticks
-        gravity = self._coupling.dot(self._bias).tolist()
+        gravity = self._felt(self._bias)
         if self._plan(gravity) or len(self._servoed) < len(self._joints):
             self._awake_ticks = self._settle_ticks
         else:
@@ -185,11 +233,16 @@ class Servo:
         if not self._awake_ticks:
             self._still = self._qpos[self._addresses].tolist()
 
-    def _is_stirred(self) -> bool:
-        return math.dist(self._qpos[self._addresses].tolist(), self._still) > STIRRED
+    def _find_servoed(self) -> None:
+        self._servoed = tuple(
+            (each, joint) for each, joint in enumerate(self._joints) if joint.mode in SERVOED
+        )
+
+    def _has_moved(self) -> bool:
+        return math.dist(self._qpos[self._addresses].tolist(), self._still) > WAKE_DISTANCE
 
     def _plan(self, gravity: list[float]) -> bool:
-        """Move every set-point on; return whether one of them moves."""
+        """Advance every set-point; return whether any of them moves."""
         positions = self._qpos[self._addresses].tolist()
         velocities = self._qvel[self._dofs].tolist()
         inertias = self._inertia[self._diagonal].tolist()
@@ -201,7 +254,7 @@ class Servo:
         return moving
 
     def _planned_efforts(self, gravity: list[float]) -> list[float]:
-        """Return the efforts that the planned motion needs, having slowed one that is too fast."""
+        """Return the efforts of the planned motion; slow the motion if it needs too much."""
         efforts = self._efforts()
         for index, driven in self._servoed:
             if abs(efforts[index]) > USABLE_EFFORT * driven.effort_limit:
@@ -215,14 +268,22 @@ class Servo:
         for index, driven in self._servoed:
             gains[index] = driven.setpoint.velocity - driven.start_velocity
         self._accelerations[:] = gains
-        # The couplings are divided by the period beforehand: gain to acceleration.
+        # `_spread` is divided by the period already, which turns a speed gain into acceleration.
         self._spread.dot(self._accelerations, self._motion)
         mujoco.mj_mulM(self._model, self._data, self._load, self._motion)
         np.add(self._load, self._bias, self._load)
-        return self._coupling.dot(self._load).tolist()
+        return self._felt(self._load)
+
+    def _felt(self, efforts: Array) -> list[float]:
+        """Return the efforts of all degrees of freedom as the driven joints feel them."""
+        # In a fixed order, unlike a product of matrices: `ServoBatch` adds in the same order.
+        felt = efforts[self._dofs].tolist()
+        for index, follower, ratio in self._ratios:
+            felt[index] += ratio * float(efforts[follower])
+        return felt
 
     def _slow_down(self, efforts: list[float], gravity: list[float]) -> None:
-        """Let all joints that gain speed gain less, by one share, until the efforts suffice."""
+        """Scale the acceleration of all joints by one factor, so that the efforts suffice."""
         share = 1.0
         for index, driven in self._servoed:
             limit = USABLE_EFFORT * driven.effort_limit
@@ -231,10 +292,10 @@ class Servo:
             if abs(efforts[index]) > limit and 0.0 < room < abs(moving):
                 share = min(share, room / abs(moving))
         for _, driven in self._servoed:
-            driven.gain_less(share)
+            driven.scale_acceleration(share)
 
     def _write(self, efforts: list[float]) -> None:
-        """Hand over to MuJoCo: where the activations start and how fast they move."""
+        """Write the activations at the start of the period, and their rates, to MuJoCo."""
         lead_s, per_period = self._lead_s, 1.0 / self._period_s
         activations = [driven.effort for driven in self._joints]
         rates = [0.0] * len(activations)
@@ -258,7 +319,7 @@ class Servo:
     def _set_gains(self, index: int, mode: DriveMode) -> None:
         tuning, model, actuator = self._tuning, self._model, self._actuators[index]
         gain, stiffness, damping = 0.0, 0.0, 0.0
-        rotor = tuning.limp_armature[index]
+        rotor = 0.0
         if mode in SERVOED:
             gain = stiffness = tuning.stiffness[index]
             damping, rotor = tuning.damping[index], tuning.armature[index]
@@ -270,7 +331,6 @@ class Servo:
         model.actuator_forcelimited[actuator] = math.isfinite(limit)
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
-        dof = self._joints[index].joint.dof_address
-        # MuJoCo takes the inertia of a body that moves by itself from here, once and for all.
-        model.dof_M0[dof] += rotor - model.dof_armature[dof]
-        model.dof_armature[dof] = rotor
+        set_armature(model, self._joints[index].joint.dof_address, rotor)
+        for follower, gear in tuning.gears[index]:
+            set_armature(model, follower, 0.0 if mode is DriveMode.FREE else gear)

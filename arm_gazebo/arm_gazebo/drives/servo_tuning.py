@@ -1,21 +1,21 @@
-"""What the servos of a robot may do, computed from its model: nothing is tuned by hand.
+"""Compute the gains and motion bounds of a robot's servos from its model, without hand tuning.
 
-Random poses give, for each driven joint, the largest inertia that it feels and the largest
-torque of gravity. From those follow:
+Random poses give, for each driven joint, the largest inertia and the largest gravity torque. The
+tuning follows from these:
 
-* armature: the rotor that a geared motor adds, a tenth of the largest inertia or more: enough
-  that the drive is stiff for its effort, which at 20 mrad of error is all in use. (Real geared
-  joints reach 100 to 300 rad/s2 at full effort against their rotor alone, these 1000.) It also
-  keeps the inertia matrix away from singular, M >= diag(armature). A drive that is limp, or
-  commanded by effort, has the tenth only: it shall fall and swing as the links do.
-* gears: joints that mimic a driven one get a fiftieth of its rotor, as seen through the gearing.
-  MuJoCo ties joints as firmly as they are heavy, so bare fingers of some grams would give way
-  long before the drive is at its effort limit.
-* damping gain: 2 armature / step. A drive at its effort limit acts explicitly, whatever the
-  integrator, and energy then falls in each step as long as step x diag(damping) <= 2 M. So no
-  saturated drive can chatter, in any pose, however the joints couple.
-* stiffness: damping / 20 ms, a loop that is damped well at every inertia.
-* braking: accelerations that all joints can have at once in the worst pose, with half of the
+* armature: the reflected rotor inertia of a geared motor, a tenth of the largest inertia or more.
+  It is large enough that the drive is stiff for its effort: an error of 20 mrad uses all of it.
+  (Against their rotor alone, real geared joints reach 100 to 300 rad/s2 at full effort, and these
+  reach 1000.) It also keeps the inertia matrix from being singular: M >= diag(armature). A drive
+  that is free or commanded by effort has no rotor, so the joint falls and swings as its links do.
+* gears: joints that mimic a driven joint get a fiftieth of its rotor, seen through the gearing.
+  MuJoCo's equality constraints are as firm as the joints are heavy, so bare fingers of some grams
+  would yield long before the drive reaches its effort limit. Gears apply unless the drive is free.
+* damping gain: 2 armature / step. A drive at its effort limit acts explicitly with any integrator,
+  and then the energy decreases in each step as long as step x diag(damping) <= 2 M. A saturated
+  drive therefore cannot chatter, in any pose and with any coupling between joints.
+* stiffness: damping / 20 ms, which makes a well-damped loop at every inertia.
+* braking: accelerations that all joints can reach at once in the worst pose, with half of the
   effort that gravity leaves.
 """
 
@@ -27,41 +27,45 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
 
 Array = NDArray[np.float64]
+Gears = tuple[tuple[int, float], ...]
+"""Pairs of the index of a degree of freedom and its armature."""
 
 ARMATURE_SHARE = 0.1
 GEAR_SHARE = 0.02
 TIME_CONSTANT_S = 0.02
 FULL_EFFORT_ERROR = 0.02
-"""Error in rad or m at which a drive uses all of its effort, at the latest."""
-USUAL_EFFORT = 10.0
-"""N m or N, taken for the size of a drive whose effort has no limit."""
-USUAL_ACCELERATION = 50.0
-"""rad/s2 or m/s2, at most, of a drive whose effort does not bound it: strong ones do no more."""
+"""Largest error in rad or m at which a drive does not yet use all of its effort."""
+DEFAULT_EFFORT = 10.0
+"""Effort in N m or N that sizes a drive without an effort limit."""
+DEFAULT_ACCELERATION = 50.0
+"""Largest acceleration in rad/s2 or m/s2 of a drive without an effort limit; strong real drives
+do no more."""
 POSES = 200
 POSE_SEED = 20240
 EFFORT_SHARE = 0.5
-LEAST_EFFORT_SHARE = 0.1
-"""Of the effort limit, for a joint that can hardly hold the arm: it shall move all the same."""
+MIN_EFFORT_SHARE = 0.1
+"""Fraction of the effort limit that is always planned with, so that a joint that can hardly hold
+the arm still moves."""
 SLOW_SHARE = 0.25
-"""Of its velocity limit: a joint that damping keeps below it is worth a word."""
+"""Fraction of the velocity limit: a joint that damping keeps below it causes a warning."""
 PERIODS_TO_FULL_SPEED = 2
-"""Bound on acceleration where effort is plenty: what changes within a period is not planned."""
-ENDLESS_RANGE = (-math.pi, math.pi)
-LONGEST_SLIDE_M = 20.0
-"""Ranges of sliding joints above this are taken for limits that nobody meant, as -1000 to 1000."""
+"""Bounds the acceleration where effort is plentiful: no plan resolves less than a period."""
+CONTINUOUS_RANGE = (-math.pi, math.pi)
+MAX_SLIDE_M = 20.0
+"""A wider range of a sliding joint, such as -1000 to 1000, does not count as a real limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class MotionBounds:
-    """What the set-point of one joint may do; rad or m, and per second.
+    """Bounds on the set-point of one joint; rad or m, and per second.
 
     Attributes:
-        braking: deceleration that the joint can have anywhere, whatever the others do.
-        jerkless: highest acceleration at all.
-        slack: how far off the joint a set-point makes the drive use all of its effort.
+        braking: deceleration that the joint can reach in any pose, whatever the others do.
+        jerkless: highest acceleration in any case.
+        slack: distance of the set-point from the joint at which the drive uses all of its effort.
     """
 
     braking: float
@@ -77,22 +81,23 @@ class ServoTuning:
         stiffness: N m/rad or N/m.
         damping: N m s/rad or N s/m.
         armature: inertia of the rotors of drives that follow a set-point, kg m2 or kg.
-        limp_armature: the same of drives that do not; those need no stiffness.
-        efforts: limits, N m or N; inf for none.
-        braking: accelerations that all joints can have at once anywhere, rad/s2 or m/s2.
-        braking_efforts: what those ask for where they ask for most, without gravity, N m or N.
-        jerkless: highest accelerations at all, rad/s2 or m/s2.
-        gravity: largest efforts that gravity asks for, N m or N.
-        followers: inertia that mimicking joints and their gears add to that of their leader, kg m2
-            or kg.
-        coupling: shape (nv, n): velocities of all degrees of freedom for those of the driven
-            joints; mimicking joints move along.
+        shares: a tenth of the largest inertias, for MuJoCo's constants, kg m2 or kg.
+        gears: for each joint, the degrees of freedom that mimic it and their armatures.
+        efforts: effort limits, N m or N; inf for none.
+        braking: accelerations that all joints can reach at once in any pose, rad/s2 or m/s2.
+        braking_efforts: efforts that these need in the worst pose, without gravity, N m or N.
+        jerkless: highest accelerations in any case, rad/s2 or m/s2.
+        gravity: largest efforts against gravity, N m or N.
+        followers: inertia that mimic joints and their gears add to their leader, kg m2 or kg.
+        coupling: shape (nv, n): velocities of all degrees of freedom per velocity of each driven
+            joint; mimic joints move with their leader.
     """
 
     stiffness: Array
     damping: Array
     armature: Array
-    limp_armature: Array
+    shares: Array
+    gears: tuple[Gears, ...]
     efforts: Array
     braking: Array
     braking_efforts: Array
@@ -102,23 +107,33 @@ class ServoTuning:
     coupling: Array
 
     def bounds(self, index: int) -> MotionBounds:
-        """Return what one joint's set-point may do."""
+        """Return the bounds on one joint's set-point."""
         return MotionBounds(
             braking=float(self.braking[index]),
             jerkless=float(self.jerkless[index]),
             slack=float(self.efforts[index] / self.stiffness[index]),
         )
 
+    def follower_ratios(self) -> tuple[tuple[int, int, float], ...]:
+        """Return each mimic joint: index of its driven joint, its own dof, its ratio."""
+        return tuple(
+            (column, follower, float(self.coupling[follower, column]))
+            for column, pairs in enumerate(self.gears)
+            for follower, _ in pairs
+        )
+
 
 def tune(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array, period_s: float
 ) -> ServoTuning:
-    """Return the tuning of the driven joints, and give them the rotors of limp drives.
+    """Return the tuning of the driven joints, which move freely afterwards.
 
     Args:
-        model: gets `dof_armature`, and what MuJoCo derives of it.
+        model: receives the constants that MuJoCo derives from inertias, with a tenth of each
+            joint's inertia as its rotor. The stiffness of contacts and stops therefore does not
+            change with the mode of a drive.
         joints: the driven joints.
-        qpos: a pose for all that is not driven, shape (nq,).
+        qpos: a pose for everything that is not driven, shape (nq,).
         period_s: control period.
     """
     coupling = _coupling(model, joints)
@@ -126,25 +141,25 @@ def tune(
     model.dof_armature[dofs] = 0.0
     efforts = np.array([joint.effort for joint in joints])
     rotor = _rotor(efforts, model.opt.timestep)
-    gears = _gear(model, coupling, dofs, rotor)
+    gears, felt = _gear(model, coupling, dofs, rotor)
     inertia, own, gravity = _sample(model, joints, coupling, qpos)
-    largest = inertia.diagonal() + gears
-    limp_armature = ARMATURE_SHARE * largest
-    armature = np.maximum(limp_armature, rotor)
-    model.dof_armature[dofs] = limp_armature
-    mujoco.mj_setConst(model, mujoco.MjData(model))
+    largest = inertia.diagonal() + felt
+    shares = ARMATURE_SHARE * largest
+    armature = np.maximum(shares, rotor)
+    _derive(model, mujoco.MjData(model), dofs, shares, gears)
     damping = 2.0 * armature / model.opt.timestep
     speeds = np.array([joint.velocity for joint in joints])
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
-    jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], USUAL_ACCELERATION)
-    spare = np.maximum(EFFORT_SHARE * (efforts - gravity), LEAST_EFFORT_SHARE * efforts)
-    worst = inertia + np.diag(armature + gears)
+    jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], DEFAULT_ACCELERATION)
+    spare = np.maximum(EFFORT_SHARE * (efforts - gravity), MIN_EFFORT_SHARE * efforts)
+    worst = inertia + np.diag(armature + felt)
     braking = _shared_accelerations(worst, spare, jerkless)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
         armature=armature,
-        limp_armature=limp_armature,
+        shares=shares,
+        gears=gears,
         efforts=efforts,
         braking=braking,
         braking_efforts=worst @ braking,
@@ -155,95 +170,120 @@ def tune(
     )
 
 
-def tuned_again(
+def retune(
     model: mujoco.MjModel,
     data: mujoco.MjData,
     joints: Sequence[RobotJoint],
     tuning: ServoTuning,
 ) -> ServoTuning:
-    """Return the tuning of the same joints in a model that has other things besides.
+    """Return the tuning of the same joints in a model in which other entities have changed.
 
-    What the joints feel of their own robot is as before, and so are gains and bounds.
+    The robot's own inertias are unchanged, and so are gains and bounds.
 
     Args:
-        model: gets the rotors of limp drives, as by `tune`; it has those of the followers.
-        data: of the model; is written to.
-        joints: the driven joints at their places in this model.
-        tuning: of the joints in the model before.
+        model: receives the constants that MuJoCo derives from inertias, as in `tune`. Its
+            armatures may already be set.
+        data: state of the model; it is overwritten.
+        joints: the driven joints in this model.
+        tuning: tuning of the joints in the previous model.
     """
     coupling, dofs = _coupling(model, joints), [joint.dof_address for joint in joints]
-    _gear(model, coupling, dofs, _rotor(tuning.efforts, model.opt.timestep))
-    model.dof_armature[dofs] = tuning.limp_armature
-    mujoco.mj_setConst(model, data)
-    return replace(tuning, coupling=coupling)
+    gears, _ = _gear(model, coupling, dofs, _rotor(tuning.efforts, model.opt.timestep))
+    _derive(model, data, dofs, tuning.shares, gears)
+    return replace(tuning, coupling=coupling, gears=gears)
 
 
 def too_weak(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
 ) -> Iterator[tuple[str, str]]:
-    """Yield the driven joints whose effort limit is too small, and what is wrong with each."""
-    friction, damping = resistance(model, tuning.coupling)
-    loads = zip(joints, tuning.gravity.tolist(), friction, damping, strict=True)
-    for joint, gravity, rubs, damps in loads:
+    """Yield the driven joints whose effort limit is too small, with a sentence for each."""
+    frictions, dampings = resistance(model, tuning.coupling)
+    loads = zip(joints, tuning.gravity.tolist(), frictions, dampings, strict=True)
+    for joint, gravity, friction, damping in loads:
         limit = f"its effort limit of {joint.effort:.4g}"
-        fastest = (joint.effort - rubs) / damps if damps > 0 else math.inf
+        fastest = (joint.effort - friction) / damping if damping > 0 else math.inf
         if gravity > joint.effort:
             yield (
                 joint.name,
-                f"{limit} is below the {gravity:.4g} that gravity asks for in some poses; there "
-                "it will sink",
+                f"{limit} is below the {gravity:.4g} that gravity needs in some poses; it will "
+                "sink there",
             )
-        elif rubs >= joint.effort:
+        elif friction >= joint.effort:
             yield (
                 joint.name,
-                f"{limit} is not above its friction of {rubs:.4g}; it will hardly move",
+                f"{limit} is not above its friction of {friction:.4g}; it will hardly move",
             )
         elif fastest < SLOW_SHARE * joint.velocity:
             limited = math.isfinite(joint.velocity_limit)
-            bound = "its velocity limit of" if limited else "the usual"
+            bound = "its velocity limit of" if limited else "the default of"
             yield (
                 joint.name,
-                f"{limit} moves it against its damping of {damps:.4g} at {fastest:.3g} at most, "
+                f"{limit} moves it against its damping of {damping:.4g} at {fastest:.3g} at most, "
                 f"far below {bound} {joint.velocity:.4g}",
             )
 
 
 def resistance(model: mujoco.MjModel, coupling: Array) -> tuple[list[float], list[float]]:
-    """Return friction and damping that driven joints feel, with those of all that moves along."""
+    """Return friction and damping of the driven joints, including their mimic joints."""
     friction = np.abs(coupling).T.dot(model.dof_frictionloss)
     return friction.tolist(), (coupling**2).T.dot(model.dof_damping).tolist()
 
 
 def _rotor(efforts: Array, step_s: float) -> Array:
-    """Return the armature, shape (n,), whose stiffness needs FULL_EFFORT_ERROR for all effort."""
-    bounded = np.where(np.isfinite(efforts), efforts, USUAL_EFFORT)
+    """Return the armature (n,) with whose stiffness FULL_EFFORT_ERROR uses the whole effort."""
+    bounded = np.where(np.isfinite(efforts), efforts, DEFAULT_EFFORT)
     return bounded / FULL_EFFORT_ERROR * TIME_CONSTANT_S * step_s / 2.0
 
 
-def _gear(model: mujoco.MjModel, coupling: Array, dofs: Sequence[int], rotors: Array) -> Array:
-    """Give each follower a share of the rotor of its leader.
+def set_armature(model: mujoco.MjModel, dof: int, armature: float) -> None:
+    """Change the inertia of a rotor while the model runs."""
+    # MuJoCo takes the inertia of a freely moving body from `dof_M0`, which it never recomputes.
+    model.dof_M0[dof] += armature - model.dof_armature[dof]
+    model.dof_armature[dof] = armature
+
+
+def _derive(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    dofs: Sequence[int],
+    rotors: Array,
+    gears: Sequence[Gears],
+) -> None:
+    """Let MuJoCo derive its constants with the given rotors and gears, then remove both."""
+    model.dof_armature[dofs] = rotors
+    mujoco.mj_setConst(model, data)
+    for dof in (*dofs, *(follower for pairs in gears for follower, _ in pairs)):
+        set_armature(model, dof, 0.0)
+
+
+def _gear(
+    model: mujoco.MjModel, coupling: Array, dofs: Sequence[int], rotors: Array
+) -> tuple[tuple[Gears, ...], Array]:
+    """Give each mimic joint a fraction of its leader's rotor.
 
     Args:
-        model: gets the followers' `dof_armature`.
+        model: receives the mimic joints' `dof_armature`.
         coupling: see `ServoTuning`.
-        dofs: of the leaders.
-        rotors: of the leaders, shape (n,).
+        dofs: degrees of freedom of the leaders.
+        rotors: rotors of the leaders, shape (n,).
 
     Returns:
-        What the leaders feel of it, shape (n,).
+        The mimic joints of each leader with their armatures; the inertia that these add to each
+        leader, shape (n,).
     """
-    felt = np.zeros(len(dofs))
+    felt, gears = np.zeros(len(dofs)), list[Gears]()
     for column, (dof, share) in enumerate(zip(dofs, GEAR_SHARE * rotors, strict=True)):
         ratios = coupling[:, column]
         followers = np.flatnonzero(ratios)
         followers = followers[followers != dof]
         model.dof_armature[followers] = share / ratios[followers] ** 2
+        gears.append(tuple((int(f), float(model.dof_armature[f])) for f in followers))
         felt[column] = share * len(followers)
-    return felt
+    return tuple(gears), felt
 
 
 def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:
-    """Return how fast every degree of freedom moves with each driven joint, shape (nv, n)."""
+    """Return the velocity of every degree of freedom per driven joint, shape (nv, n)."""
     coupling = np.zeros((model.nv, len(joints)))
     columns = {joint.dof_address: column for column, joint in enumerate(joints)}
     for dof, column in columns.items():
@@ -260,10 +300,10 @@ def _coupling(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> Array:
 def _sample(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], coupling: Array, qpos: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the most that the driven joints feel in random poses.
+    """Return the largest inertias and gravity efforts of the driven joints in random poses.
 
     Returns:
-        Absolute inertia matrix with whatever moves along, shape (n, n); inertias of the joints
+        Absolute inertia matrix including mimic joints, shape (n, n); inertias of the joints
         alone, shape (n,); absolute efforts against gravity, shape (n,).
     """
     data = mujoco.MjData(model)
@@ -272,7 +312,7 @@ def _sample(
     lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
     addresses = [joint.qpos_address for joint in joints]
     dofs = [joint.dof_address for joint in joints]
-    # A product with the few rows of the followers, not with thousands of zeros and ones.
+    # Multiply only the few rows of mimic joints, not thousands of zeros and ones.
     others = coupling.copy()
     others[dofs, range(len(dofs))] -= 1.0
     followers = np.flatnonzero(others.any(axis=1))
@@ -297,19 +337,19 @@ def _sample(
 
 def _range(joint: RobotJoint) -> tuple[float, float]:
     width = joint.upper - joint.lower
-    bounded = math.isfinite(width) and not (joint.linear and width > LONGEST_SLIDE_M)
-    return (joint.lower, joint.upper) if bounded else ENDLESS_RANGE
+    bounded = math.isfinite(width) and not (joint.linear and width > MAX_SLIDE_M)
+    return (joint.lower, joint.upper) if bounded else CONTINUOUS_RANGE
 
 
 def _shared_accelerations(inertia: Array, efforts: Array, bounds: Array) -> Array:
-    """Return accelerations (n,) that together overload no joint, whatever their signs.
+    """Return accelerations (n,) that overload no joint when combined, with any signs.
 
-    Each joint starts with what it could do alone. Where the sum of all is too much for a joint,
-    the largest contributions to its load are cut down to a common level.
+    Each joint starts with the acceleration that it could reach alone. If the sum overloads a joint,
+    the largest contributions to its load are cut to a common level.
 
     Args:
         inertia: largest absolute inertia matrix, shape (n, n).
-        efforts: what each joint can spend, shape (n,); may be infinite.
+        efforts: available effort of each joint, shape (n,); may be infinite.
         bounds: largest accelerations in any case, shape (n,).
     """
     accelerations = np.minimum(efforts / inertia.diagonal(), bounds)
@@ -327,6 +367,6 @@ def _level(loads: Array, effort: float) -> float:
     ordered = np.sort(loads)[::-1]
     kept = effort - (ordered.sum() - ordered.cumsum())
     levels = kept / np.arange(1, len(loads) + 1)
-    # The right number of cut loads is the first whose level lies above the largest kept one.
+    # The number of loads to cut is the first whose level is above the largest load that remains.
     following = np.append(ordered[1:], 0.0)
     return float(levels[np.argmax(levels >= following)])

@@ -1,20 +1,20 @@
-"""A set-point that moves as a joint can: bounded in speed, acceleration and braking."""
+"""A set-point with bounded speed, acceleration and braking, so that a joint can follow it."""
 
 from math import inf, sqrt
 
 LANDING_SLACK = 1.0001
-"""Rounding allowance on the speed of the last stretch."""
+"""Rounding allowance on the speed in the last period."""
 
 
 class Setpoint:
-    """Position and velocity that a joint is asked to have; rad or m, and per second.
+    """Desired position and velocity of a joint; rad or m, and per second.
 
-    One call of `approach` for each control period. Between two calls the set-point moves with
+    Call `approach` once in each control period. Between two calls the set-point moves with
     constant acceleration.
 
     Attributes:
-        position: at the end of the last period.
-        velocity: at the end of the last period.
+        position: position at the end of the last period.
+        velocity: velocity at the end of the last period.
     """
 
     __slots__ = ("position", "velocity")
@@ -32,14 +32,14 @@ class Setpoint:
         braking: float,
         period_s: float,
     ) -> None:
-        """Move towards a target, as fast as the bounds allow, without ever passing it.
+        """Move towards a target as fast as the bounds allow, without overshoot.
 
         Args:
-            target: where the target is at the end of this period; may be infinite.
-            target_velocity: how fast the target moves; 0 for a target that stands.
+            target: position of the target at the end of this period; may be infinite.
+            target_velocity: velocity of the target; 0 for a fixed target.
             speed: highest speed, at least 0.
-            acceleration: what the joint can do now, at least `braking`.
-            braking: what it can do wherever it stops, above 0; stops are planned with it.
+            acceleration: acceleration that the joint can reach now, at least `braking`.
+            braking: deceleration that it can reach in any pose, above 0; stops are planned with it.
             period_s: length of the period.
         """
         # Comparisons instead of min, max and abs: this runs for every joint in every tick.
@@ -47,27 +47,27 @@ class Setpoint:
             target_velocity = speed
         elif target_velocity < -speed:
             target_velocity = -speed
-        # Seen from the target, which moves with constant velocity, everything is a way to rest.
-        way = target - target_velocity * period_s - self.position
+        # In the frame of the target, which moves with constant velocity, the target is at rest.
+        distance = target - target_velocity * period_s - self.position
         velocity = self.velocity - target_velocity
         change = acceleration * period_s
         brake = braking * period_s
-        # A moving target is one that can be followed: it asks no more than the joint can now.
+        # A moving target can be followed with the present acceleration, so it may be met with it.
         landing = change if target_velocity else brake
         reach = speed * period_s * LANDING_SLACK
         if -landing <= velocity <= landing and -reach <= target - self.position <= reach:
-            miss = way - 0.5 * velocity * period_s
+            miss = distance - 0.5 * velocity * period_s
             within = 0.25 * landing * period_s
             if -within <= miss <= within:
                 self.position = target
                 self.velocity = target_velocity
                 return
         sign = 1.0
-        if way < 0.0 or (way == 0.0 and velocity > 0.0):
-            sign, way, velocity = -1.0, -way, -velocity
-        # The fastest end of this period from which `braking` still stops at the target:
-        # v'^2 <= 2 braking (way - (v + v') period / 2), solved for v'.
-        root = brake * (0.25 * brake - velocity) + 2.0 * braking * way
+        if distance < 0.0 or (distance == 0.0 and velocity > 0.0):
+            sign, distance, velocity = -1.0, -distance, -velocity
+        # The highest final speed of this period from which `braking` still stops at the target:
+        # v'^2 <= 2 braking (distance - (v + v') period / 2), solved for v'.
+        root = brake * (0.25 * brake - velocity) + 2.0 * braking * distance
         fastest = sqrt(root) - 0.5 * brake if root > 0.0 else -inf
         cruise = speed - sign * target_velocity
         if fastest > cruise:
@@ -81,5 +81,5 @@ class Setpoint:
         self.velocity = end
 
     def stopping_point(self, braking: float) -> float:
-        """Return where the set-point comes to rest if it brakes from now on."""
+        """Return where the set-point stops if it brakes from now on."""
         return self.position + 0.5 * self.velocity * abs(self.velocity) / braking

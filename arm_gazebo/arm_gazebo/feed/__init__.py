@@ -1,1 +1,1 @@
-"""States of the simulation, on their way to child processes that draw them."""
+"""Send states of the simulation to the child processes that draw them."""

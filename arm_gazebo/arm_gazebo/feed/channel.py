@@ -1,7 +1,7 @@
-"""The connection between a simulation and its camera process: one unnamed pair of sockets.
+"""The connection between the simulation and its camera process: an unnamed pair of sockets.
 
-Datagrams in both directions, each starting with a letter. Nothing has a name in the file system,
-so nothing can be left behind, and the end of either side is seen by the other.
+Datagrams go in both directions; the first byte of each is its type. Nothing has a name in the
+file system, so nothing is left behind after a crash, and each side sees when the other one closes.
 """
 
 import contextlib
@@ -9,7 +9,7 @@ import os
 import select
 import socket
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from arm_gazebo.errors import CameraError
@@ -18,41 +18,71 @@ from arm_gazebo.feed.snapshot import CameraSnapshot
 MODEL = b"M"
 SNAPSHOT = b"S"
 BACKEND = b"B"
+PROGRESS = b"P"
 VERSION = struct.Struct("<I")
+COUNTS = struct.Struct("<qQQ")
 BUFFER_BYTES = 1 << 20
-"""Asked for; the kernel may give less. A snapshot of a robot is some hundred bytes."""
+"""Requested buffer size; the kernel may grant less. A snapshot of a robot takes some 100 bytes."""
 WAIT_MS = 250
 
 
 @dataclass(frozen=True, slots=True)
 class ModelMessage:
-    """A new model, from now on: its version, and a file that holds it compiled.
+    """A new compiled model; the snapshots that follow belong to it.
 
     Attributes:
         version: number of the model.
-        file: descriptor of the file; whoever receives the message closes it.
+        file: descriptor of the file that holds the model; the receiver closes it.
     """
 
     version: int
     file: int
 
 
-class FeedEnd:
-    """The simulation's end: never blocks. It also owns the other end, to hand it to children.
+@dataclass(frozen=True, slots=True)
+class CameraProgress:
+    """What the camera process has done with one camera's frames since it started.
 
-    `send_snapshot` belongs to the loop thread; the rest is for one thread at a time.
+    Attributes:
+        serial: of the last frame that it has dealt with; -1 before the first one.
+        rendered: how many frames it has rendered and published.
+        dropped: how many frames never reached it, or were passed over for newer ones.
+    """
+
+    serial: int = -1
+    rendered: int = 0
+    dropped: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """What the camera process has said since the last time.
+
+    Attributes:
+        backends: the render backends that it has tried.
+        progress: the latest figures, one for each camera; empty for no news.
+    """
+
+    backends: list[str]
+    progress: tuple[CameraProgress, ...]
+
+
+class FeedEnd:
+    """The simulation's end, which never blocks. It also owns the end that children inherit.
+
+    Call `send_snapshot` on the loop thread only. Call the other methods from one thread at a time.
     """
 
     def __init__(self) -> None:
         self._socket, self._remote = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        # Shared with every process that inherits an end: nobody may change it later.
+        # Every process that inherits an end shares these flags, so no one may change them later.
         self._socket.setblocking(False)
         self._remote.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, BUFFER_BYTES)
 
     @property
     def largest_message(self) -> int:
-        """Size in bytes of what surely fits into the emptied connection."""
+        """Size in bytes of the largest message that certainly fits into an empty connection."""
         return self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) // 2
 
     @property
@@ -61,7 +91,7 @@ class FeedEnd:
         return self._remote.fileno()
 
     def send_snapshot(self, snapshot: CameraSnapshot) -> bool:
-        """Send a state; return False when there is no room, and it is lost."""
+        """Send a state; return False if there is no room and the state is lost."""
         try:
             self._socket.send(SNAPSHOT + snapshot.pack())
         except OSError:
@@ -69,7 +99,7 @@ class FeedEnd:
         return True
 
     def send_model(self, version: int, file: int) -> bool:
-        """Send a model; return False when there is no room."""
+        """Send a model; return False if there is no room."""
         try:
             socket.send_fds(self._socket, [MODEL + VERSION.pack(version)], [file])
         except OSError:
@@ -77,18 +107,28 @@ class FeedEnd:
         return True
 
     def discard_unread(self) -> None:
-        """Take back what no camera process has read, to make room for what counts more."""
+        """Take back the messages that no camera process has read, to make room for newer ones."""
         messages, _ended = _receive_all(self._remote)
         for _data, files in messages:
             _close_files(files)
 
-    def backends_tried(self) -> list[str]:
-        """Return the backends that the camera process said it would try, since the last call."""
-        messages, _ended = _receive_all(self._socket)
-        return [data[1:].decode() for data, _files in messages if data[:1] == BACKEND]
+    def wait_for_answers(self, timeout_s: float) -> None:
+        """Wait until the camera process has said something; any thread, while the end is open."""
+        select.select([self._socket], [], [], timeout_s)
+
+    def answers(self) -> Answers:
+        """Return what the camera process has said since the last call."""
+        said = [data for data, _files in _receive_all(self._socket)[0]]
+        progress = [data[1:] for data in said if data[:1] == PROGRESS]
+        return Answers(
+            [data[1:].decode() for data in said if data[:1] == BACKEND],
+            tuple(CameraProgress(*counts) for counts in COUNTS.iter_unpack(progress[-1]))
+            if progress
+            else (),
+        )
 
     def shut_down(self) -> None:
-        """Send nothing more: a camera process reads the end of the stream."""
+        """Stop sending, so that the camera process reads the end of the stream."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
 
@@ -99,22 +139,22 @@ class FeedEnd:
 
 
 class CameraEnd:
-    """The camera process's end. `receive` belongs to one thread; `tell_backend` to any."""
+    """The camera process's end. Call `receive` from one thread, `tell_backend` from any."""
 
     def __init__(self, fd: int) -> None:
         try:
             self._socket = socket.socket(fileno=fd)
         except OSError as error:
-            raise CameraError(f"file descriptor {fd} is no socket of a simulation") from error
+            raise CameraError(f"file descriptor {fd} is not a simulation's socket") from error
         self._socket.setblocking(False)
         self._readable = select.poll()
         self._readable.register(self._socket, select.POLLIN)
 
     def receive(self) -> list[ModelMessage | CameraSnapshot] | None:
-        """Wait a moment for messages and return all there are, in order; None after the end.
+        """Wait up to `WAIT_MS` and return all messages in order; None after the stream's end.
 
         Raises:
-            CameraError: a message that no simulation of this version sends.
+            CameraError: a message is malformed.
         """
         if not self._readable.poll(WAIT_MS):
             return []
@@ -124,9 +164,15 @@ class CameraEnd:
         return [message for data, files in packed for message in _unpack(data, files)]
 
     def tell_backend(self, backend: str) -> None:
-        """Tell the simulation which backend is about to be tried, in case it ends the process."""
+        """Tell the simulation which backend is tried next, in case it crashes the process."""
         with contextlib.suppress(OSError):
             self._socket.send(BACKEND + backend.encode())
+
+    def tell_progress(self, progress: Iterable[CameraProgress]) -> None:
+        """Tell the simulation how far each camera has come."""
+        packed = b"".join(COUNTS.pack(p.serial, p.rendered, p.dropped) for p in progress)
+        with contextlib.suppress(OSError):
+            self._socket.send(PROGRESS + packed)
 
     def close(self) -> None:
         """Close this end; idempotent."""
@@ -144,7 +190,7 @@ def _unpack(data: bytes, files: list[int]) -> Iterator[ModelMessage | CameraSnap
 
 
 def _receive_all(end: socket.socket) -> tuple[list[tuple[bytes, list[int]]], bool]:
-    """Return the datagrams that are there with their files, and whether the stream has ended."""
+    """Return the waiting datagrams with their files, and whether the stream has ended."""
     messages: list[tuple[bytes, list[int]]] = []
     while True:
         try:

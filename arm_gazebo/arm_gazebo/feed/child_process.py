@@ -1,5 +1,7 @@
-"""A child process at the other end of a connection: started, looked at, ended."""
+"""A child process of the simulation: start it, watch it, end it."""
 
+import argparse
+import ctypes
 import logging
 import os
 import signal
@@ -7,30 +9,61 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
+from arm_gazebo.errors import OrphanError
+
+PR_SET_PDEATHSIG = 1
+NICENESS = 5
+"""Software OpenGL uses all processors when it starts; the physics takes precedence."""
+
+
+def add_parent_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments that every child process of the simulation takes."""
+    parser.add_argument("--socket", type=int, required=True, help="inherited socket descriptor")
+    parser.add_argument("--parent", type=int, required=True, help="process id of the simulation")
+
+
+def follow_parent(parent: int) -> None:
+    """Run at a lower priority than the simulation, and end with it even if a driver hangs.
+
+    Raises:
+        OrphanError: the simulation has already ended.
+    """
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if os.getppid() != parent:
+        raise OrphanError("the simulation that started this process has ended")
+    lower_priority()
+
+
+def lower_priority() -> None:
+    """Lower this process's priority, even if the thread that started it had a raised one."""
+    inherited = os.getpriority(os.PRIO_PROCESS, 0)
+    os.setpriority(os.PRIO_PROCESS, 0, max(0, inherited) + NICENESS)
+
+
 logger = logging.getLogger(__name__)
 
 END_TIMEOUT_S = 3.0
 TERMINATE_TIMEOUT_S = 2.0
 NOT_INHERITED = ("NOTIFY_SOCKET",)
-"""A supervisor waits for the simulation, not for this process of its."""
+"""A supervisor waits for the simulation to report ready, not for its child processes."""
 
 Spawn = Callable[..., subprocess.Popen[bytes]]
 
 
-class FedProcess:
-    """Runs a module of this package as a process, one at a time. One thread at a time.
+class WorkerProcess:
+    """Runs a module of this package as a process, at most one at a time.
 
-    The process inherits a socket and ends when that does. What becomes of one that died is for
-    the owner to decide.
+    The process inherits a socket and ends when that socket closes. The owner decides whether to
+    restart a process that died. Call it from one thread at a time.
     """
 
     def __init__(self, module: str, name: str, spawn: Spawn = subprocess.Popen) -> None:
-        """Prepare; nothing is started.
+        """Prepare without starting a process.
 
         Args:
-            module: what `python -m` runs.
-            name: what to call it in the log.
-            spawn: makes a process; as subprocess.Popen.
+            module: the module that `python -m` runs.
+            name: the name of the process in the log.
+            spawn: starts a process, like subprocess.Popen.
         """
         self.name = name
         self._module = module
@@ -39,7 +72,7 @@ class FedProcess:
 
     @property
     def pid(self) -> int | None:
-        """Process id of the child that runs or whose exit code was not taken; None without."""
+        """Process id of the child until `take_exit_code` reports its end; None without a child."""
         return None if self._process is None else self._process.pid
 
     def start(self, socket_fd: int, arguments: Sequence[str], environ: Mapping[str, str]) -> None:
@@ -49,7 +82,7 @@ class FedProcess:
         ends the process.
 
         Raises:
-            OSError: it cannot be started.
+            OSError: the process cannot be started.
         """
         self._process = self._spawn(
             [
@@ -60,36 +93,36 @@ class FedProcess:
             env=dict(environ),
             pass_fds=(socket_fd,),
             stdin=subprocess.DEVNULL,
-            # Out of the reach of Ctrl-C: it ends with the simulation, and not before.
+            # Its own group shields it from Ctrl-C, so that it ends with the simulation.
             process_group=0,
         )
 
     def take_exit_code(self) -> int | None:
-        """Return the exit code of a process that has died, once; None if there is none such."""
+        """Return the exit code of a process that has ended, once; None otherwise."""
         code = None if self._process is None else self._process.poll()
         if code is not None:
             self._process = None
         return code
 
     def end(self) -> None:
-        """Wait until the process has ended, whose socket is closed already; insist if need be."""
+        """Wait for the process to end after its socket was closed; terminate it if necessary."""
         process, self._process = self._process, None
         if process is None:
             return
-        for insist, timeout_s in (
+        for escalate, timeout_s in (
             (None, END_TIMEOUT_S),
             (process.terminate, TERMINATE_TIMEOUT_S),
             (process.kill, None),
         ):
-            if insist is not None:
-                insist()
+            if escalate is not None:
+                escalate()
             try:
                 process.wait(timeout_s)
                 return
             except subprocess.TimeoutExpired:
-                logger.warning("%s does not end", self.name)
+                logger.warning("%s has not ended after %g s", self.name, timeout_s)
 
 
 def describe_exit(code: int) -> str:
-    """Return how a process ended, as the end of a sentence."""
+    """Return how a process ended, worded to finish a sentence."""
     return f"({signal.strsignal(-code)})" if code < 0 else f"with exit code {code}"

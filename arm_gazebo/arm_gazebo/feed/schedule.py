@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-TOLERANCE_S = 1e-6
-"""A time that is a sum of steps may fall short of the number that it stands for."""
+from arm_control.loop.schedule import Schedule
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,14 +29,33 @@ class FrameSchedule:
     Frame k of a camera at f Hz is due at the first tick at or after k / f: the mean rate is
     exact whatever the tick rate. A tick that passes several frames of one camera takes the last.
     When time jumps back (a reset), the schedule starts again from there.
+
+    Attributes:
+        serials: for each camera, how many frames were due so far; read it only.
     """
 
     def __init__(self, rates_hz: Sequence[float]) -> None:
-        self._rates_hz = tuple(rates_hz)
-        self._serials = [0] * len(self._rates_hz)
-        self._numbers = [-1] * len(self._rates_hz)
+        self._schedules = tuple(Schedule(rate_hz, 0.0) for rate_hz in rates_hz)
+        self.serials = [0] * len(self._schedules)
         self._last_s = -math.inf
-        self._next_s = 0.0 if self._rates_hz else math.inf
+        self._next_s = 0.0 if self._schedules else math.inf
+
+    def __len__(self) -> int:
+        return len(self._schedules)
+
+    def restart(self) -> None:
+        """Start again: the next tick takes every picture that is due."""
+        self._last_s, self._next_s = math.inf, 0.0 if self._schedules else math.inf
+
+    def save_state(self) -> tuple[Any, ...]:
+        """Return which frames are due next. Serials count what was sent and are not part of it."""
+        return self._last_s, self._next_s, [schedule.save_state() for schedule in self._schedules]
+
+    def load_state(self, state: tuple[Any, ...]) -> None:
+        """Go on from a saved state."""
+        self._last_s, self._next_s, schedules = state
+        for schedule, saved in zip(self._schedules, schedules, strict=True):
+            schedule.load_state(saved)
 
     def nothing_due(self, time_s: float) -> bool:
         """Return quickly whether no camera takes a picture at this tick."""
@@ -47,18 +66,14 @@ class FrameSchedule:
 
     def take_due(self, time_s: float) -> tuple[FrameDue, ...]:
         """Return the frames due at this tick, each once."""
-        if time_s < self._last_s:
-            self._numbers = [-1] * len(self._rates_hz)
+        has_gone_back = time_s < self._last_s
         self._last_s = time_s
         due: list[FrameDue] = []
-        self._next_s = math.inf
-        for camera, rate_hz in enumerate(self._rates_hz):
-            number = math.floor((time_s + TOLERANCE_S) * rate_hz)
-            if number > self._numbers[camera]:
-                self._numbers[camera] = number
-                due.append(FrameDue(camera, number, self._serials[camera]))
-                self._serials[camera] += 1
-            next_s = (self._numbers[camera] + 1) / rate_hz - TOLERANCE_S
-            if next_s < self._next_s:
-                self._next_s = next_s
+        for camera, schedule in enumerate(self._schedules):
+            if has_gone_back:
+                schedule.restart()
+            if schedule.is_due(time_s):
+                due.append(FrameDue(camera, schedule.number, self.serials[camera]))
+                self.serials[camera] += 1
+        self._next_s = min((schedule.next_s for schedule in self._schedules), default=math.inf)
         return tuple(due)

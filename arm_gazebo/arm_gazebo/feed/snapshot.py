@@ -1,4 +1,4 @@
-"""One state of the simulation as the cameras get it: a small datagram."""
+"""One state of the simulation as the cameras receive it: a small datagram."""
 
 import struct
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.schedule import FrameDue
 
 HEADER = struct.Struct("<IdHII")
-"""Model version, time, and how many frames, positions and mocap bodies follow."""
+"""Model version, time, and the numbers of frames, positions and mocap bodies that follow."""
 FRAME = struct.Struct("<HQQ")
 
 
 @dataclass(frozen=True, slots=True)
 class CameraSnapshot:
-    """What a picture needs of a state.
+    """The part of a state that a picture needs.
 
     Attributes:
-        model_version: which model `qpos` belongs to.
+        model_version: the model that `qpos` belongs to.
         time_s: simulation time of the state.
-        frames: pictures to take of it.
+        frames: camera frames to render from it.
         qpos: (nq,) generalised positions.
         mocap_positions: (nmocap, 3) of the mocap bodies.
         mocap_quaternions: (nmocap, 4) of the mocap bodies, w x y z.

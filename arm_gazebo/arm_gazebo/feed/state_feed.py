@@ -1,4 +1,4 @@
-"""Hands states of the simulation to a child process, and keeps that process alive."""
+"""Sends states of the simulation to a child process, and restarts that process when it dies."""
 
 import os
 import threading
@@ -10,67 +10,78 @@ import mujoco
 import numpy as np
 
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import FeedEnd
+from arm_gazebo.feed.channel import CameraProgress, FeedEnd
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
 
 MODEL_FILE_NAME = "camera-model"
 FRAMING_BYTES = 4096
-"""What a snapshot has beside positions, generously."""
+"""Generous bound on the size of a snapshot without its positions."""
 
 
-class StateReader(Protocol):
-    """Starts and ends the process that reads the states; one thread at a time."""
+class _StateReader(Protocol):
+    """Starts and ends the process that reads the states. Called from one thread at a time."""
 
     def start(self, socket_fd: int) -> None:
         """Start a process that inherits this socket."""
         ...
 
     def start_again_due(self, backends_tried: Sequence[str], /) -> bool:
-        """Return whether the process has died and is to be started again now."""
+        """Return whether the process has died and should be restarted now."""
         ...
 
     def end(self) -> None:
-        """Wait until the process has ended, whose socket is closed already."""
+        """Wait for the process to end after its socket was closed."""
         ...
 
 
 class StateFeed:
-    """The simulation's side of one process that shows it. Nothing there reaches the physics.
+    """The simulation's side of one process that shows it.
 
-    States go out in small datagrams that never wait: where the process cannot follow, they are
-    lost. A process that starts gets the model first.
+    States are sent as small datagrams without waiting; if the process cannot keep up, they are
+    lost. A process that starts receives the model first. A fault of the process never affects the
+    physics.
 
-    `start`, `set_model`, then `send` at some ticks and `supervise` now and then; `close`.
+    Call `start` and `set_model`, then `send` at each due tick and `supervise` about once a second,
+    and finally `close`.
+
+    Attributes:
+        progress: what the process said last of its frames, one for each camera; any thread.
     """
 
-    def __init__(self, reader: StateReader) -> None:
-        """Prepare; nothing is started, but `close` is needed from here on."""
+    def __init__(self, reader: _StateReader) -> None:
+        """Open the connection without starting the process; `close` is required afterwards."""
         self._reader = reader
         self._channel = FeedEnd()
         self._lock = threading.Lock()
+        self.progress: tuple[CameraProgress, ...] = ()
+        self._tried: list[str] = []
         self._version = 0
         self._model_file: int | None = None
-        # While this is set the child knows the model, and the loop thread sends states of it.
+        # While this is set the child has the model, and the loop thread sends its states.
         self._flowing = False
         self._closed = False
 
     @property
+    def version(self) -> int:
+        """Number of the model; states of an earlier one may have been discarded."""
+        return self._version
+
+    @property
     def flowing(self) -> bool:
-        """Whether the process knows the model, so that it can make something of states."""
+        """Whether the process has received the model and so can use states."""
         return self._flowing
 
     def start(self) -> None:
-        """Start the process. It needs no model yet: start it early, then `set_model`.
+        """Start the process. Start it early: it needs no model before `set_model`.
 
-        Call it from the main thread: when the thread that starts a process ends, so does the
-        process.
+        Call it from the main thread: the process ends when the thread that started it ends.
         """
         with self._lock:
             self._reader.start(self._channel.remote_fd)
 
     def set_model(self, model: mujoco.MjModel) -> None:
-        """Show this model from the next state on; call it before the loop starts.
+        """Show this model from the next state on. Call it before the loop starts.
 
         Raises:
             CameraError: the model's state is too large to send.
@@ -78,7 +89,7 @@ class StateFeed:
         self.prepare(model).show()
 
     def prepare(self, model: mujoco.MjModel) -> "PreparedModel":
-        """Return a model to be shown later; any thread. Takes some ms: it is copied.
+        """Return a copy of the model to show later. Any thread; the copy takes some ms.
 
         Raises:
             CameraError: the model's state is too large to send.
@@ -89,10 +100,10 @@ class StateFeed:
                 f"a state of this model has {state_bytes} bytes, too many for the cameras; "
                 f"at most {self._channel.largest_message} can be sent"
             )
-        return PreparedModel(self, _compiled(model))
+        return PreparedModel(self, compiled_model(model))
 
     def show(self, file: int) -> None:
-        """Show the compiled model of a file, which is closed in time; see `PreparedModel`."""
+        """Show the compiled model of a file and take over its descriptor; see `PreparedModel`."""
         with self._lock:
             if self._closed:
                 os.close(file)
@@ -104,38 +115,51 @@ class StateFeed:
             self._version += 1
             self._offer_model()
 
-    def send(self, time_s: float, frames: tuple[FrameDue, ...], data: mujoco.MjData) -> None:
-        """Send a state; loop thread only, and only while `flowing`. Never waits.
+    def send(self, time_s: float, frames: tuple[FrameDue, ...], data: mujoco.MjData) -> bool:
+        """Send a state without waiting; return False if it is lost.
+
+        Loop thread only, and only while `flowing`.
 
         Args:
             time_s: simulation time of the state.
-            frames: pictures to take of it.
+            frames: camera frames to render from it.
             data: the state.
         """
-        self._channel.send_snapshot(
+        return self._channel.send_snapshot(
             CameraSnapshot(
                 self._version, time_s, frames, data.qpos, data.mocap_pos, data.mocap_quat
             )
         )
 
     def supervise(self) -> None:
-        """Start the process again if it has died and is to live; call it about once a second.
+        """Restart the process if it has died and should run. Call it about once a second.
 
-        Not on the loop thread: starting a process takes some ms. See `start` about the thread.
+        Never call it on the loop thread, because starting a process takes some ms. `start` says
+        which thread to use.
         """
         with self._lock:
             if self._closed:
                 return
-            if self._reader.start_again_due(self._channel.backends_tried()):
+            self._hear()
+            backends, self._tried = self._tried, []
+            if self._reader.start_again_due(backends):
                 self._flowing = False
-                # What the dead one has not read would come before the model.
+                self.progress = ()
+                # Messages that the dead process left unread would arrive before the model.
                 self._channel.discard_unread()
                 self._reader.start(self._channel.remote_fd)
             if not self._flowing:
                 self._offer_model()
 
+    def hear(self, timeout_s: float) -> None:
+        """Wait for news of `progress`; not on the loop thread, and not after `close`."""
+        self._channel.wait_for_answers(timeout_s)
+        with self._lock:
+            if not self._closed:
+                self._hear()
+
     def close(self) -> None:
-        """End the process and wait for it, some seconds at most; idempotent. Any thread."""
+        """End the process and wait some seconds at most for it. Idempotent; any thread."""
         with self._lock:
             self._flowing = False
             if self._closed:
@@ -143,10 +167,15 @@ class StateFeed:
             self._closed = True
             self._channel.shut_down()
             self._reader.end()
-            # Last: a loop that is still in its tick may be sending.
+            # Closed last, because a loop in the middle of its tick may still be sending.
             self._channel.close()
             if self._model_file is not None:
                 os.close(self._model_file)
+
+    def _hear(self) -> None:
+        answers = self._channel.answers()
+        self._tried += answers.backends
+        self.progress = answers.progress or self.progress
 
     def _offer_model(self) -> None:
         if self._model_file is not None:
@@ -156,21 +185,21 @@ class StateFeed:
 
 @dataclass(frozen=True, slots=True)
 class PreparedModel:
-    """A model that one feed can show at once."""
+    """A model that a feed can show without delay."""
 
     _feed: StateFeed
     _file: int
 
     def show(self) -> None:
-        """Show it from the next state on; on the loop thread, where it swaps the model."""
+        """Show the model from the next state on. Call it where the loop thread swaps the model."""
         self._feed.show(self._file)
 
     def discard(self) -> None:
-        """Free it; it will not be shown."""
+        """Free the model without showing it."""
         os.close(self._file)
 
 
-def _compiled(model: mujoco.MjModel) -> int:
+def compiled_model(model: mujoco.MjModel) -> int:
     """Return the descriptor of an unnamed file in memory that holds the compiled model."""
     content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
     mujoco.mj_saveModel(model, None, content)

@@ -1,1 +1,1 @@
-"""The robot in the simulation as controllers see it: its joints and its sensors."""
+"""The simulated robot's hardware interface: its joints and its sensors."""

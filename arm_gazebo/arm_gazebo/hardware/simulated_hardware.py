@@ -1,4 +1,4 @@
-"""The robot's joints in the simulation, as hardware that a controller manager can drive."""
+"""The simulated joints as a hardware component for a controller manager."""
 
 import logging
 import math
@@ -8,21 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.hardware import HardwareReturn
-from arm_control.hardware_info import HardwareInfo, InterfaceInfo
-from arm_gazebo.drives.mode import DriveMode
-from arm_gazebo.hardware.instrument import Instrument
-from arm_gazebo.hardware.sensor_states import SensorStates
-from arm_gazebo.index_slice import as_slice
+from arm_control.hardware.driver import HardwareReturn
+from arm_control.hardware.info import HardwareInfo, InterfaceInfo
+from arm_gazebo.drives.driven_joint import DriveMode
+from arm_gazebo.hardware.simulated_sensors import SensorStates, SimulatedSensor
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.index_slice import as_slice
 
 logger = logging.getLogger(__name__)
 
 MODES = {mode.value: mode for mode in (DriveMode.POSITION, DriveMode.VELOCITY, DriveMode.EFFORT)}
-"""Command interfaces, and what a joint does with each; of several claimed the first counts."""
+"""The drive mode of each command interface; of several claimed interfaces the first one counts."""
 MAX_EFFORT = "max_effort"
-"""Command interface that limits what a joint's drive may spend; nothing above 0 lifts the limit."""
+"""Command interface that limits the effort of a joint's drive; 0 or less lifts the limit."""
 STATES = ("position", "velocity", "effort")
 UNITS = {
     DriveMode.POSITION: ("rad", "m"),
@@ -33,7 +32,7 @@ UNITS = {
 
 @dataclass(frozen=True, slots=True)
 class _CommandInterface:
-    """One command interface: where its value is, whom it drives, and within which bounds."""
+    """One command interface: the index of its value, its drive and its bounds."""
 
     name: str
     index: int
@@ -44,7 +43,7 @@ class _CommandInterface:
     upper: float
 
     def warning(self, value: float) -> str:
-        """Return what to tell the user about a command beyond the bounds."""
+        """Return the warning about a command beyond the bounds."""
         unit = UNITS[self.mode][self.joint.linear]
         bound = self.upper if value > self.upper else self.lower
         return (
@@ -55,7 +54,7 @@ class _CommandInterface:
 
 @dataclass(frozen=True, slots=True)
 class _LimitInterface:
-    """A command interface that limits a drive: where its value is, and whom it limits."""
+    """A command interface that limits a drive's effort: the index of its value, and the drive."""
 
     name: str
     index: int
@@ -63,19 +62,22 @@ class _LimitInterface:
 
 
 class SimulatedHardware:
-    """A component of the robot description, driven by the simulation's servos.
+    """A hardware component of the robot description, driven by the simulation's servos.
 
-    Implements `arm_control.hardware.Hardware`; every method belongs to the loop thread. Time
-    passes in `Simulation.advance`, which the owner calls between `write` and `read`.
+    Implements `arm_control.Hardware`; call every method on the loop thread. The owner calls
+    `Simulation.advance` between `write` and `read`.
 
     Args:
-        simulation: has the joints.
-        info: the component. What of it cannot be simulated is left out and logged.
-        instruments: the robot's sensors.
+        simulation: the simulation of the joints.
+        info: the component. Interfaces that cannot be simulated are left out and logged.
+        sensors: the robot's sensors.
     """
 
     def __init__(
-        self, simulation: Simulation, info: HardwareInfo, instruments: Sequence[Instrument] = ()
+        self,
+        simulation: Simulation,
+        info: HardwareInfo,
+        sensors: Sequence[SimulatedSensor] = (),
     ) -> None:
         self.info = info
         self._simulation = simulation
@@ -89,21 +91,22 @@ class SimulatedHardware:
         ]
         self._interfaces = self._command_interfaces()
         self._limits = self._limit_interfaces(len(self._interfaces))
-        self._sensors = SensorStates(info, instruments)
-        joint_states = (f"{joint.name}/{state}" for state, joint in self._states)
-        self.state_interfaces = (*joint_states, *self._sensors.names)
+        self._sensors = SensorStates(info, sensors)
+        self._joint_channels = tuple(f"{joint.name}/{state}" for state, joint in self._states)
+        self.state_interfaces = (*self._joint_channels, *self._sensors.names)
         self.command_interfaces = tuple(i.name for i in (*self._interfaces, *self._limits))
         self._log_left_out()
         self._claimed: set[str] = set()
+        self._is_stopped = False
         self._active: tuple[_CommandInterface, ...] = ()
         self._limiting: tuple[_LimitInterface, ...] = ()
         self._beyond: set[str] = set()
-        # One for each interface: a command that trembles about its limit shall not fill the log.
+        # One for each interface: a command that oscillates at its limit must not flood the log.
         self._warnings: dict[str, str] = {}
-        self.bind(np.empty(len(self.state_interfaces)), np.empty(len(self._interfaces)))
+        self.bind(np.empty(len(self.state_interfaces)), np.empty(len(self.command_interfaces)))
 
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
-        """Keep these views; see `Hardware.bind`."""
+        """Store these views; see `Hardware.bind`."""
         self._state_values = states
         self._sensor_values = states[len(self._states) :]
         self._commands = commands
@@ -117,17 +120,21 @@ class SimulatedHardware:
         self._find_sources()
 
     def _find_sources(self) -> None:
-        """Look up where the states are in MuJoCo's arrays, each a view of the present ones."""
-        states, data = self._state_values, self._simulation.data
+        """Look up the indices of the states in MuJoCo's arrays and in our state array.
+
+        Store indices, not parts of arrays: a part is a view only if the index is a slice. Otherwise
+        it is a copy, and writes to it are lost.
+        """
+        data = self._simulation.data
         sources = {"position": data.qpos, "velocity": data.qvel, "effort": data.qfrc_actuator}
         self._copies = [
-            (states[where], source, there)
+            (where, source, there)
             for kind, source in sources.items()
             for where, there in [self._places(kind)]
         ]
 
     def on_configure(self) -> bool:
-        """Show states and, on the command interfaces, what the joints do by themselves."""
+        """Fill the states, and set each command to the value at which its joint stays put."""
         self.read(self._simulation.time_s, 0.0)
         for interface in self._interfaces:
             self._commands[interface.index] = self._neutral(interface)
@@ -136,33 +143,34 @@ class SimulatedHardware:
         return True
 
     def on_activate(self) -> bool:
-        """Be ready: the joints follow what is claimed."""
+        """Accept; joints follow their claimed interfaces."""
         return True
 
     def on_deactivate(self) -> bool:
-        """Leave all joints to themselves."""
+        """Release all command interfaces."""
         return self.perform_command_mode_switch((), tuple(self._claimed))
 
     def on_cleanup(self) -> bool:
-        """Leave all joints to themselves."""
+        """Release all command interfaces."""
         return self.on_deactivate()
 
     def on_shutdown(self) -> bool:
-        """Leave all joints to themselves."""
+        """Release all command interfaces."""
         return self.on_deactivate()
 
     def prepare_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
-        """Agree to whatever exists."""
+        """Accept every switch between existing interfaces."""
         return set(start) | set(stop) <= set(self.command_interfaces)
 
     def perform_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
-        """Drive each joint as its claimed interface says, from where it is.
+        """Drive each joint in the mode of its claimed interface, from its present state.
 
-        A started interface gets the value at which nothing jumps. Joints without any are idle.
+        A started interface gets a value that causes no jump. Joints without a claimed interface
+        are idle.
         """
         before = self._modes()
         self._claimed = (self._claimed - set(stop)) | set(start)
-        after = self._modes()
+        after = self._find_active()
         switched = [i for i in self._interfaces if i.name in start or i.name in stop]
         for interface in switched:
             interface_before, interface_after = before[interface.drive], after[interface.drive]
@@ -172,24 +180,36 @@ class SimulatedHardware:
             self._beyond.discard(interface.name)
             if interface.name in start:
                 self._commands[interface.index] = self._neutral(interface)
-        self._active = tuple(
-            interface
-            for interface in self._interfaces
-            if interface.name in self._claimed and interface.mode is after[interface.drive]
-        )
-        self._switch_limits(start, stop)
+        self._lift_limits(start, stop)
         self._taken = b""
         return True
 
+    def set_emergency_stop(self, engaged: bool) -> None:
+        """Let every drive brake and hold; or drive each joint in its claimed mode again.
+
+        A drive brakes as hard as it can in any pose. Limits of efforts stay.
+        """
+        self._is_stopped = engaged
+        for drive, mode in self._find_active().items():
+            self._servo.set_mode(drive, mode)
+        for interface in self._active:
+            self._commands[interface.index] = self._neutral(interface)
+        self._taken = b""
+
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Fill the states from the physics."""
-        for target, source, there in self._copies:
-            target[:] = source[there]
+        states = self._state_values
+        for where, source, there in self._copies:
+            states[where] = source[there]
+        simulation = self._simulation
+        simulation.faults.apply(self._joint_channels, states, simulation.probe.number)
         self._sensors.fill(self._sensor_values)
         return HardwareReturn.OK
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Take commands that changed; NaN is no command, and what is too much is clamped."""
+        """Take changed commands: NaN is ignored, and values beyond the limits are clamped."""
+        if self._is_stopped:
+            return HardwareReturn.OK
         commands = self._commands.tobytes()
         if commands == self._taken:
             return HardwareReturn.OK
@@ -208,18 +228,53 @@ class SimulatedHardware:
             self._servo.command(interface.drive, value)
         return HardwareReturn.OK
 
+    def reset(self) -> None:
+        """Set each claimed command to the value at which its joint stays put, and read the states.
+
+        Call it after `Simulation.reset`.
+        """
+        for interface in self._active:
+            self._commands[interface.index] = self._neutral(interface)
+        self._taken = b""
+        self._beyond.clear()
+        self.read(self._simulation.time_s, 0.0)
+
+    def save_state(self) -> tuple[frozenset[str], frozenset[str], bytes]:
+        """Return the claimed commands, those beyond their limits, and the last ones written."""
+        return frozenset(self._claimed), frozenset(self._beyond), self._taken
+
+    def load_state(self, state: tuple[frozenset[str], frozenset[str], bytes]) -> None:
+        """Go on from a saved state, after the simulation was restored."""
+        claimed, beyond, self._taken = state
+        self._claimed, self._beyond = set(claimed), set(beyond)
+        self._find_active()
+
+    def command_bounds(self) -> dict[int, tuple[float, float]]:
+        """Return the lowest and highest command of each commanded drive, by its index."""
+        return {each.drive: (each.lower, each.upper) for each in self._active}
+
     def take_warnings(self) -> list[str]:
-        """Return what users should hear about their commands since the last call."""
+        """Return the warnings about commands since the last call."""
         warnings, self._warnings = self._warnings, {}
         return list(warnings.values())
 
-    def _switch_limits(self, start: Sequence[str], stop: Sequence[str]) -> None:
-        """Begin and end without limits."""
+    def _find_active(self) -> dict[int, DriveMode]:
+        """Find the claimed interfaces that count; return the mode of each drive."""
+        modes = self._modes()
+        self._active = tuple(
+            interface
+            for interface in self._interfaces
+            if interface.name in self._claimed and interface.mode is modes[interface.drive]
+        )
+        self._limiting = tuple(limit for limit in self._limits if limit.name in self._claimed)
+        return modes
+
+    def _lift_limits(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Lift the limits of interfaces that are started or stopped."""
         for limit in self._limits:
             if limit.name in start or limit.name in stop:
                 self._commands[limit.index] = math.nan
                 self._servo.limit_effort(limit.drive, math.nan)
-        self._limiting = tuple(limit for limit in self._limits if limit.name in self._claimed)
 
     def _clamped(self, interface: _CommandInterface, value: float) -> float:
         if interface.name not in self._beyond:
@@ -233,7 +288,9 @@ class SimulatedHardware:
         return 0.0
 
     def _modes(self) -> dict[int, DriveMode]:
-        """Return how each drive of this component is to be driven, as claimed now."""
+        """Return the mode of each drive of this component according to the claimed interfaces."""
+        if self._is_stopped:
+            return dict.fromkeys((i.drive for i in self._interfaces), DriveMode.HOLD)
         modes = dict.fromkeys((i.drive for i in self._interfaces), self._simulation.idle_mode)
         for mode in reversed(MODES.values()):
             for interface in self._interfaces:
@@ -242,7 +299,7 @@ class SimulatedHardware:
         return modes
 
     def _places(self, kind: str) -> tuple[slice | NDArray[np.intp], slice | NDArray[np.intp]]:
-        """Return where states of a kind are in the states, and where in MuJoCo's array."""
+        """Return the indices of one kind of state in the state array and in MuJoCo's array."""
         where = [index for index, (state, _) in enumerate(self._states) if state == kind]
         there = [
             joint.qpos_address if kind == "position" else joint.dof_address
@@ -282,7 +339,7 @@ class SimulatedHardware:
         left_out = [name for name in dict.fromkeys(asked) if name not in offered]
         if left_out:
             logger.warning(
-                "hardware '%s': not simulated and left out: %s",
+                "hardware '%s': these interfaces are not simulated and are left out: %s",
                 self.info.name,
                 ", ".join(left_out),
             )

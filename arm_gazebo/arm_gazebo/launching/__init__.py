@@ -1,1 +1,1 @@
-"""What launch files need to know before a simulation starts."""
+"""What launch files read and prepare before a simulation starts."""

@@ -1,7 +1,7 @@
-"""Files of controllers: what they say, and which controllers can run side by side from the start.
+"""Read controller parameter files, and find the controllers that can start together.
 
-`${name}` in a file stands for the argument of that name of the robot's xacro, so one file serves a
-robot under every prefix; so does `$(var name)`, which drivers' files have for ROS 2's launch.
+`${name}` in a file stands for the xacro argument of that name, so one file serves a robot under any
+prefix. `$(var name)`, which drivers' files use for ROS 2's launch, means the same.
 """
 
 import re
@@ -10,28 +10,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arm_description.names import listing
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.settings_file import parse_yaml, read_text
+from arm_node.names import listing
 
 MANAGER = "controller_manager"
 PARAMETERS = "ros__parameters"
 TITLE = "the controllers' file"
 Controllers = Path | Mapping[str, Any]
-"""A file of controllers, or the content of one by node: no more keys above `ros__parameters`."""
+"""A controller parameter file, or its content by node name, flattened down to `ros__parameters`."""
 ANYWHERE = "/**"
-"""What a file has for the namespaces of a process, whichever they are."""
+"""The wildcard for every namespace of a process."""
 
 _ARGUMENT = re.compile(r"\$\{\s*(\w+)\s*\}|\$\(\s*var\s+(\w+)\s*\)")
 
 
 @dataclass(frozen=True, slots=True)
 class Startable:
-    """The controllers to start, in the file's order, and why others wait.
+    """The controllers to start, in the file's order.
 
     Attributes:
-        names: those whose joints nobody before them holds.
-        remarks: one sentence for each that waits.
+        names: the controllers whose joints no earlier controller claims.
+        remarks: one sentence for each controller that does not start.
     """
 
     names: tuple[str, ...]
@@ -39,49 +39,49 @@ class Startable:
 
 
 def fill_in(path: Path, arguments: Mapping[str, str]) -> Controllers:
-    """Return a file as it is, or its content with the robot's arguments in their places.
+    """Substitute the robot's xacro arguments in a file; return the path if it has none to fill.
 
     Args:
-        path: a parameter file in ros2_control's form.
+        path: a parameter file in ros2_control's format.
         arguments: values by name.
 
     Raises:
-        SettingsError: the file cannot be read, or has a place for an argument that is not there.
+        SimSettingsError: the file cannot be read, or names an unknown argument.
     """
     text = read_text(path, TITLE)
-    places = list(_ARGUMENT.finditer(text))
-    if not places:
+    placeholders = list(_ARGUMENT.finditer(text))
+    if not placeholders:
         return path
-    unknown = next((place for place in places if _name(place) not in arguments), None)
+    unknown = next((match for match in placeholders if _name(match) not in arguments), None)
     if unknown:
-        raise SettingsError(
-            f"{TITLE} {path} has {unknown[0]}, which is no argument of the "
+        raise SimSettingsError(
+            f"{TITLE} {path} has {unknown[0]}, which is not an argument of the "
             f"robot; it has {listing(sorted(arguments))}"
         )
-    return _content(_ARGUMENT.sub(lambda place: arguments[_name(place)], text), path)
+    return _content(_ARGUMENT.sub(lambda match: arguments[_name(match)], text), path)
 
 
 def startable_controllers(controllers: Controllers, known_types: frozenset[str]) -> Startable:
     """Return the controllers of a file that can be active together.
 
     Args:
-        controllers: a parameter file in ros2_control's form, or the content of one.
-        known_types: types that can be loaded.
+        controllers: a parameter file in ros2_control's format, or its content.
+        known_types: controller types that can be loaded.
 
     Raises:
-        SettingsError: the file cannot be read, or names no controllers.
+        SimSettingsError: the file cannot be read, or names no controllers.
     """
-    content = _read(controllers)
+    content = read_controllers(controllers)
     names: list[str] = []
     remarks: list[str] = []
     holders: dict[str, str] = {}
-    for name, type_name in dict(_controllers(content)).items():
+    for name, type_name in _controllers(content).items():
         joints = _joints(content, name)
         held = next((joint for joint in joints if joint in holders), None)
         if type_name not in known_types:
-            remarks.append(f"{name} does not start: its type {type_name} is not known here")
+            remarks.append(f"{name} does not start: its type {type_name} is unknown")
         elif held is not None:
-            remarks.append(f"{name} does not start: {holders[held]} holds '{held}'")
+            remarks.append(f"{name} does not start: {holders[held]} claims '{held}'")
         else:
             names.append(name)
             holders.update(dict.fromkeys(joints, name))
@@ -91,17 +91,17 @@ def startable_controllers(controllers: Controllers, known_types: frozenset[str])
 def controllers_below(namespace: str, controllers: Controllers) -> Mapping[str, Any]:
     """Return the content of a controllers' file with its nodes in a namespace.
 
-    Nodes that the file puts into a namespace itself stay there; "/**" is every one below this one,
-    for the same process has the other robots' nodes.
+    Nodes that the file itself puts into a namespace stay there. "/**" is limited to this namespace,
+    because the process also has the other robots' nodes.
 
     Args:
-        namespace: without slashes around it.
+        namespace: without leading or trailing slash.
         controllers: the file, or its content.
 
     Raises:
-        SettingsError: the file cannot be read, or names no controllers.
+        SimSettingsError: the file cannot be read, or names no controllers.
     """
-    return {_below(namespace, node): entry for node, entry in _read(controllers).items()}
+    return {_below(namespace, node): entry for node, entry in read_controllers(controllers).items()}
 
 
 def _below(namespace: str, node: str) -> str:
@@ -110,29 +110,46 @@ def _below(namespace: str, node: str) -> str:
     return node if node.startswith("/") else f"/{namespace}/{node}"
 
 
-def _read(controllers: Controllers) -> Mapping[str, Any]:
+def read_controllers(controllers: Controllers) -> Mapping[str, Any]:
+    """Return the content of a controllers' file by node, flattened down to `ros__parameters`.
+
+    Raises:
+        SimSettingsError: the file cannot be read, or names no controllers.
+    """
     if isinstance(controllers, Path):
         return _content(read_text(controllers, TITLE), controllers)
     return controllers
 
 
 def _content(text: str, path: Path) -> Mapping[str, Any]:
-    content = parse_yaml(text, path, TITLE)
+    return checked_controllers(parse_yaml(text, path, TITLE), f"{TITLE} {path}")
+
+
+def checked_controllers(content: object, source: str) -> Mapping[str, Any]:
+    """Return the parameters by node, flattened down to `ros__parameters`.
+
+    Args:
+        content: the content of a controllers' file.
+        source: what it is from, for the message.
+
+    Raises:
+        SimSettingsError: it names no controllers.
+    """
     by_node: dict[str, dict[str, Any]] = {}
     for node, parameters in _nodes(content) if isinstance(content, Mapping) else ():
         by_node.setdefault(node, {PARAMETERS: {}})[PARAMETERS].update(parameters)
-    if not list(_controllers(by_node)):
-        raise SettingsError(
-            f"{TITLE} {path} names no controllers; it needs "
-            f"{MANAGER}: {PARAMETERS}: NAME: type: TYPE"
+    if not _controllers(by_node):
+        raise SimSettingsError(
+            f"{source} names no controllers; it needs "
+            f"{MANAGER}: {PARAMETERS}: NAME: type: TYPE, or NAME: {PARAMETERS}: type: TYPE"
         )
     return by_node
 
 
 def _nodes(content: Mapping[Any, Any], above: str = "") -> Iterator[tuple[str, Mapping[Any, Any]]]:
-    """Yield nodes and their parameters: keys nest into a node's name, as rcl reads a file.
+    """Yield nodes and their parameters; nested keys form a node's name, as rcl reads a file.
 
-    A node of a namespace has its full name, another one its bare name.
+    A node in a namespace has its full name, any other node its bare name.
     """
     for key, entry in content.items():
         if not isinstance(entry, Mapping):
@@ -143,18 +160,28 @@ def _nodes(content: Mapping[Any, Any], above: str = "") -> Iterator[tuple[str, M
             yield from _nodes(entry, f"{above}/{key}" if above else str(key))
 
 
-def _controllers(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield name and type of the manager's controllers."""
+def _controllers(content: Mapping[str, Any]) -> dict[str, str]:
+    """Return the types of the controllers by name.
+
+    A type is in the manager's parameters, or else in the controller's own, as the spawner accepts
+    it with `-p`. There only a plugin name counts, because other nodes have a `type` as well.
+    """
+    types: dict[str, str] = {}
     for node, entry in content.items():
         for name, value in entry[PARAMETERS].items() if _ends(node, MANAGER) else ():
             if isinstance(value, Mapping) and "type" in value:
-                yield str(name), str(value["type"])
+                types[str(name)] = str(value["type"])
             elif str(name).endswith(".type"):
-                yield str(name).removesuffix(".type"), str(value)
+                types[str(name).removesuffix(".type")] = str(value)
+    for node, entry in content.items():
+        own_type = entry[PARAMETERS].get("type")
+        if isinstance(own_type, str) and "/" in own_type and not _ends(node, MANAGER):
+            types.setdefault(node.rpartition("/")[2], own_type)
+    return types
 
 
 def _joints(content: Mapping[str, Any], controller: str) -> list[str]:
-    """Return the joints that a controller's parameters name; none for one that only reads."""
+    """Return the joints that a controller's parameters name; empty for a broadcaster."""
     for node, entry in content.items():
         if _ends(node, controller):
             parameters = entry[PARAMETERS]
@@ -168,5 +195,5 @@ def _ends(node: str, name: str) -> bool:
     return node.rpartition("/")[2] == name
 
 
-def _name(place: re.Match[str]) -> str:
-    return place[1] or place[2]
+def _name(match: re.Match[str]) -> str:
+    return match[1] or match[2]

@@ -1,7 +1,7 @@
-"""Hardware and controllers for a robot that comes without, so that any URDF can be simulated.
+"""Default hardware and controllers for a robot without any, so that any URDF can be simulated.
 
-Whoever reads the result finds what a user could have written: a `<ros2_control>` block, and the
-content of a parameter file.
+The result is what a user could have written: a `<ros2_control>` block, and the content of a
+parameter file.
 """
 
 import re
@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from arm_description.robot import Robot
+from arm_description.urdf.robot import Robot
 
 if TYPE_CHECKING:
-    from arm_control.hardware_info import HardwareInfo
+    from arm_control.hardware.info import HardwareInfo
 
 BROADCASTER = "joint_state_broadcaster"
 COMMANDER = "position_controller"
@@ -22,7 +22,6 @@ DEFAULT_CONTROLLERS = {
     COMMANDER: "position_controllers/JointGroupPositionController",
 }
 UPDATE_RATE_HZ = 100
-COMMANDABLE = ("revolute", "continuous", "prismatic")
 INTERFACES = ("position", "velocity", "effort")
 PLUGIN = "arm_gazebo/SimulatedHardware"
 
@@ -32,17 +31,17 @@ _END = re.compile(r"</robot\s*>(?!.*</robot\s*>)", re.DOTALL)
 
 @dataclass(frozen=True, slots=True)
 class HardwareJoints:
-    """What the hardware of a robot does with its joints that move.
+    """The moving joints of a robot by their hardware interfaces.
 
     Attributes:
-        shown: those that it tells a state of.
-        positioned: those that it commands by position, each by itself.
-        driven_otherwise: those that it commands, but not by position.
+        observed: joints with state interfaces.
+        position_commanded: joints with a position command interface.
+        otherwise_commanded: joints with command interfaces, but none for position.
     """
 
-    shown: tuple[str, ...] = ()
-    positioned: tuple[str, ...] = ()
-    driven_otherwise: tuple[str, ...] = ()
+    observed: tuple[str, ...] = ()
+    position_commanded: tuple[str, ...] = ()
+    otherwise_commanded: tuple[str, ...] = ()
 
 
 def has_hardware(urdf: str) -> bool:
@@ -51,16 +50,16 @@ def has_hardware(urdf: str) -> bool:
 
 
 def commandable_joints(robot: Robot) -> tuple[str, ...]:
-    """Return the joints that can be commanded each by itself, in the document's order."""
-    return tuple(j.name for j in robot.joints if j.type in COMMANDABLE and j.mimic is None)
+    """Return the joints that can be commanded independently, in document order."""
+    return tuple(j.name for j in robot.joints if j.type.is_scalar and j.mimic is None)
 
 
 def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> HardwareJoints:
-    """Return the joints of a robot by what its hardware does with them.
+    """Return the joints of a robot by their hardware interfaces.
 
-    Many a block gives interfaces to joints that mimic others, or that are fixed, too.
+    Fixed joints, and commands to mimic joints, are left out; some blocks list them anyway.
     """
-    moving = {joint.name for joint in robot.joints if joint.type in COMMANDABLE}
+    moving = {joint.name for joint in robot.joints if joint.type.is_scalar}
     parts = [part for component in hardware for part in component.joints]
     commands = [
         (part.name, command.name)
@@ -68,20 +67,20 @@ def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> Hardw
         for command in part.command_interfaces
         if part.name in moving and part.mimic is None
     ]
-    # Of dicts, because a joint has several interfaces, and may be in several blocks.
+    # Dicts remove duplicates: a joint has several interfaces, and may be in several blocks.
     commanded = dict.fromkeys(name for name, _ in commands)
-    positioned = dict.fromkeys(name for name, by in commands if by == "position")
+    by_position = dict.fromkeys(name for name, interface in commands if interface == "position")
     return HardwareJoints(
         tuple(part.name for part in parts if part.name in moving and part.state_interfaces),
-        tuple(positioned),
-        tuple(name for name in commanded if name not in positioned),
+        tuple(by_position),
+        tuple(name for name in commanded if name not in by_position),
     )
 
 
 def with_hardware(urdf: str, robot: Robot) -> str:
-    """Return the description with a block that commands every joint that can be.
+    """Return the description with a block that commands every joint that can be commanded.
 
-    Mimicking joints only show their states. Lines of the text keep their numbers.
+    Mimic joints have state interfaces only. Line numbers of the text do not change.
     """
     commanded = set(commandable_joints(robot))
     joints = "".join(
@@ -90,7 +89,7 @@ def with_hardware(urdf: str, robot: Robot) -> str:
         + "".join(f'<state_interface name="{i}"/>' for i in INTERFACES)
         + "</joint>"
         for joint in robot.joints
-        if joint.type in COMMANDABLE
+        if joint.type.is_scalar
     )
     block = (
         f'<ros2_control name="simulation" type="system"><hardware><plugin>{PLUGIN}</plugin>'
@@ -100,8 +99,8 @@ def with_hardware(urdf: str, robot: Robot) -> str:
 
 
 def default_controllers(joints: HardwareJoints) -> tuple[str, ...]:
-    """Return which controllers to make up: none that has nothing to show, or to drive."""
-    needed = {BROADCASTER: joints.shown, COMMANDER: joints.positioned}
+    """Return the default controllers that have a joint to broadcast or to command."""
+    needed = {BROADCASTER: joints.observed, COMMANDER: joints.position_commanded}
     return tuple(name for name in DEFAULT_CONTROLLERS if needed[name])
 
 
@@ -113,5 +112,5 @@ def default_parameters(joints: HardwareJoints) -> Mapping[str, Any]:
         "controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}}
     }
     if COMMANDER in names:
-        content[COMMANDER] = {"ros__parameters": {"joints": list(joints.positioned)}}
+        content[COMMANDER] = {"ros__parameters": {"joints": list(joints.position_commanded)}}
     return content

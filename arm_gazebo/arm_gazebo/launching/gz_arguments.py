@@ -1,63 +1,63 @@
-"""Gazebo's own command line, as far as it says something to this simulation."""
+"""Translate the options of Gazebo's command line that apply to this simulation."""
 
+import os
 import shlex
 from pathlib import Path
 
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
 
 RUN = "-r"
 SERVER_ONLY = "-s"
 VERBOSITY = "-v"
 LEVELS = ("fatal", "error", "warn", "info", "info")
-"""What Gazebo's -v 0 to -v 4 let through, in ROS's words; its debug shows rcl's work, not ours."""
-LET_BE = ("--headless-rendering",)
-"""Cameras need no display here anyway."""
+"""ROS log levels for Gazebo's -v 0 to -v 4. ROS's debug level is not used, because it mostly shows
+rcl's own messages."""
+IGNORED = ("--headless-rendering",)
+"""Options without effect, because cameras never need a display here."""
 WORLD_SUFFIXES = (".sdf", ".world")
-KNOWN = f"the words known are {RUN}, {SERVER_ONLY}, {VERBOSITY} 0 to {VERBOSITY} 4 and a world"
+KNOWN = f"it takes {RUN}, {SERVER_ONLY}, {VERBOSITY} 0 to {VERBOSITY} 4 and a world"
 
 
 def launch_arguments(gz_args: str) -> dict[str, str]:
-    """Return the launch arguments that stand for Gazebo's words.
+    """Return the launch arguments that correspond to Gazebo's options.
 
-    `-r -v 4 objects.sdf` is world:=objects log_level:=info. A world is meant by its name, which
-    may end as Gazebo's files do, or by its path.
+    `-r -v 4 objects.sdf` is world:=objects log_level:=info. A world is given by its path or by its
+    name, which may have the suffix of a Gazebo file. Words without `-r` start paused, as in Gazebo;
+    no words at all start running.
 
     Raises:
-        SettingsError: a word that means nothing here; the message names those that do.
+        SimSettingsError: an option is unknown; the message names the known ones.
     """
     try:
         words = shlex.split(gz_args)
     except ValueError as error:
-        raise SettingsError(f"gz_args {gz_args!r} has {str(error).lower()}") from error
-    meant: dict[str, str] = {}
+        raise SimSettingsError(f"gz_args {gz_args!r} has {str(error).lower()}") from error
+    arguments: dict[str, str] = {}
     rest = iter(words)
     for word in rest:
         if word.startswith(VERBOSITY):
-            meant["log_level"] = _level(word.removeprefix(VERBOSITY) or next(rest, ""))
+            arguments["log_level"] = _level(word.removeprefix(VERBOSITY) or next(rest, ""))
         elif word == SERVER_ONLY:
-            meant["headless"] = "true"
+            arguments["headless"] = "true"
         elif word.startswith("-"):
-            if word not in (RUN, *LET_BE):
-                raise SettingsError(f"gz_args has {word!r}; {KNOWN}")
-        elif "world" in meant:
-            raise SettingsError(f"gz_args names two worlds, {meant['world']!r} and {word!r}")
+            if word not in (RUN, *IGNORED):
+                raise SimSettingsError(f"gz_args has {word!r}; {KNOWN}")
+        elif "world" in arguments:
+            raise SimSettingsError(f"gz_args names two worlds, {arguments['world']!r} and {word!r}")
         else:
-            meant["world"] = _world(word)
+            arguments["world"] = _world(word)
     if words and RUN not in words:
-        raise SettingsError(
-            f"gz_args {gz_args!r} lacks {RUN}: Gazebo would start paused, and this simulation "
-            f"always runs from its start; add {RUN}"
-        )
-    return meant
+        arguments["paused"] = "true"
+    return arguments
 
 
 def _level(number: str) -> str:
     try:
         return LEVELS[("0", "1", "2", "3", "4").index(number)]
     except ValueError:
-        raise SettingsError(f"gz_args has {VERBOSITY} {number!r}; it takes 0 to 4") from None
+        raise SimSettingsError(f"gz_args has {VERBOSITY} {number!r}; it takes 0 to 4") from None
 
 
 def _world(word: str) -> str:
     path = Path(word)
-    return path.stem if path.suffix in WORLD_SUFFIXES and not path.is_file() else word
+    return path.stem if path.suffix in WORLD_SUFFIXES and not os.path.isfile(path) else word

@@ -1,15 +1,21 @@
-"""What a launch file needs to simulate a robot: its description, its controllers, its folders."""
+"""Prepare a robot for simulation: its description, its controllers and its folders."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from arm_description.resources import folders_of, resolve_uri
-from arm_description.xacro_arguments import arguments_of_text
-from arm_description.xacro_expansion import expand_xacro_file
-from arm_description.xml_document import parse_xml
-from arm_gazebo.launching.controllers_file import Controllers, fill_in, startable_controllers
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.xml_document import parse_xml
+from arm_description.xacro.expansion import XacroExpansion, arguments_of_text, expand_xacro_file
+from arm_gazebo.errors import SimSettingsError
+from arm_gazebo.launching.controllers_file import (
+    Controllers,
+    checked_controllers,
+    fill_in,
+    startable_controllers,
+)
 from arm_gazebo.launching.default_control import (
     COMMANDER,
     HardwareJoints,
@@ -22,7 +28,7 @@ from arm_gazebo.launching.default_control import (
 )
 
 SPAWN_AUTO = "auto"
-"""Start every controller whose joints are free."""
+"""Start every controller whose joints are not claimed yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +37,11 @@ class RobotSetup:
 
     Attributes:
         description: URDF text with a <ros2_control> block.
-        controllers: a parameter file, or the content of one.
+        controllers: a parameter file, or its content.
         spawn: controllers to start with the simulation.
-        spawn_required: whether the user named them, so that one that cannot start is an error.
-        package_path: folders searched for the description's files.
-        remarks: what was made up, one sentence each.
+        spawn_required: whether the user named them, so that a failure to start one is an error.
+        package_path: folders that the user named for the description's files.
+        remarks: one sentence for each default that was added.
     """
 
     description: str
@@ -46,7 +52,7 @@ class RobotSetup:
     remarks: tuple[str, ...]
 
     def parameters(self) -> dict[str, str | bool]:
-        """Return the parameters of the simulation's node that are about the robot."""
+        """Return the simulation node's parameters for the robot."""
         return {
             "robot_description": self.description,
             "spawn": ",".join(self.spawn),
@@ -58,103 +64,119 @@ class RobotSetup:
 def set_up_robot(
     model: str,
     model_args: str = "",
-    controllers: str = "",
+    controllers: str | Mapping[str, Any] = "",
     spawn: str = SPAWN_AUTO,
     package_path: str = "",
 ) -> RobotSetup:
-    """Read a robot and complete what it lacks.
+    """Read a robot and add defaults for what it lacks.
 
     Args:
-        model: URDF or xacro file, also as a package:// URI.
+        model: URDF or xacro file, also as a package:// URI; or the text of a URDF.
         model_args: xacro arguments, "a:=1 b:=2".
         controllers: parameter file, also as a package:// URI, in which ${name} stands for an
-            argument of the model; "" makes one up.
-        spawn: names with commas; "auto" for every controller whose joints are free and that can
-            start on this robot.
-        package_path: folders with colons.
+            argument of the model, or its content; "" for the default controllers.
+        spawn: controllers, separated by commas; "auto" for every controller that can start on
+            this robot and whose joints are not claimed yet.
+        package_path: folders, separated by colons.
 
     Raises:
-        SettingsError: arguments that make no sense; DescriptionError: no such model, or it is no
-            robot.
+        SimSettingsError: an argument is invalid.
+        DescriptionError: the model does not exist, or is not a robot.
     """
     given = folders(package_path)
-    file = path_of(model, given)
-    expansion = expand_xacro_file(file, arguments_of_text(model_args), given)
+    expansion = _expanded(model, arguments_of_text(model_args), given)
     description = expansion.text
     remarks: list[str] = []
     joints = HardwareJoints()
     if not has_hardware(description) or not controllers:
-        # Only here: a robot that comes with everything starts without being parsed twice.
-        description, joints = _completed(description, file, remarks)
-    if controllers:
-        content = fill_in(path_of(controllers, (*given, *folders_of(file))), expansion.arguments)
+        # Only in this case, so that a complete robot is not parsed twice.
+        description, joints = _completed(expansion, remarks)
+    if isinstance(controllers, Mapping):
+        content = checked_controllers(controllers, "the controllers' parameters")
+    elif controllers:
+        content = fill_in(path_of(controllers, expansion.finder), expansion.arguments)
     else:
         content = default_parameters(joints)
-        remarks.append(f"no controllers are given: {_made_up(joints)}")
+        remarks.append(f"no controllers are given: {_describe_defaults(joints)}")
         remarks += (
-            f"the description names some for Gazebo's plugin; to have them: controllers:={file}"
-            for file in _files_for_gazebo(description)
+            f"the description names a file for Gazebo's plugin; to use it: controllers:={file}"
+            for file in files_for_gazebo(description)
         )
     return RobotSetup(
         description,
         content,
         _spawned(spawn, content if controllers else None, joints, remarks),
         spawn.strip() != SPAWN_AUTO,
-        (*given, *folders_of(file)),
+        given,
         tuple(remarks),
     )
 
 
-def path_of(file: str, package_path: Sequence[Path] = ()) -> Path:
-    """Return the path of a file that is named by a path or a URI.
+def _expanded(
+    model: str, arguments: Mapping[str, str], package_path: tuple[Path, ...]
+) -> XacroExpansion:
+    """Return the URDF of a file or of a text."""
+    if not model.lstrip().startswith("<"):
+        file = path_of(model, ResourceFinder(None, package_path))
+        return expand_xacro_file(file, arguments, package_path)
+    if "xmlns:xacro" in model:
+        raise SimSettingsError("a xacro model is given by its file, which may include others")
+    return XacroExpansion(model, arguments, ResourceFinder(None, package_path), "the description")
+
+
+def path_of(file: str, finder: ResourceFinder) -> Path:
+    """Return the path of a file that is given as a path or a URI.
 
     Args:
-        file: what the user gave.
-        package_path: folders in which packages are looked for, too.
+        file: the path or URI.
+        finder: finds packages.
 
     Raises:
-        ResourceNotFoundError: there is nothing under the URI.
+        ResourceNotFoundError: the URI does not exist.
     """
-    return resolve_uri(file, package_path) if "://" in file else Path(file).expanduser()
+    return finder.find(file) if "://" in file else Path(file).expanduser()
 
 
 def folders(path: str) -> tuple[Path, ...]:
-    """Return the folders of a text that parts them by colons."""
+    """Split a text at the colons into folders."""
     return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
 
 
-def _completed(description: str, file: Path, remarks: list[str]) -> tuple[str, HardwareJoints]:
-    """Return the description with hardware, and what that does with the joints."""
-    from arm_control.hardware_info import parse_hardware_info
-    from arm_description.urdf import parse_urdf
+def _completed(expansion: XacroExpansion, remarks: list[str]) -> tuple[str, HardwareJoints]:
+    """Return the description with hardware, and the joints by their interfaces."""
+    from arm_control.hardware.info import parse_hardware_info
+    from arm_description.urdf.parser import ignore_remark, parse_urdf
 
-    robot = parse_urdf(description, str(file))
+    description = expansion.text
+    robot = parse_urdf(description, expansion.source, ignore_remark)
     if not has_hardware(description):
         joints = commandable_joints(robot)
         remarks.append(
-            f"robot '{robot.name}' has no <ros2_control> block: one is made up that commands "
-            f"{', '.join(joints) or 'nothing, for no joint can be commanded'}"
+            f"robot '{robot.name}' has no <ros2_control> block: a default one commands "
+            f"{', '.join(joints) or 'nothing, because no joint can be commanded'}"
         )
         description = with_hardware(description, robot)
     return description, hardware_joints(robot, parse_hardware_info(description))
 
 
-def _made_up(joints: HardwareJoints) -> str:
+def _describe_defaults(joints: HardwareJoints) -> str:
     names = default_controllers(joints)
-    clauses = [f"{' and '.join(names) or 'none'} {'are' if len(names) > 1 else 'is'} made up"]
-    if joints.positioned:
-        clauses.append(f"{COMMANDER} drives {', '.join(joints.positioned)}")
-    if joints.driven_otherwise:
+    clauses = [
+        f"the default is {' and '.join(names)}" if names else "there is no default for this robot"
+    ]
+    if joints.position_commanded:
+        clauses.append(f"{COMMANDER} drives {', '.join(joints.position_commanded)}")
+    if joints.otherwise_commanded:
         clauses.append(
-            f"nothing drives {', '.join(joints.driven_otherwise)}, which the hardware does not "
+            f"nothing drives {', '.join(joints.otherwise_commanded)}, which the hardware does not "
             "command by position; to move them, give a file with a controller for them: "
             "controllers:=FILE"
         )
     return "; ".join(clauses)
 
 
-def _files_for_gazebo(description: str) -> list[str]:
-    """Return the parameter files that a description hands to gz_ros2_control."""
+def files_for_gazebo(description: str) -> list[str]:
+    """Return the parameter files that a description names for gz_ros2_control."""
     named = parse_xml(description).iterfind("gazebo/plugin/parameters")
     files = (str(element.text or "").strip() for element in named)
     return [file for file in files if os.path.isfile(file)]
@@ -170,7 +192,7 @@ def _spawned(
         return tuple(name for name in spawn.replace(",", " ").split())
     if controllers is None:
         return default_controllers(joints)
-    from arm_control.registry import controller_types
+    from arm_control.manager.registry import controller_types
 
     startable = startable_controllers(controllers, frozenset(controller_types()))
     remarks += startable.remarks

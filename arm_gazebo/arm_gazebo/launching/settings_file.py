@@ -1,44 +1,43 @@
-"""Reads the files that a launch argument names."""
+"""Read the files that launch arguments name."""
 
 from pathlib import Path
 from typing import Any
 
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
+from arm_node import user_file
+from arm_node.limited_yaml import YamlError, load_yaml
 
 
 def read_text(path: Path, title: str) -> str:
-    """Return what a file holds.
+    """Return the content of a file.
 
     Args:
-        path: in UTF-8.
-        title: what to call the file, such as "the robots' file".
+        path: a file in UTF-8.
+        title: name of the file in messages, such as "the robots' file".
 
     Raises:
-        SettingsError: it cannot be read.
+        SimSettingsError: the file cannot be read.
     """
     try:
-        return path.read_text(encoding="utf-8")
+        return user_file.read_text(path)
     except OSError as error:
-        raise SettingsError(f"cannot read {title} {path}: {error.strerror}") from error
+        raise SimSettingsError(f"cannot read {title} {path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise SettingsError(f"{title} {path} is not UTF-8: {error}") from error
+        raise SimSettingsError(f"{title} {path} is not UTF-8: {error}") from error
 
 
 def parse_yaml(text: str, path: Path, title: str) -> Any:
-    """Return what YAML says.
+    """Return the parsed YAML.
 
     Args:
-        text: what the file holds.
+        text: content of the file.
         path: the file, for the message.
         title: as for `read_text`.
 
     Raises:
-        SettingsError: it is not YAML.
+        SimSettingsError: the text is not YAML, or exceeds the limits of `load_yaml`.
     """
-    import yaml  # Only here: most launches read no file.
-
     try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        reason = " ".join(str(error).split())
-        raise SettingsError(f"{title} {path} is not YAML: {reason}") from error
+        return load_yaml(text)
+    except YamlError as error:
+        raise SimSettingsError(f"{title} {path} is not YAML: {error}") from error

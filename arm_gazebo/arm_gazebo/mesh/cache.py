@@ -1,4 +1,4 @@
-"""Meshes that were read before, kept in the user's cache folder by the content of their files."""
+"""A cache of parsed meshes in the user's cache folder, keyed by the content of their files."""
 
 import contextlib
 import hashlib
@@ -14,38 +14,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
-from arm_description.mesh_data import MeshData
+from arm_description.mesh.data import MeshData
 from arm_gazebo.mesh.part import MeshPart
 
 logger = logging.getLogger(__name__)
 
 VERSION = "1"
-"""Part of every key: raised when reading the same file gives something else than before."""
-LARGEST_BYTES = 1_000_000_000
-"""Of all entries; the ones longest unused go first."""
+"""Part of every key. Raise it when the same file is parsed to a different result."""
+MAX_CACHE_BYTES = 1_000_000_000
+"""Limit on the size of all entries; the least recently used are deleted first."""
 
-# numpy tells a broken file by whatever it stumbles over first.
-_UNUSABLE = (
+# numpy raises any of these for a broken file.
+_READ_ERRORS = (
     *(OSError, ValueError, TypeError, KeyError, EOFError, MeshFileError),
     *(zipfile.BadZipFile, zlib.error, RuntimeError),
 )
 
 
 def cache_folder(environ: Mapping[str, str] = os.environ) -> Path:
-    """Return where meshes are kept: below XDG_CACHE_HOME, by default ~/.cache."""
+    """Return the folder of the cache: below XDG_CACHE_HOME, by default ~/.cache."""
     base = environ.get("XDG_CACHE_HOME", "")
-    # The XDG specification has relative paths ignored.
+    # The XDG specification says to ignore relative paths.
     root = Path(base) if os.path.isabs(base) else Path.home() / ".cache"
     return root / "arm-suite" / "meshes"
 
 
 class MeshCache:
-    """The parts of mesh files by a key of their content.
+    """The parts of mesh files, by a key of their content.
 
-    What cannot be read or written counts as not there: a cache never keeps a robot from starting.
+    An entry that cannot be read or written is ignored: the cache never keeps a robot from starting.
 
     Args:
-        folder: of the entries; made when the first one is written.
+        folder: folder of the entries; created when the first one is written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -53,7 +53,7 @@ class MeshCache:
 
     @staticmethod
     def key(suffix: str, contents: Iterable[bytes]) -> str:
-        """Return the key of a mesh: its format, and the bytes of its files."""
+        """Return the key of a mesh, a digest of its format and the bytes of its files."""
         digest = hashlib.blake2b(f"{VERSION} {suffix}".encode(), digest_size=24)
         for content in contents:
             digest.update(len(content).to_bytes(8, "little"))
@@ -61,24 +61,24 @@ class MeshCache:
         return digest.hexdigest()
 
     def load(self, key: str) -> tuple[MeshPart, ...] | None:
-        """Return the parts kept under a key; None where there are none that can be used."""
+        """Return the parts stored under a key; None if there is no usable entry."""
         path = self._path(key)
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 parts = tuple(_part(arrays, index) for index in range(int(arrays["count"])))
             for part in parts:
                 part.drawn.check()
-            # The time of the last use decides what goes first.
+            # The time of the last use decides which entry is deleted first.
             os.utime(path)
         except FileNotFoundError:
             return None
-        except _UNUSABLE as error:
+        except _READ_ERRORS as error:
             logger.debug("the cached mesh %s is not usable: %s", path, error)
             return None
         return parts or None
 
     def store(self, key: str, parts: Sequence[MeshPart]) -> None:
-        """Keep the parts under a key; a reader sees all of an entry or nothing."""
+        """Store the parts under a key atomically: a reader sees the whole entry or nothing."""
         arrays: dict[str, NDArray[np.generic]] = {"count": np.array(len(parts))}
         for index, part in enumerate(parts):
             arrays[f"vertices{index}"] = part.drawn.vertices
@@ -92,7 +92,7 @@ class MeshCache:
             self._write(key, arrays)
             self._make_room()
         except OSError as error:
-            logger.debug("cannot keep a mesh in %s: %s", self._folder, error)
+            logger.debug("cannot cache a mesh in %s: %s", self._folder, error)
 
     def _write(self, key: str, arrays: Mapping[str, NDArray[np.generic]]) -> None:
         handle, name = tempfile.mkstemp(dir=self._folder, suffix=".new")
@@ -100,7 +100,7 @@ class MeshCache:
             with os.fdopen(handle, "wb") as file:
                 np.savez(file, allow_pickle=False, **arrays)
             os.replace(name, self._path(key))
-        except BaseException:
+        except BaseException:  # No exception may leave an incomplete file behind.
             os.unlink(name)
             raise
 
@@ -112,7 +112,7 @@ class MeshCache:
                 entries.append((status.st_mtime, status.st_size, file))
         total = sum(size for _, size, _ in entries)
         for _, size, file in sorted(entries):
-            if total <= LARGEST_BYTES:
+            if total <= MAX_CACHE_BYTES:
                 break
             file.unlink(missing_ok=True)
             total -= size

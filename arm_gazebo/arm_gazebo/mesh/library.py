@@ -1,7 +1,7 @@
-"""The meshes of one model: each file read once, each part an asset of the MjSpec."""
+"""The meshes of one model: each file is read once, and each part is an asset of the MjSpec."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -11,24 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError, ResourceNotFoundError
-from arm_description.mesh_data import Color, Scale
-from arm_description.mesh_file import check_mesh_file, read_mesh_file
-from arm_description.resources import resolve_uri
-from arm_description.robot import Mesh
+from arm_description.mesh.data import LARGEST_BYTES, Color, Scale
+from arm_description.mesh.file import check_mesh_file, read_mesh_file
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.robot import Mesh
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.part import MeshPart
+from arm_node.user_file import read_bytes
 
 T = TypeVar("T")
 
-SCATTERED_SUFFIXES = (".gltf",)
-"""Formats whose data lie in other files, so that one file's content does not tell all."""
+MULTI_FILE_SUFFIXES = (".gltf",)
+"""Formats that refer to data in other files, so that the content of one file is not the key."""
 MATERIALS = re.compile(rb"^\s*mtllib\s+(\S.*?)\s*$", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
 class MeshAsset:
-    """A mesh of the model: its name there and the colour that its file gives."""
+    """A mesh of the model: its name in the model and the colour from its file."""
 
     name: str
     rgba: Color | None
@@ -38,25 +39,26 @@ class MeshLibrary:
     """Reads mesh files and adds them to a specification, each file and scale once.
 
     Args:
-        spec: gets the meshes.
-        package_path: folders searched after the installed packages.
-        cache: what was read by earlier runs; None to read everything anew.
+        spec: the specification that the meshes are added to.
+        resources: finds the files.
+        cache: the meshes that earlier runs read; None to read every file.
     """
 
     def __init__(
         self,
         spec: mujoco.MjSpec,
-        package_path: Sequence[Path] = (),
+        resources: ResourceFinder,
         cache: MeshCache | None = None,
     ) -> None:
         self._spec = spec
-        self._package_path = package_path
+        self._resources = resources
         self._cache = cache
         self._parts: dict[Path, tuple[MeshPart, ...]] = {}
+        self._unusable: dict[Path, str] = {}
         self._assets: dict[tuple[Path, Scale, Callable[..., str]], tuple[MeshAsset, ...]] = {}
 
     def parts(self, mesh: Mesh) -> tuple[MeshPart, ...]:
-        """Return the parts of a mesh in m, in its own frame, scaled.
+        """Return the scaled parts of a mesh in its own frame, in m.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.
@@ -64,42 +66,65 @@ class MeshLibrary:
         path = self._resolve(mesh)
         parts = self._read(path)
         try:
-            return _usable(parts, lambda part: part.scaled(mesh.scale))
+            return _drawable_parts(parts, lambda part: part.scaled(mesh.scale))
         except MeshError as error:
             raise MeshError(f"cannot use the mesh {path}: {error}") from error
 
-    def assets(self, mesh: Mesh) -> tuple[MeshAsset, ...]:
-        """Return the parts of a mesh to be drawn, added to the specification if they are new.
+    def assets(self, mesh: Mesh, user: str = "") -> tuple[MeshAsset, ...]:
+        """Return the visual parts of a mesh, and add new ones to the specification.
+
+        Args:
+            mesh: the file and its scale.
+            user: the element that uses it, for MuJoCo's message if it does not compile.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.
         """
-        return self._added(mesh, self._add_drawn)
+        return self._added(mesh, self._add_drawn, user)
 
-    def hulls(self, mesh: Mesh) -> tuple[MeshAsset, ...]:
-        """Return the parts of a mesh to be touched, added to the specification if they are new.
+    def hulls(self, mesh: Mesh, user: str = "") -> tuple[MeshAsset, ...]:
+        """Return the collision parts of a mesh, and add new ones to the specification.
+
+        Args:
+            mesh: the file and its scale.
+            user: the element that uses it, for MuJoCo's message if it does not compile.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.
         """
         if all(part.is_small() for part in self._read(self._resolve(mesh))):
-            return self.assets(mesh)
-        return self._added(mesh, self._add_hull)
+            return self.assets(mesh, user)
+        return self._added(mesh, self._add_hull, user)
 
-    def _added(self, mesh: Mesh, add: Callable[[str, MeshPart], str]) -> tuple[MeshAsset, ...]:
+    def thickened(self, mesh: Mesh, part: MeshPart, user: str = "") -> MeshAsset:
+        """Return a flat part of a mesh made thick enough to collide; a new asset at each call."""
+        path = self._resolve(mesh)
+        name = self._add_hull(path.stem, part.thickened())
+        self._describe(name, path, user)
+        return MeshAsset(name, part.drawn.rgba)
+
+    def _added(
+        self, mesh: Mesh, add: Callable[[str, MeshPart], str], user: str
+    ) -> tuple[MeshAsset, ...]:
         path = self._resolve(mesh)
         key = (path, mesh.scale, add)
         if key not in self._assets:
             self._assets[key] = tuple(
                 MeshAsset(add(path.stem, part), part.drawn.rgba) for part in self.parts(mesh)
             )
+            for asset in self._assets[key]:
+                self._describe(asset.name, path, user)
         return self._assets[key]
+
+    def _describe(self, name: str, path: Path, user: str) -> None:
+        # MuJoCo appends this to its message if it cannot compile the mesh.
+        self._spec.mesh(name).info = f"file {path}" + (f", {user}" if user else "")
 
     def _add_drawn(self, stem: str, part: MeshPart) -> str:
         return self._add(stem, part.drawn.vertices, part.drawn.faces.ravel())
 
     def _add_hull(self, stem: str, part: MeshPart) -> str:
-        # Without triangles of its own a mesh is drawn as its hull.
+        # MuJoCo draws a mesh without triangles as its hull.
         return self._add(f"{stem}_hull", part.hull, np.empty(0, np.int32))
 
     def _add(self, stem: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
@@ -108,7 +133,7 @@ class MeshLibrary:
             name=name,
             uservert=vertices.ravel(),
             userface=faces,
-            # Links bring their own inertia; this one takes open and flat meshes too.
+            # Links have their own inertia; this type also accepts open and flat meshes.
             inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
         )
         return name
@@ -122,49 +147,57 @@ class MeshLibrary:
 
     def _resolve(self, mesh: Mesh) -> Path:
         try:
-            return resolve_uri(mesh.uri, self._package_path).resolve()
+            return self._resources.find(mesh.uri).resolve()
         except ResourceNotFoundError as error:
             raise MeshError(str(error)) from error
 
     def _read(self, path: Path) -> tuple[MeshPart, ...]:
-        if path not in self._parts:
+        if path not in self._parts and path not in self._unusable:
             try:
-                self._parts[path] = self._read_or_remember(path)
+                self._parts[path] = self._read_through_cache(path)
             except (MeshError, MeshFileError, OSError) as error:
-                raise MeshError(f"cannot use the mesh {path}: {error}") from error
+                self._unusable[path] = f"cannot use the mesh {path}: {error}"
+        if path in self._unusable:
+            raise MeshError(self._unusable[path])
         return self._parts[path]
 
-    def _read_or_remember(self, path: Path) -> tuple[MeshPart, ...]:
+    def _read_through_cache(self, path: Path) -> tuple[MeshPart, ...]:
         check_mesh_file(path)
-        if self._cache is None or path.suffix.lower() in SCATTERED_SUFFIXES:
-            return _usable(read_mesh_file(path), MeshPart.of)
+        if self._cache is None or path.suffix.lower() in MULTI_FILE_SUFFIXES:
+            return _drawable_parts(read_mesh_file(path), MeshPart.of)
         key = self._cache.key(path.suffix.lower(), _contents(path))
         parts = self._cache.load(key)
         if parts is None:
-            parts = _usable(read_mesh_file(path), MeshPart.of)
+            parts = _drawable_parts(read_mesh_file(path), MeshPart.of)
             self._cache.store(key, parts)
         return parts
 
 
 def _contents(path: Path) -> Iterator[bytes]:
-    """Yield the bytes of a mesh file, and of the materials' files that an .obj names."""
-    content = path.read_bytes()
+    """Yield the bytes of a mesh file, and of the material files that an .obj names."""
+    content = read_bytes(path, LARGEST_BYTES)
     yield content
     for name in MATERIALS.findall(content) if path.suffix.lower() == ".obj" else ():
-        materials = path.parent / name.decode("utf-8", "replace")
-        # A file that is not there is a content, too: it may come later.
-        yield materials.read_bytes() if materials.is_file() else b""
+        try:
+            yield read_bytes(path.parent / name.decode("utf-8", "replace"), LARGEST_BYTES)
+        except (OSError, ValueError):
+            # A missing file is part of the key as well, because it may appear later.
+            yield b""
 
 
-def _usable(parts: Iterable[T], made: Callable[[T], MeshPart]) -> tuple[MeshPart, ...]:
-    """Return what is made of the parts that can be drawn; exporters leave empty ones behind."""
-    usable = []
-    problem = MeshError("nothing in it")
+def _drawable_parts(parts: Iterable[T], convert: Callable[[T], MeshPart]) -> tuple[MeshPart, ...]:
+    """Convert the parts and drop those that fail, because exporters leave empty parts behind.
+
+    Raises:
+        MeshError: no part can be drawn; the message is that of the last one.
+    """
+    drawable = []
+    problem = MeshError("it is empty")
     for part in parts:
         try:
-            usable.append(made(part))
+            drawable.append(convert(part))
         except MeshError as error:
             problem = error
-    if not usable:
+    if not drawable:
         raise problem
-    return tuple(usable)
+    return tuple(drawable)

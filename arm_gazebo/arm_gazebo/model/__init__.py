@@ -1,1 +1,1 @@
-"""The MuJoCo model: robots put into a world."""
+"""Build the MuJoCo model of robots in a world."""

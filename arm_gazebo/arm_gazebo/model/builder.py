@@ -1,7 +1,7 @@
-"""Robot descriptions, their hardware and their cameras, put into a world: the MuJoCo model.
+"""Build the MuJoCo model from a world and robot descriptions, their hardware and their cameras.
 
-MuJoCo's own URDF importer drops visuals, cameras and limits and fuses links; this one keeps
-them, and reports whatever it cannot keep.
+MuJoCo's own URDF importer drops visuals, cameras and limits and fuses links. This one keeps
+them, and reports what it cannot keep.
 """
 
 from collections.abc import Sequence
@@ -9,20 +9,18 @@ from pathlib import Path
 
 import mujoco
 
-from arm_control.hardware_info import HardwareInfo
-from arm_description.robot import Robot
-from arm_gazebo.build_report import BuildReport
+from arm_control.hardware.info import HardwareInfo
+from arm_description.urdf.robot import Robot
 from arm_gazebo.errors import ModelError
-from arm_gazebo.free_name import free_name
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.element_names import name_elements
 from arm_gazebo.model.world_file import check_world, load_world
-from arm_gazebo.robot.build_options import BuildOptions
-from arm_gazebo.robot.collision_policy import MOST_LAYERS, CollisionLayer
+from arm_gazebo.robot.collision_policy import MAX_LAYERS, CollisionLayer
 from arm_gazebo.robot.gazebo_tags import GazeboTags
-from arm_gazebo.robot.part import DEFAULT_OPTIONS, NO_TAGS, RobotInWorld, RobotPart
+from arm_gazebo.robot.part import DEFAULT_OPTIONS, NO_TAGS, BuildOptions, RobotInWorld, RobotPart
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
+from arm_gazebo.spec.names import free_name, name_elements
+from arm_gazebo.spec.report import BuildReport
 
 
 def build_model(
@@ -42,18 +40,18 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
     """Return the model of robots in a world.
 
     Args:
-        entries: the robots, at least one; names of links and joints are unique among them all,
-            and their options have the same physics step.
-        world: name of a shipped world or path of a MuJoCo XML or SDF file.
+        entries: the robots, at least one. Names of links and joints must be unique among all of
+            them, and their options must have the same physics step.
+        world: name of a shipped world, or path of a MuJoCo XML or SDF file.
 
     Raises:
-        WorldError: the world is missing or unusable.
+        WorldError: the world is missing or invalid.
         ModelError: a robot cannot be simulated as described; MeshError for its meshes.
     """
-    if len(entries) > MOST_LAYERS:
-        raise ModelError(f"{len(entries)} robots are too many for one world: at most {MOST_LAYERS}")
+    if len(entries) > MAX_LAYERS:
+        raise ModelError(f"{len(entries)} robots are too many for one world: at most {MAX_LAYERS}")
     report = BuildReport()
-    spec = load_world(world, report)
+    spec = load_world(world, report, entries[0].options.memory_limit)
     name_elements(spec)
     parts = []
     for index, entry in enumerate(entries):
@@ -62,7 +60,7 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
         try:
             parts.append(RobotPart(spec, entry, layer, report))
         except ValueError as error:
-            # MuJoCo's, where two things of a kind have one name.
+            # MuJoCo raises this if two elements of a kind have the same name.
             raise ModelError(f"robot '{entry.robot.name}' cannot be built: {error}") from error
     names = " and ".join(f"robot '{entry.robot.name}'" for entry in entries)
     _set_physics(spec, entries[0].options.step_s)
@@ -72,9 +70,12 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
         part.place(model, qpos)
     touching = [p for p, entry in zip(parts, entries, strict=True) if entry.self_collides]
     for part in touching:
-        part.leave_out_neighbours(model, qpos)
-    if touching:
+        part.exclude_neighbour_contacts(model, qpos)
+    rolling = [part for part in parts if part.set_up_wheels(model, qpos)]
+    if touching or rolling:
         model = _compile(spec, names, world)
+    for part in parts:
+        part.report_overlaps(model, qpos)
     _open_clip_planes(model, [camera for entry in entries for camera in entry.cameras])
     qpos.setflags(write=False)
     return BuiltModel(
@@ -91,7 +92,7 @@ def build_world(entries: Sequence[RobotInWorld], world: str | Path = "empty") ->
 def _robots(
     model: mujoco.MjModel, entries: Sequence[RobotInWorld], parts: Sequence[RobotPart]
 ) -> dict[str, tuple[str, ...]]:
-    """Return the bodies right below the world of each robot; equal names get a number."""
+    """Return the top-level bodies of each robot by robot name; equal names get a number."""
     robots: dict[str, tuple[str, ...]] = {}
     for entry, part in zip(entries, parts, strict=True):
         roots = dict.fromkeys(model.body_rootid[body] for body in part.bodies(model).values())
@@ -102,11 +103,11 @@ def _robots(
 
 def _set_physics(spec: mujoco.MjSpec, step_s: float) -> None:
     spec.option.timestep = step_s
-    # The servos are stiff; this integrator is the cheapest that takes their damping implicitly.
+    # The servos are stiff, and this is the cheapest integrator that treats damping implicitly.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # Sensors are read from a copy of the state, and only those that somebody listens to.
+    # Sensors are evaluated on a copy of the state, and only while they have subscribers.
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
-    # Every link keeps its frame, its looks and the inertia that it was given.
+    # Every link keeps its frame, its visuals and its given inertia.
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = False
     spec.compiler.balanceinertia = False
@@ -118,11 +119,11 @@ def _compile(spec: mujoco.MjSpec, names: str, world: str | Path) -> mujoco.MjMod
         return spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         check_world(world)
-        raise ModelError(f"{names} does not compile: {error}") from error
+        raise ModelError(f"{names} does not compile: {' '.join(str(error).split())}") from error
 
 
 def _open_clip_planes(model: mujoco.MjModel, cameras: Sequence[CameraSensor]) -> None:
-    """Let the renderer see as near and as far as the cameras; MuJoCo counts in extents."""
+    """Set the clip planes to the range of all cameras; MuJoCo's unit is the model's extent."""
     if cameras:
         model.vis.map.znear = min(camera.near for camera in cameras) / model.stat.extent
         model.vis.map.zfar = max(camera.far for camera in cameras) / model.stat.extent

@@ -7,26 +7,26 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.build_report import BuildReport
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.spec.report import BuildReport
 
 
 @dataclass(frozen=True, slots=True)
 class BuiltModel:
-    """What `build_model` makes.
+    """The result of `build_world`.
 
     Attributes:
         model: the compiled model.
-        spec: what it was compiled from.
+        spec: the specification that it was compiled from; None for a model from a file.
         joints: the robot's joints with one degree of freedom, by name, in the URDF's order.
         bodies: ids of the robot's links, by name.
-        qpos: positions at the start, shape (nq,), read-only.
+        qpos: starting positions, shape (nq,), read-only.
         report: what was changed, repaired or left out.
-        robots: names of the bodies right below the world that each robot consists of, by robot.
+        robots: names of each robot's top-level bodies, by robot name.
     """
 
     model: mujoco.MjModel
-    spec: mujoco.MjSpec
+    spec: mujoco.MjSpec | None
     joints: Mapping[str, RobotJoint]
     bodies: Mapping[str, int]
     qpos: NDArray[np.float64]
@@ -35,5 +35,5 @@ class BuiltModel:
 
     @property
     def robot_roots(self) -> frozenset[str]:
-        """The bodies right below the world that are robots'."""
+        """The top-level bodies of all robots."""
         return frozenset(root for roots in self.robots.values() for root in roots)

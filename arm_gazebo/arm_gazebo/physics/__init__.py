@@ -1,1 +1,1 @@
-"""The simulation that runs: MuJoCo's steps and state."""
+"""The running simulation: MuJoCo's steps and state."""

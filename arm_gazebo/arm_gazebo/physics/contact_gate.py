@@ -1,29 +1,70 @@
-"""Leaves collision detection out while nothing can touch: it is half of the cost of a free arm."""
+"""Skip collision detection while nothing can touch; it is half the cost of a free arm."""
 
 import math
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
-from arm_gazebo.index_slice import as_slice
+from arm_node.index_slice import as_slice
 
 CHECK_EVERY_S = 0.01
 FASTEST_M_S = 5.0
-"""What moves slower than this cannot reach the floor unseen between two checks."""
+"""A body slower than this cannot reach the floor unnoticed between two checks."""
 FALLING_M_S = 4.0
-"""What falls freely faster than this may be faster than that before the next check."""
+"""A body in free fall at this speed may exceed `FASTEST_M_S` before the next check."""
 CONTACT = mujoco.mjtDisableBit.mjDSBL_CONTACT
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
 
-class ContactGate:
-    """Switches MuJoCo's collision detection off while all that moves is well above a bare floor.
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """What is above the floor, and how far it must be to reach nothing before the next check.
 
-    In a world with other things to touch, or with parts that touch each other, it stays on.
+    Attributes:
+        useful: whether moving shapes can touch nothing but a level floor.
+        moving: the shapes that can move and touch something.
+        needed: heights of their origins that are enough, shape (moving,).
+        free: vertical degrees of freedom of the bodies that can fall.
+        ticks: control periods from one check to the next.
+    """
+
+    useful: bool
+    moving: NDArray[np.intp]
+    needed: NDArray[np.float64]
+    free: NDArray[np.intp]
+    ticks: int
+
+
+def floor_clearance(model: mujoco.MjModel, data: mujoco.MjData, period_s: float) -> Clearance:
+    """Return the clearance of a model above its floor.
 
     Args:
-        model: its option flags are switched.
-        data: positions of the geoms are read.
+        model: the model.
+        data: a state with valid geom positions.
+        period_s: control period.
+    """
+    ticks = max(1, round(CHECK_EVERY_S / period_s))
+    moving = _moving_geoms(model)
+    margin = FASTEST_M_S * ticks * period_s
+    return Clearance(
+        useful=not model.opt.disableflags & int(CONTACT) and _only_floor_below(model, data),
+        moving=moving,
+        needed=model.geom_rbound[moving] + _floor_height(model, data) + margin,
+        free=model.jnt_dofadr[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE] + 2,
+        ticks=ticks,
+    )
+
+
+class ContactGate:
+    """Switches MuJoCo's collision detection off while everything is well above a bare floor.
+
+    It stays on in a world with other shapes to touch, or with parts that touch each other.
+
+    Args:
+        model: the model whose option flags are switched.
+        data: a state with valid geom positions.
         period_s: time between two calls of `update`.
     """
 
@@ -32,33 +73,40 @@ class ContactGate:
         self._off = model.opt.disableflags | int(CONTACT)
         self._on = model.opt.disableflags & ~int(CONTACT)
         self._is_off = bool(model.opt.disableflags & int(CONTACT))
-        self._useful = not self._is_off and _only_floor_below(model, data)
-        self._ticks = max(1, round(CHECK_EVERY_S / period_s))
+        clearance = floor_clearance(model, data, period_s)
+        self._useful, self._ticks = clearance.useful, clearance.ticks
         self._until_check = 0
-        moving = _moving_geoms(model)
-        margin = FASTEST_M_S * self._ticks * period_s
         self._heights = data.geom_xpos[:, 2]
-        self._moving = as_slice(moving)
-        self._needed = model.geom_rbound[moving] + _floor_height(model, data) + margin
-        self._clear = np.empty(len(moving), dtype=bool)
-        free = model.jnt_dofadr[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE]
-        self._can_fall = len(free) > 0
-        self._upwards = data.qvel[2:]
-        self._free = as_slice(free)
+        self._moving = as_slice(clearance.moving)
+        self._needed = clearance.needed
+        self._clear = np.empty(len(clearance.moving), dtype=bool)
+        self._can_fall = len(clearance.free) > 0
+        self._velocities = data.qvel
+        self._free = as_slice(clearance.free)
+
+    def save_state(self) -> tuple[int, bool]:
+        """Return when the next check is due, and whether collision detection is off."""
+        return self._until_check, self._is_off
+
+    def load_state(self, state: tuple[int, bool]) -> None:
+        """Go on from a saved state; switch collision detection as it was then."""
+        self._until_check, self._is_off = state
+        if self._useful:
+            self._model.opt.disableflags = self._off if self._is_off else self._on
 
     def update(self) -> None:
-        """Look whether anything is near the floor; called once in each control period."""
+        """Check whether anything is near the floor; called once in each control period."""
         if not self._useful:
             return
         self._until_check -= 1
         if self._until_check < 0:
             self._until_check = self._ticks - 1
             np.greater(self._heights[self._moving], self._needed, self._clear)
-            # Few and small steps: after 10 ms of sleep all that is called comes from afar, and a
-            # reduction or a look at the options costs half as much as all of the physics.
+            # Few and small operations: after 10 ms of sleep the caches are cold, and a reduction or
+            # a read of the options costs half as much as the whole physics step.
             all_clear = False not in self._clear.tobytes()
             if all_clear and self._can_fall:
-                all_clear = min(self._upwards[self._free].tolist()) > -FALLING_M_S
+                all_clear = min(self._velocities[self._free].tolist()) > -FALLING_M_S
             if all_clear is not self._is_off:
                 self._is_off = all_clear
                 self._model.opt.disableflags = self._off if all_clear else self._on
@@ -75,7 +123,7 @@ def _moving_geoms(model: mujoco.MjModel) -> np.ndarray:
 
 
 def _floor_geoms(model: mujoco.MjModel) -> np.ndarray:
-    """Return the geoms that stand still and that something moving could touch."""
+    """Return the static geoms that a moving geom could touch."""
     moving = _moving_geoms(model)
     types = int(np.bitwise_or.reduce(model.geom_contype[moving], initial=0))
     affinities = int(np.bitwise_or.reduce(model.geom_conaffinity[moving], initial=0))
@@ -89,7 +137,7 @@ def _floor_height(model: mujoco.MjModel, data: mujoco.MjData) -> float:
 
 
 def _only_floor_below(model: mujoco.MjModel, data: mujoco.MjData) -> bool:
-    """Return whether a level floor is all that anything moving can touch."""
+    """Return whether moving geoms can touch nothing but a level floor."""
     moving, floor = _moving_geoms(model), _floor_geoms(model)
     types = model.geom_contype[moving][:, None] & model.geom_conaffinity[moving][None]
     if types.any() or model.npair or model.nflex or model.nmocap:

@@ -1,75 +1,109 @@
 """The running physics: one model, its state, and the drives of the robot's joints."""
 
 import logging
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
 
-from arm_gazebo.drives.mode import DriveMode
+from arm_control.run_inputs import InputGate, run_input, run_input_noted_as
+from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import Servo
-from arm_gazebo.drives.servo_tuning import ServoTuning, too_weak, tune, tuned_again
-from arm_gazebo.errors import TimingError
+from arm_gazebo.drives.servo_tuning import ServoTuning, retune, too_weak, tune
+from arm_gazebo.errors import RecordingError, TimingError
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.physics import profiler
+from arm_gazebo.model.saved_model import SavedModel
 from arm_gazebo.physics.contact_gate import ContactGate
-from arm_gazebo.physics.state_probe import StateProbe
+from arm_gazebo.physics.faults import Distortion, PhysicsFaults
+from arm_gazebo.physics.physics_state import PhysicsState
+from arm_gazebo.physics.state_probe import StateProbe, WorldState
 from arm_gazebo.physics.state_transfer import StateTransfer
-from arm_gazebo.physics.world_state import WorldState
-from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.spec.physics_timing import DIVIDES_WITHIN, PhysicsTiming
+from arm_node.workarounds.profiler import switch_off_profiler
 
 logger = logging.getLogger(__name__)
 
 SAVE_EVERY_S = 0.1
-"""How often the state is kept, to go back to if the physics fails."""
+"""Interval at which the state is saved for recovery from a physics failure."""
 
-TOUCH_N = 1e-9
-"""A force that moves nothing, and wakes what sleeps."""
+RESETTING = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+"""The warnings after which MuJoCo resets itself."""
+
+WAKING_FORCE_N = 1e-9
+"""A force too small to move anything that still wakes sleeping bodies."""
+
+
+def _describe_swap(arguments: Mapping[str, Any]) -> Mapping[str, object]:
+    """Return what a recording notes of `swap`: the model as data."""
+    following: NextModel = arguments["following"]
+    if following.saved is None:
+        raise RecordingError("the recording began while this change was prepared; ask for it again")
+    return {"model": following.saved, "roots": following.roots}
 
 
 class Simulation:
     """Advances a model by control periods; used by one thread.
 
     Args:
-        built: the robot in its world. Its model is tuned here and belongs to the simulation.
-        timing: control period and physics step; the model was built with the latter.
-        hold_joints: whether a driven joint that no one commands stands still or falls.
+        built: the robot in its world. The simulation tunes its model and owns it.
+        timing: control period and physics step; the model was built with this step.
+        hold_joints: whether a driven joint without a command holds its position or falls.
+        proportional_gain: of position commands, see `DrivenJoint`; 0 for the fastest approach.
+
+    Attributes:
+        faults: what is wrong with joints and readings; empty unless somebody asks for it.
+        input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
 
     Raises:
         TimingError: the model was built for another physics step.
     """
 
-    def __init__(self, built: BuiltModel, timing: PhysicsTiming, hold_joints: bool = True) -> None:
+    input_gate: InputGate | None = None
+
+    def __init__(
+        self,
+        built: BuiltModel,
+        timing: PhysicsTiming,
+        hold_joints: bool = True,
+        proportional_gain: float = 0.0,
+    ) -> None:
         step_s = built.model.opt.timestep
         if abs(step_s - timing.step_s) > DIVIDES_WITHIN * step_s:
             raise TimingError(
                 f"the model was built with a physics step of {step_s:g} s, "
-                f"and the simulation asks for {timing.step_s:g} s"
+                f"but the simulation needs {timing.step_s:g} s"
             )
         self.built = built
         self.timing = timing
         self.model = built.model
         self.data = mujoco.MjData(built.model)
         self._saved_qpos = self.data.qpos.copy()
-        self.idle_mode = DriveMode.HOLD if hold_joints else DriveMode.LIMP
+        self.idle_mode = DriveMode.HOLD if hold_joints else DriveMode.FREE
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
         tuning = tune(self.model, driven, built.qpos, timing.period_s)
         for name, problem in too_weak(self.model, driven, tuning):
             logger.warning("joint '%s': %s", name, problem)
         self._tuning = tuning
-        self.servo = Servo(self.model, self.data, driven, tuning, timing)
+        self.servo = Servo(self.model, self.data, driven, tuning, timing, proportional_gain)
         self.probe = StateProbe()
+        self.faults = PhysicsFaults(built.model, lambda name: self.built.joints[name].dof_address)
         self._restart(built.qpos, 0.0)
         self._gate = ContactGate(self.model, self.data, timing.period_s)
+        self._physics = PhysicsState(self.model, self.data)
         self._failures: list[str] = []
         self._ticks_to_save = 0
         self._save_ticks = max(1, round(SAVE_EVERY_S / timing.period_s))
-        # Without a handler MuJoCo writes a log file into whatever folder this process runs in.
+        # Without a handler MuJoCo writes a log file into the working directory.
         mujoco.set_mju_user_warning(_log_warning)
-        profiler.switch_off()
+        switch_off_profiler(mujoco)
         for index in range(len(driven)):
             self.servo.set_mode(index, self.idle_mode)
 
@@ -85,11 +119,11 @@ class Simulation:
         self.servo.update()
         self._gate.update()
         mujoco.mj_step(self.model, data, self.timing.steps)
-        if data.time <= before_s:
-            # MuJoCo starts over by itself where a number is no longer finite.
+        if data.time <= before_s or (not before_s and _has_reset_itself(data)):
+            # MuJoCo resets itself when a number is no longer finite.
             self._recover(before_s)
         else:
-            # MuJoCo adds up its steps, and with them their rounding: 3 ns in 12 minutes.
+            # MuJoCo adds up its steps with their rounding errors: 3 ns in 12 minutes.
             self._periods += 1
             data.time = self._started_s + self._periods * self.timing.period_s
         self.probe.expire()
@@ -98,73 +132,137 @@ class Simulation:
             self._ticks_to_save = self._save_ticks
             self._saved_qpos[:] = data.qpos
 
-    def reset(self, time_s: float = 0.0) -> None:
-        """Put everything back to where it started, at rest; the clock goes on from `time_s`.
+    @run_input
+    def stall_joint(self, joint: str) -> None:
+        """Let a joint stick where it is, whatever its drive does."""
+        self.faults.stall(joint)
 
-        Joints stay as they are claimed, and stand until a new command comes.
+    @run_input
+    def free_joint(self, joint: str) -> None:
+        """Let a joint that sticks move again."""
+        self.faults.free(joint)
+
+    @run_input
+    def distort(self, name: str, kind: str, deviation: float = 0.0, seed: int = 0) -> None:
+        """Let readings be frozen, noisy or NaN; see `PhysicsFaults.distort`."""
+        self.faults.distort(name, Distortion(kind), deviation, seed)
+
+    @run_input
+    def read_rightly(self, name: str, kind: str) -> None:
+        """End `distort`."""
+        self.faults.clear(name, Distortion(kind))
+
+    def reset(self, time_s: float = 0.0) -> None:
+        """Return everything to its start, at rest; the clock continues from `time_s`.
+
+        Noise starts again. Joints stay claimed, and hold their positions until a new command
+        arrives.
         """
         self._restart(self.built.qpos, time_s)
         self.servo.reset()
+        self._ticks_to_save = 0
+        self.probe.restart()
+
+    def set_clock(self, time_s: float) -> None:
+        """Let the clock go on from another time; nothing else changes."""
+        self.data.time = self._started_s = time_s
+        self._periods = 0
+
+    def save_state(self) -> dict[str, Any]:
+        """Return everything that the next periods depend on, as plain values.
+
+        It shares arrays with the simulation, so encode it at once.
+        """
+        return {
+            "physics": self._physics.save(),
+            "started_s": self._started_s,
+            "periods": self._periods,
+            "saved_qpos": self._saved_qpos,
+            "ticks_to_save": self._ticks_to_save,
+            "gate": self._gate.save_state(),
+            "state_number": self.probe.number,
+            "servo": self.servo.save_state(),
+        }
+
+    def load_state(self, state: dict[str, Any]) -> None:
+        """Restore a saved state of the same model; call it between two `advance` calls."""
+        self._gate.load_state(state["gate"])
+        self._physics.load(state["physics"])
+        self._started_s, self._periods = state["started_s"], state["periods"]
+        self._saved_qpos[:] = state["saved_qpos"]
+        self._ticks_to_save = state["ticks_to_save"]
+        self.servo.load_state(state["servo"])
+        self.probe.restart(state["state_number"])
+
+    def fingerprint(self) -> Iterator[tuple[str, bytes]]:
+        """Yield the parts of the state by name, as bytes that differ if the state does."""
+        yield "physics", self._physics.integration().tobytes()
+        yield "drives", self.servo.fingerprint()
+        yield "noise", self.probe.number.to_bytes(8, "little")
 
     def prepare(self, built: BuiltModel, roots: Collection[str]) -> "NextModel":
-        """Return what `swap` needs to go on with another model; any thread, takes its time.
+        """Prepare another model for `swap`. Any thread; it takes a while.
 
         Args:
-            built: has the same robots. Its model belongs to the simulation from now on.
-            roots: bodies right below the world whose states are carried over; the others start
-                as `built` says.
+            built: a model with the same robots. The simulation owns it from now on.
+            roots: top-level bodies whose states are carried over; the others start as in `built`.
         """
+        saved = SavedModel.of(built) if self.input_gate is not None else None
         transfer = StateTransfer(self.model, built.model, roots)
         transfer.carry_drives(self.model, built.model)
         joints = tuple(built.joints[joint.name] for joint in self.servo.joints)
         data = mujoco.MjData(built.model)
-        tuning = tuned_again(built.model, data, joints, self._tuning)
+        tuning = retune(built.model, data, joints, self._tuning)
         mujoco.mj_resetData(built.model, data)
         data.qpos[:] = built.qpos
         mujoco.mj_forward(built.model, data)
         gate = ContactGate(built.model, data, self.timing.period_s)
-        return NextModel(built, data, joints, tuning, gate, transfer)
+        return NextModel(built, data, joints, tuning, gate, transfer, tuple(sorted(roots)), saved)
 
+    @run_input_noted_as(_describe_swap)
     def swap(self, following: "NextModel") -> None:
-        """Go on with another model in the present state; between two calls of `advance`.
+        """Continue with another model in the present state; call it between two `advance` calls.
 
-        `model`, `data` and `built` are others from here on: whoever keeps indices or views of
-        them looks them up again.
+        It replaces `model`, `data` and `built`, so stored indices and views of them must be
+        looked up again.
         """
         data = following.data
         following.transfer.carry(self.data, data)
         following.transfer.carry_drives(self.model, following.built.model)
         self.built, self.model, self.data = following.built, following.built.model, data
         self._tuning, self._gate = following.tuning, following.gate
+        self._physics = PhysicsState(self.model, data)
+        self.faults.rebind(self.model)
         self.servo.rebind(self.model, data, following.joints, following.tuning)
         warm_start = data.qacc_warmstart.copy()
-        # The drives read inertia and gravity of the last step.
+        # The drives read the inertia and gravity of the last step.
         mujoco.mj_forward(self.model, data)
         data.qacc_warmstart[:] = warm_start
         self._saved_qpos = data.qpos.copy()
         self.probe.expire()
 
+    @run_input
     def place(self, joint: str, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Put what hangs on a free joint elsewhere; between two calls of `advance`.
+        """Move the body of a free joint to another pose; call it between two `advance` calls.
 
         Args:
-            joint: its name.
+            joint: name of the free joint.
             position: x, y, z and quaternion (w, x, y, z) in the world, shape (7,).
             velocity: linear in the world, angular in the body's own frame, shape (6,).
         """
-        data, where = self.data, self.model.joint(joint)
-        data.qpos[where.qposadr[0] :][:7] = position
-        data.qvel[where.dofadr[0] :][:6] = velocity
-        # It may have carried others, and all that sleeps feels nothing of it.
+        data, found = self.data, self.model.joint(joint)
+        data.qpos[found.qposadr[0] :][:7] = position
+        data.qvel[found.dofadr[0] :][:6] = velocity
+        # Wake every sleeping body, because the moved one may have supported it.
         forces = data.xfrc_applied.copy()
-        data.xfrc_applied[:] = TOUCH_N
+        data.xfrc_applied[:] = WAKING_FORCE_N
         mujoco.mj_forward(self.model, data)
         data.xfrc_applied[:] = forces
         self._saved_qpos[:] = data.qpos
         self.probe.expire()
 
     def state(self) -> WorldState:
-        """Return a copy of where everything is."""
+        """Return a copy of the present state."""
         data = self.data
         return WorldState(
             data.time,
@@ -175,11 +273,11 @@ class Simulation:
         )
 
     def observe(self) -> mujoco.MjData:
-        """Return the present state with all that follows from it; see `StateProbe.look`."""
-        return self.probe.look(self.model, self.data)
+        """Return the present state with all derived quantities; see `StateProbe.observe`."""
+        return self.probe.observe(self.model, self.data)
 
     def take_failures(self) -> list[str]:
-        """Return what went wrong in the physics since the last call, one sentence each."""
+        """Return one sentence for each physics failure since the last call."""
         failures, self._failures = self._failures, []
         return failures
 
@@ -189,7 +287,7 @@ class Simulation:
         self._periods = 0
         self.data.qpos[:] = qpos
         self._saved_qpos[:] = qpos
-        # The drives read inertia and gravity of the last step.
+        # The drives read the inertia and gravity of the last step.
         mujoco.mj_forward(self.model, self.data)
         self.probe.expire()
 
@@ -197,14 +295,26 @@ class Simulation:
         self._restart(self._saved_qpos.copy(), before_s + self.timing.period_s)
         self.servo.reset()
         self._failures.append(
-            f"the physics became unstable at {before_s:.3f} s; it goes on at rest from the pose "
-            f"of up to {SAVE_EVERY_S:g} s before"
+            f"the physics became unstable at {before_s:.3f} s; it continues at rest from the pose "
+            f"up to {SAVE_EVERY_S:g} s earlier"
         )
+
+
+def _has_reset_itself(data: mujoco.MjData) -> bool:
+    """Return whether MuJoCo's warnings since the last reset are about numbers out of bounds.
+
+    In the first control period the time does not tell: it begins at 0, and so does a reset.
+    """
+    return any(data.warning[kind].number for kind in RESETTING)
 
 
 @dataclass(frozen=True, slots=True)
 class NextModel:
-    """A model that the simulation can go on with at once; see `Simulation.prepare`."""
+    """A model that the simulation can switch to without delay; see `Simulation.prepare`.
+
+    Attributes:
+        saved: the model before the simulation changed it; None if no run was recorded then.
+    """
 
     built: BuiltModel
     data: mujoco.MjData
@@ -212,6 +322,8 @@ class NextModel:
     tuning: ServoTuning
     gate: ContactGate
     transfer: StateTransfer
+    roots: tuple[str, ...]
+    saved: SavedModel | None
 
 
 def _log_warning(message: str) -> None:

@@ -1,6 +1,30 @@
-"""Looks at a state with all that MuJoCo derives from it, without touching the simulation."""
+"""Copy and evaluate the simulation's state without changing the simulation."""
+
+from dataclasses import dataclass
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class WorldState:
+    """One state of one model.
+
+    Attributes:
+        time_s: simulation time.
+        qpos: generalised positions, shape (nq,).
+        qvel: generalised velocities, shape (nv,).
+        mocap_pos: positions of the mocap bodies, shape (nmocap, 3).
+        mocap_quat: their quaternions (w, x, y, z), shape (nmocap, 4).
+    """
+
+    time_s: float
+    qpos: NDArray[np.float64]
+    qvel: NDArray[np.float64]
+    mocap_pos: NDArray[np.float64]
+    mocap_quat: NDArray[np.float64]
+
 
 EVERYTHING = mujoco.mjtState.mjSTATE_INTEGRATION
 WITHOUT_SENSORS = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
@@ -8,19 +32,19 @@ WITH_SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
 
 class StateProbe:
-    """A second set of MuJoCo's arrays, brought to the present state when somebody asks.
+    """A second set of MuJoCo's arrays, updated to the present state on request. Loop thread.
 
-    After a step MuJoCo's accelerations, contacts and sensors are those of the state before it.
-    Bringing the simulation's own arrays up to date would change its next step by a rounding
-    error, so that a run depended on who listens. Loop thread.
+    After a step, MuJoCo's accelerations, contacts and sensors belong to the state before it.
+    Updating the simulation's own arrays would change its next step by a rounding error, so that
+    a run would depend on who subscribes.
 
     Attributes:
-        number: of the present state, counted from 0.
+        number: number of the present state, counted from 0.
     """
 
     def __init__(self) -> None:
         self.number = 0
-        self._looked_at = -1
+        self._observed = -1
         self._model: mujoco.MjModel | None = None
         self._data: mujoco.MjData | None = None
 
@@ -28,26 +52,30 @@ class StateProbe:
         """Note that there is a new state."""
         self.number += 1
 
-    def look(self, model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
-        """Return the present state; valid until the next one, and not to be written to.
+    def restart(self, number: int = 0) -> None:
+        """Note that there is a new state, which has this number."""
+        self.number, self._observed = number, -1
+
+    def observe(self, model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
+        """Return the present state, valid until the next one; do not write to it.
 
         Args:
-            model: may be another one than before.
-            data: the simulation's.
+            model: the simulation's model, which may have changed since the last call.
+            data: the simulation's state.
         """
         if self._data is None or self._model is not model:
             self._model, self._data = model, mujoco.MjData(model)
-            self._looked_at = -1
-        if self._looked_at != self.number:
-            self._looked_at = self.number
+            self._observed = -1
+        if self._observed != self.number:
+            self._observed = self.number
             mujoco.mj_copyState(model, data, self._data, EVERYTHING)
             self._evaluate(model, self._data)
         return self._data
 
     def _evaluate(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        without, having = model.opt.disableflags, model.opt.enableflags
-        model.opt.disableflags = without & ~WITHOUT_SENSORS
-        # What sleeps is not computed anew, and may have been elsewhere at the last look.
-        model.opt.enableflags = having & ~WITH_SLEEP
+        disabled, enabled = model.opt.disableflags, model.opt.enableflags
+        model.opt.disableflags = disabled & ~WITHOUT_SENSORS
+        # MuJoCo does not recompute sleeping bodies, which may have moved since the last call.
+        model.opt.enableflags = enabled & ~WITH_SLEEP
         mujoco.mj_forward(model, data)
-        model.opt.disableflags, model.opt.enableflags = without, having
+        model.opt.disableflags, model.opt.enableflags = disabled, enabled

@@ -1,4 +1,4 @@
-"""What is carried from one model and its state to another, by name."""
+"""Copy the state of one model to another, matched by name."""
 
 from collections.abc import Collection, Iterator
 
@@ -31,13 +31,13 @@ Pair = tuple[int, int]
 class StateTransfer:
     """Copies positions, velocities, drives and warm starts between states of two models.
 
-    It is made once for two models, which takes a look-up for each name; `carry` only copies.
+    The constructor looks up each name once; `carry` only copies.
 
     Args:
         source: the model whose state is known.
-        target: the model that goes on from there.
-        roots: bodies right below the world whose joints are carried; those of other bodies start
-            where the target's state has them.
+        target: the model that continues from that state.
+        roots: top-level bodies whose joints are copied; the joints of other bodies keep the
+            target's state.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class StateTransfer:
         self._mocaps = _blocks(mocaps, [1] * len(mocaps))
 
     def carry(self, source: mujoco.MjData, target: mujoco.MjData) -> None:
-        """Copy the state of the first model to that of the second one."""
+        """Copy the state of the first model to the state of the second one."""
         target.time = source.time
         for (there, here), before, after in (
             (self._positions, source.qpos, target.qpos),
@@ -78,12 +78,12 @@ class StateTransfer:
             after[here] = before[there]
 
     def carry_positions(self, source: NDArray[np.float64], target: NDArray[np.float64]) -> None:
-        """Copy generalised positions of the first model, (nq,), to those of the second one."""
+        """Copy generalised positions (nq,) of the first model to those of the second one."""
         there, here = self._positions
         target[here] = source[there]
 
     def carry_drives(self, source: mujoco.MjModel, target: mujoco.MjModel) -> None:
-        """Copy what is set on a model while it runs: rotors, gains and limits of its drives."""
+        """Copy the drives' rotors, gains and limits, which are set on the running model."""
         there, here = self._velocities
         rotors = source.dof_armature[there]
         # As `Servo` does when it sets them.
@@ -130,7 +130,7 @@ def _mocaps(
         other = known.get(name)
         if other is None or name not in roots or target.body_mocapid[other] < 0:
             continue
-        # One that stands elsewhere in the target's model was put there.
+        # A body with another pose in the target model was moved there on purpose.
         if np.array_equal(source.body_pos[body], target.body_pos[other]) and np.array_equal(
             source.body_quat[body], target.body_quat[other]
         ):

@@ -1,1 +1,1 @@
-"""Pictures of a MuJoCo scene: by OpenGL without a display, or by casting rays without OpenGL."""
+"""Render a MuJoCo scene: with OpenGL without a display, or by ray casting without OpenGL."""

@@ -1,7 +1,7 @@
-"""Draws one picture with the first backend that can; for a child process of `arm doctor`.
+"""Render one image with the first backend that works; run as a child process of `arm doctor`.
 
-Prints the name of each backend before it is touched, so the last line names the one that was used,
-or the one that ended the process.
+It prints the name of each backend before it tries it, so the last line names the backend that was
+used or that crashed the process.
 """
 
 import sys
@@ -19,9 +19,9 @@ from arm_gazebo.rendering.backend_selection import (
 
 
 def main(excluded: Sequence[str]) -> int:
-    """Draw it with any backend but the excluded ones."""
+    """Render the image with any backend except the excluded ones; return the exit code."""
     width, height = TEST_SENSOR.width, TEST_SENSOR.height
-    renderer = open_renderer(backend_order("auto", excluded), width, height, on_try=_say)
+    renderer = open_renderer(backend_order("auto", excluded), width, height, on_try=_print_name)
     model = mujoco.MjModel.from_xml_string(TEST_SCENE)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -32,7 +32,7 @@ def main(excluded: Sequence[str]) -> int:
     return 0 if picture.any() else 1
 
 
-def _say(backend: str) -> None:
+def _print_name(backend: str) -> None:
     sys.stdout.write(f"{backend}\n")
     sys.stdout.flush()
 

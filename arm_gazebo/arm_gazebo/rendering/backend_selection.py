@@ -1,4 +1,4 @@
-"""Choice of what draws the cameras' pictures: the first backend that draws a test picture."""
+"""Choose the cameras' render backend: the first one that renders a test image."""
 
 import logging
 from collections.abc import Callable, Iterable
@@ -32,25 +32,25 @@ TEST_SCENE = """
   </worldbody>
 </mujoco>
 """
-LEAST_CONTRAST = 50
-"""Of 255, between the brightest and the darkest value of the test picture."""
+MIN_CONTRAST = 50
+"""Smallest difference, of 255, between the brightest and darkest value of the test image."""
 
 
 def backend_order(preference: str, excluded: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the backends to try, in this order; ray casting is always the last of them.
+    """Return the backends to try, in order; the last one is always ray casting.
 
     Args:
-        preference: auto, or the one to try before falling back to ray casting.
-        excluded: backends known not to work here; ray casting cannot be excluded.
+        preference: auto, or the backend to try before falling back to ray casting.
+        excluded: backends that are known not to work; ray casting cannot be excluded.
 
     Raises:
-        CameraError: an unknown preference; the message names the known ones.
+        CameraError: the preference is unknown; the message names the known ones.
     """
     if preference not in PREFERENCES:
         raise CameraError(f"no render backend {preference!r}; there are {', '.join(PREFERENCES)}")
     wanted = CONTEXTS if preference == "auto" else [preference]
-    shut_out = {*excluded, RAYCAST}
-    return (*(name for name in wanted if name not in shut_out), RAYCAST)
+    skipped = {*excluded, RAYCAST}
+    return (*(name for name in wanted if name not in skipped), RAYCAST)
 
 
 def open_renderer(
@@ -59,18 +59,18 @@ def open_renderer(
     max_height: int,
     on_try: Callable[[str], None] = lambda _backend: None,
 ) -> Renderer:
-    """Return a renderer of the first backend that works, after one test picture.
+    """Return a renderer with the first backend that works, after one test image.
 
     Args:
         order: names of backends, see `backend_order`.
-        max_width: width in pixels of the widest picture.
-        max_height: height in pixels of the highest picture.
-        on_try: called with a backend's name before it is touched: a broken driver may end the
-            process.
+        max_width: width in pixels of the widest image.
+        max_height: height in pixels of the tallest image.
+        on_try: called with a backend's name before it is tried, because a broken driver may crash
+            the process.
 
     Raises:
-        BackendError: an OpenGL library started, but does not draw. It cannot be unloaded: no
-            other OpenGL library works in this process any more.
+        BackendError: an OpenGL library started but does not draw. It cannot be unloaded, so no
+            other OpenGL library can work in this process.
     """
     reasons: list[str] = []
     for backend in order:
@@ -84,7 +84,7 @@ def open_renderer(
         except CameraError as error:
             reasons.append(str(error))
             continue
-        # The test picture may be the largest of all.
+        # The test image may be larger than every camera's.
         width, height = max(max_width, TEST_SENSOR.width), max(max_height, TEST_SENSOR.height)
         renderer = GlRenderer(context, width, height)
         _test(renderer)
@@ -93,10 +93,10 @@ def open_renderer(
 
 
 def _test(renderer: Renderer) -> None:
-    """Draw a red ball before black.
+    """Render a red ball on black.
 
     Raises:
-        BackendError: it cannot be seen.
+        BackendError: the ball is not visible.
     """
     model = mujoco.MjModel.from_xml_string(TEST_SCENE)
     data = mujoco.MjData(model)
@@ -107,14 +107,14 @@ def _test(renderer: Renderer) -> None:
         renderer.render(data, TEST_SENSOR, picture)
     except mujoco.FatalError as error:
         raise BackendError(f"{renderer.backend} does not draw: {error}") from error
-    if int(picture.max()) - int(picture.min()) < LEAST_CONTRAST:
-        raise BackendError(f"{renderer.backend} draws an empty picture")
+    if int(picture.max()) - int(picture.min()) < MIN_CONTRAST:
+        raise BackendError(f"{renderer.backend} draws an empty image")
 
 
 def _warn(reasons: list[str]) -> None:
     logger.warning(
-        "no OpenGL for the cameras (%s): their pictures are ray-cast, without textures and "
-        "highlights, and slower; for OpenGL: %s",
+        "no OpenGL for the cameras (%s): their images are ray-cast, which is slower and lacks "
+        "textures and highlights; for OpenGL: %s",
         "; ".join(reasons),
         FIX,
     )

@@ -1,7 +1,7 @@
-"""OpenGL contexts that need no display, straight from the system's libraries.
+"""OpenGL contexts without a display, created directly with the system's libraries.
 
-MuJoCo's own contexts go through PyOpenGL, which binds one platform per process and takes 0.2 s
-to import. These can be tried one after the other.
+MuJoCo's own contexts use PyOpenGL, which binds one platform per process and takes 0.2 s to import.
+These can be tried one after the other.
 """
 
 import ctypes
@@ -27,9 +27,13 @@ STENCIL_BITS = 8
 
 
 class GlContext(Protocol):
-    """An OpenGL context, current in the thread that made it until it is freed."""
+    """An OpenGL context, current in the thread that created it until it is freed."""
 
     name: str
+
+    def make_current(self) -> None:
+        """Make it current again, where another context may have become so."""
+        ...
 
     def free(self) -> None:
         """Release the context; idempotent."""
@@ -37,7 +41,7 @@ class GlContext(Protocol):
 
 
 class EglContext:
-    """A context on the first EGL device, GPU or software, that gives one."""
+    """A context on the first EGL device, GPU or software, that provides one."""
 
     name = "egl"
 
@@ -46,13 +50,17 @@ class EglContext:
         self._declare()
         self._display, self._context = self._first_context()
 
+    def make_current(self) -> None:
+        """Make it current again; the thread that created it."""
+        self._egl.eglMakeCurrent(self._display, None, None, self._context)
+
     def free(self) -> None:
         """Release the context; idempotent."""
         if self._context is None:
             return
         self._egl.eglMakeCurrent(self._display, None, None, None)
         self._egl.eglDestroyContext(self._display, self._context)
-        self._egl.eglTerminate(self._display)
+        # The display stays initialised: other contexts of this process use the same one.
         self._context = None
 
     def _declare(self) -> None:
@@ -88,7 +96,7 @@ class EglContext:
             if context:
                 return display, context
             self._egl.eglTerminate(display)
-        raise CameraError(f"none of {count.value} EGL devices gives an OpenGL context")
+        raise CameraError(f"none of {count.value} EGL devices provides an OpenGL context")
 
     def _context_on(self, display: int) -> int | None:
         attributes = (ctypes.c_int * len(EGL_CONFIG))(*EGL_CONFIG)
@@ -104,7 +112,7 @@ class EglContext:
 
 
 class OsmesaContext:
-    """A context of Mesa's off-screen library, always in software."""
+    """A context of Mesa's off-screen library, which always renders in software."""
 
     name = "osmesa"
 
@@ -120,7 +128,7 @@ class OsmesaContext:
             *(ctypes.c_int, ctypes.c_int),
         ]
         self._mesa.OSMesaDestroyContext.argtypes = [POINTER]
-        # MuJoCo draws into a framebuffer object: the window's buffer only has to exist.
+        # MuJoCo draws into a framebuffer object, so the window's buffer only has to exist.
         self._window = ctypes.create_string_buffer(4)
         self._context = self._mesa.OSMesaCreateContextExt(
             OSMESA_RGBA, DEPTH_BITS, STENCIL_BITS, 0, None
@@ -128,7 +136,11 @@ class OsmesaContext:
         if not self._context or not self._mesa.OSMesaMakeCurrent(
             self._context, self._window, GL_UNSIGNED_BYTE, 1, 1
         ):
-            raise CameraError("OSMesa gives no OpenGL context")
+            raise CameraError("OSMesa provides no OpenGL context")
+
+    def make_current(self) -> None:
+        """Make it current again; the thread that created it."""
+        self._mesa.OSMesaMakeCurrent(self._context, self._window, GL_UNSIGNED_BYTE, 1, 1)
 
     def free(self) -> None:
         """Release the context; idempotent."""
@@ -142,7 +154,7 @@ class OsmesaContext:
 def _load(*names: str) -> Any:
     for name in names:
         try:
-            # Global, for MuJoCo looks up its GL functions among the process's symbols.
+            # Global, because MuJoCo looks up OpenGL functions among the process's symbols.
             return ctypes.CDLL(name, mode=ctypes.RTLD_GLOBAL)
         except OSError:
             continue

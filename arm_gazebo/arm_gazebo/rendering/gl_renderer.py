@@ -1,4 +1,4 @@
-"""Draws with OpenGL, tuned for a software driver on a machine that has other work."""
+"""Render with OpenGL, tuned for a software driver on a busy machine."""
 
 import math
 import os
@@ -12,21 +12,20 @@ from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
 from arm_gazebo.sensors.camera import CameraSensor
 
 FLOOR_HALF_SIZE = 100.0
-"""Half size in m that an infinite plane is drawn with: as far as Gazebo's cameras see. MuJoCo's
-own way of drawing one costs half of a whole frame on llvmpipe."""
+"""Half size in m of the drawn part of an infinite plane, the range of Gazebo's cameras. MuJoCo's
+own way to draw an infinite plane costs half of a frame on llvmpipe."""
 FLOOR_GRID = 4.0
-"""Spacing in m of the points where OpenGL lights an infinite plane, if no lamp is near it. With
-the usual 0.5 m a floor of this size has more corners than everything else together."""
+"""Spacing in m of the points where OpenGL lights an infinite plane if no lamp is near it. With
+the default of 0.5 m a floor of this size has more vertices than everything else together."""
 
 NO_DECORATION = mujoco.mjtCatBit.mjCAT_STATIC | mujoco.mjtCatBit.mjCAT_DYNAMIC
 MAX_EXTRA_GEOMS = 100
 
 
 class GlRenderer:
-    """Draws through a current OpenGL context: no shadows, no reflections, no multisampling.
+    """Renders with a current OpenGL context, without shadows, reflections and multisampling.
 
-    The context belongs to the renderer from here on. Everything happens in the thread in which
-    the context is current.
+    The renderer owns the context. Call it only from the thread in which the context is current.
     """
 
     def __init__(self, context: GlContext, max_width: int, max_height: int) -> None:
@@ -44,12 +43,13 @@ class GlRenderer:
 
     def set_model(self, model: mujoco.MjModel) -> None:
         """Upload a model's meshes and textures; see `Renderer.set_model`."""
+        self._context.make_current()
         _lighten(model, *self._max_size)
         self._free_drawing()
-        # MuJoCo reads this each time it looks for the GL functions.
+        # MuJoCo reads this whenever it looks up the OpenGL functions.
         os.environ["MUJOCO_GL"] = self.backend
         drawing = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
-        # Numbers near 0 are the finest, and far away the buffer is the coarsest.
+        # Far depths map to 0, where floats are finest, because the buffer is coarsest there.
         drawing.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, drawing)
         self._drawing = drawing
@@ -66,18 +66,19 @@ class GlRenderer:
         """Draw one camera's view; see `Renderer.render`."""
         model, scene = self._model, self._scene
         assert model is not None
+        self._context.make_current()
         self._camera.fixedcamid = camera_id(model, sensor)
         mujoco.mjv_updateScene(model, data, self._option, None, self._camera, NO_DECORATION, scene)
-        # mjv_updateScene sets the flags anew from the model each time.
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
         # OpenGL's first row is the bottom one.
         if picture is not None:
+            scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = True
             raw = self._raw[: picture.size].reshape(picture.shape)
             self._draw(sensor, sensor.near, raw, None)
             np.copyto(picture, raw[::-1])
         if depth is not None:
-            # The sky would be at some distance.
+            # The sky box would have a depth.
             scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
             buffer = np.empty(depth.shape, np.float32)
             self._draw(sensor, sensor.nearest_drawn, None, buffer)
@@ -98,6 +99,7 @@ class GlRenderer:
 
     def close(self) -> None:
         """Free the GL resources and the context."""
+        self._context.make_current()
         self._free_drawing()
         self._context.free()
 
@@ -108,7 +110,7 @@ class GlRenderer:
 
 
 def _lighten(model: mujoco.MjModel, width: int, height: int) -> None:
-    """Turn off what a software driver pays for dearly, and make room for the pictures."""
+    """Turn off what is expensive with a software driver, and size the buffer for the images."""
     model.vis.quality.offsamples = 0
     model.vis.quality.shadowsize = 0
     model.vis.global_.offwidth = width
@@ -137,7 +139,7 @@ def _apply_optics(scene: mujoco.MjvScene, sensor: CameraSensor, near: float) -> 
 
 
 def _distances(buffer: NDArray[np.float32], near: float, far: float) -> NDArray[np.float32]:
-    """Return the distances that a depth buffer means: 0 is the far clip, 1 the near one."""
+    """Convert a depth buffer to distances; 0 is the far clip plane, 1 the near one."""
     distances = (near * far) / (near + buffer * (far - near))
     distances[buffer <= 0] = np.inf
     return distances

@@ -1,4 +1,4 @@
-"""How bright a surface is: Lambert's law under the lights of a MuJoCo scene, without shadows."""
+"""Brightness of surfaces: Lambert's law with the lights of a MuJoCo scene, without shadows."""
 
 import math
 
@@ -28,7 +28,7 @@ class Lighting:
     def brightness(
         self, points: NDArray[np.float64], normals: NDArray[np.float64]
     ) -> NDArray[np.float32]:
-        """Return how bright white surfaces are, (n, 3), 1 for fully lit.
+        """Return the brightness (n, 3) of white surfaces, 1 for fully lit.
 
         Args:
             points: (n, 3) points on the surfaces, in m.

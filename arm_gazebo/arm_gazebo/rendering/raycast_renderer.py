@@ -1,4 +1,4 @@
-"""Draws without any OpenGL, by casting rays into the scene with MuJoCo's own collision code."""
+"""Render without OpenGL, by casting rays into the scene with MuJoCo's collision code."""
 
 import time
 
@@ -6,22 +6,21 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.rendering.adaptive_sampling import fill_picture
+from arm_gazebo.rendering.adaptive_sampling import MAX_STEP, SamplingStep, fill_picture
 from arm_gazebo.rendering.lighting import Lighting
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
-from arm_gazebo.rendering.sampling_step import LARGEST_STEP, SamplingStep
 from arm_gazebo.rendering.surface_colours import SurfaceColours
 from arm_gazebo.sensors.camera import CameraSensor
 
 HIDDEN_GROUP = len(VISIBLE_GROUPS) - 1
 MAX_HIDDEN_LAYERS = 4
-"""How many surfaces nearer than the near clip are looked through along one ray."""
+"""Limit on the hidden surfaces that one ray passes through."""
 
 
 class RaycastRenderer:
-    """Draws diffuse surfaces in plain colours: no textures, no highlights, no shadows.
+    """Renders diffuse surfaces in plain colours, without textures, highlights and shadows.
 
-    Where the machine cannot keep the camera's rate, small things may be missed; see
+    If the machine cannot keep the camera's rate, small objects may be missed; see
     `adaptive_sampling` and `SamplingStep`.
     """
 
@@ -61,11 +60,11 @@ class RaycastRenderer:
             np.copyto(depth, view.distances(*depth.shape))
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: the renderer holds no resources."""
 
 
 class _View:
-    """What one camera sees of one state of the model."""
+    """One camera's view of one state of the model."""
 
     def __init__(
         self,
@@ -87,7 +86,7 @@ class _View:
         rays = self._pixel_rays[rows, columns] @ self._rotation.T
         geoms, distances, normals = self._cast(rays, self._sensor.near)
         hit = geoms >= 0
-        # Sky where nothing is hit; what is hit is overwritten.
+        # Sky everywhere first; pixels that hit a geom are overwritten.
         light = self._colours.sky(rays)
         points = self._position + rays[hit] * distances[hit, np.newaxis]
         brightness = self._lighting.brightness(points, normals[hit])
@@ -95,7 +94,7 @@ class _View:
         return (light * 255.0 + 0.5).astype(np.uint8)
 
     def distances(self, height: int, width: int) -> NDArray[np.float64]:
-        """Return the depth (height, width) of every pixel, infinite where nothing is."""
+        """Return the depth (height, width) of every pixel, infinite where no geom is hit."""
         rays = self._pixel_rays[:height, :width].reshape(-1, 3) @ self._rotation.T
         geoms, distances, _normals = self._cast(rays, self._sensor.nearest_drawn)
         return np.where(geoms < 0, np.inf, distances).reshape(height, width)
@@ -103,21 +102,21 @@ class _View:
     def _cast(
         self, rays: NDArray[np.float64], near: float
     ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64]]:
-        """Return geom (-1: none), depth and normal of what each ray meets past a near clip.
+        """Return geom (-1 for none), depth and normal of each ray's first hit beyond the near clip.
 
-        As OpenGL does, surfaces nearer than that and surfaces seen from behind are looked
-        through: their geoms are hidden from the rays that met them, layer by layer.
+        As in OpenGL, rays pass through surfaces nearer than that and surfaces seen from behind:
+        their geoms are hidden from the rays that hit them, layer by layer.
         """
         geoms, depths, normals = self._cast_once(rays)
         groups = self._model.geom_group
         shown = groups.copy()
         for _ in range(MAX_HIDDEN_LAYERS):
-            behind = np.einsum("ij,ij->i", normals, rays) > 0
-            (through,) = np.nonzero((geoms >= 0) & (behind | (depths < near)))
-            if not through.size:
+            back_faces = np.einsum("ij,ij->i", normals, rays) > 0
+            (hidden,) = np.nonzero((geoms >= 0) & (back_faces | (depths < near)))
+            if not hidden.size:
                 break
-            groups[np.unique(geoms[through])] = HIDDEN_GROUP
-            geoms[through], depths[through], normals[through] = self._cast_once(rays[through])
+            groups[np.unique(geoms[hidden])] = HIDDEN_GROUP
+            geoms[hidden], depths[hidden], normals[hidden] = self._cast_once(rays[hidden])
         groups[:] = shown
         return geoms, depths, normals
 
@@ -137,12 +136,12 @@ class _View:
 
 
 def _pixel_rays(sensor: CameraSensor) -> NDArray[np.float64]:
-    """Return the rays through the pixels' centres, and some beyond the right and lower edges.
+    """Return the rays through the pixels' centres, with a margin at the right and lower edges.
 
-    In MuJoCo's camera frame (x right, y up, looks along -z), of depth 1: what they are scaled by
-    is the depth of the point, as a near clip means it.
+    They are in MuJoCo's camera frame (x right, y up, looks along -z) and have depth 1, so the
+    factor that scales a ray to a point is the point's depth.
     """
-    margin = LARGEST_STEP
+    margin = MAX_STEP
     x = (np.arange(sensor.width + margin) + 0.5 - sensor.width / 2) / sensor.focal_length
     y = (np.arange(sensor.height + margin) + 0.5 - sensor.height / 2) / sensor.focal_length
     rays = np.empty((len(y), len(x), 3))

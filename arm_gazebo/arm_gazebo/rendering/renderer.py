@@ -1,4 +1,4 @@
-"""What draws the pictures of the cameras, whatever it draws with."""
+"""The interface of every renderer of camera images."""
 
 from typing import Protocol
 
@@ -10,11 +10,11 @@ from arm_gazebo.errors import CameraError
 from arm_gazebo.sensors.camera import CameraSensor
 
 VISIBLE_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
-"""Geom groups that a camera sees: all but the collision shapes of group 3 and above."""
+"""Geom groups that a camera sees: all except the collision shapes in group 3 and above."""
 
 
 class Renderer(Protocol):
-    """Draws what a camera sees. One thread makes, uses and closes it."""
+    """Renders a camera's view. One thread creates, uses and closes it."""
 
     @property
     def backend(self) -> str:
@@ -22,7 +22,7 @@ class Renderer(Protocol):
         ...
 
     def set_model(self, model: mujoco.MjModel) -> None:
-        """Draw this model from now on; the caller gives it away: the renderer may change it."""
+        """Render this model from now on. The renderer owns it and may modify it."""
         ...
 
     def render(
@@ -32,11 +32,11 @@ class Renderer(Protocol):
         picture: NDArray[np.uint8] | None,
         depth: NDArray[np.float32] | None = None,
     ) -> None:
-        """Draw one camera's view of a state of the model: its colours, its depth, or both.
+        """Render one camera's view of a state of the model: colours, depth, or both.
 
         Args:
             data: state with up-to-date frames of geoms, cameras and lights.
-            sensor: the camera; one of those that the renderer was made for.
+            sensor: the camera; one of those that the renderer was created for.
             picture: (height, width, 3) C-contiguous RGB, overwritten; row 0 is the top.
             depth: (height, width) C-contiguous distances along the camera's axis in m,
                 overwritten; infinite where nothing is drawn.
@@ -44,7 +44,7 @@ class Renderer(Protocol):
         ...
 
     def close(self) -> None:
-        """Free what the renderer holds; it cannot be used again."""
+        """Free the renderer's resources; it cannot be used again."""
         ...
 
 

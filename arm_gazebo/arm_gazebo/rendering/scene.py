@@ -1,4 +1,4 @@
-"""A compiled model in the renderer's process, put into the states that the simulation sends."""
+"""A model that is drawn, set to the states of the simulation."""
 
 import mujoco
 
@@ -6,36 +6,41 @@ from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.snapshot import CameraSnapshot
 
 
-class Scene:
+def read_model(file: int) -> mujoco.MjModel:
+    """Return the compiled model of a file (MJB).
+
+    Args:
+        file: descriptor of the file; stays open.
+
+    Raises:
+        CameraError: the file is not a model that this version of MuJoCo can read.
+    """
+    # MuJoCo opens files only by name; this path names an open descriptor.
+    path = f"/proc/self/fd/{file}"
+    try:
+        return mujoco.MjModel.from_binary_path(path)
+    except ValueError as error:
+        raise CameraError(f"cannot load the compiled model: {error}") from error
+
+
+class RenderScene:
     """A model with the one state that is being drawn. One thread."""
 
-    def __init__(self, file: int) -> None:
-        """Load the model from a file with a compiled model (MJB).
-
-        Args:
-            file: descriptor of the file; stays open.
-
-        Raises:
-            CameraError: the file holds no model that this MuJoCo can read.
-        """
-        # MuJoCo opens files by name only; this is the name of an open one.
-        path = f"/proc/self/fd/{file}"
-        try:
-            self.model = mujoco.MjModel.from_binary_path(path)
-        except ValueError as error:
-            raise CameraError(f"cannot load the compiled model: {error}") from error
-        self.data = mujoco.MjData(self.model)
+    def __init__(self, model: mujoco.MjModel) -> None:
+        """Make a state of a model that nobody else draws."""
+        self.model = model
+        self.data = mujoco.MjData(model)
 
     def pose(self, snapshot: CameraSnapshot) -> None:
-        """Put everything where a snapshot of the same model says.
+        """Set the state to a snapshot of the same model.
 
         Raises:
-            CameraError: the snapshot is of another model.
+            CameraError: the snapshot belongs to another model.
         """
         data = self.data
         if snapshot.qpos.shape != data.qpos.shape:
             raise CameraError(
-                f"a snapshot of {snapshot.qpos.size} positions is not of this model, "
+                f"a snapshot of {snapshot.qpos.size} positions does not belong to this model, "
                 f"which has {data.qpos.size}"
             )
         data.time = snapshot.time_s

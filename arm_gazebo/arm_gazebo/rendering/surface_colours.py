@@ -1,4 +1,4 @@
-"""What colours a model's surfaces and its sky have before light falls on them."""
+"""The unlit colours of a model's surfaces and its sky."""
 
 import mujoco
 import numpy as np
@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 Colours = NDArray[np.float32]
 
 UNSET_RGBA = np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32)
-"""MuJoCo's colour of a geom that says none: then its material's counts."""
+"""MuJoCo's colour of a geom without one; its material's colour counts instead."""
 SKY_FACE = 4
-"""A sky box is six pictures above each other; this one is upright: zenith above, nadir below."""
+"""A sky box is six images stacked vertically; this one is upright, with the zenith at the top."""
 
 
 class SurfaceColours:
-    """Colours of a model's geoms and sky. A texture counts with its mean colour."""
+    """Colours of a model's geoms and sky. A texture counts as its mean colour."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         geoms = range(model.ngeom)
@@ -26,13 +26,13 @@ class SurfaceColours:
         """Return the colours (n, 3), in 0..1, of geoms (n,) under light of (n, 3)."""
         light = self._paint[geoms]
         light *= brightness + self._glow[geoms, np.newaxis]
-        # OpenGL clips before it applies the texture: a bright white floor keeps its pattern.
+        # OpenGL clips before it applies the texture, so a bright white floor keeps its pattern.
         np.minimum(light, 1.0, out=light)
         light *= self._tint[geoms]
         return light
 
     def sky(self, rays: NDArray[np.float64]) -> Colours:
-        """Return the sky's colours (n, 3) along rays (n, 3), which need no unit length."""
+        """Return the sky's colours (n, 3) along rays (n, 3) of any length."""
         across = np.maximum(np.abs(rays[:, 0]), np.abs(rays[:, 1]))
         height = np.clip(rays[:, 2] / np.maximum(across, 1e-9), -1.0, 1.0)
         rows = (0.5 * (1.0 - height) * (len(self._sky) - 1)).astype(np.intp)

@@ -1,1 +1,1 @@
-"""A URDF as part of a MuJoCo model: bodies, joints, shapes, actuators."""
+"""Convert a URDF to bodies, joints, shapes and actuators of a MuJoCo model."""

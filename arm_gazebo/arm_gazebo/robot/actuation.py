@@ -1,33 +1,63 @@
 """Which joints are driven, and the actuators that drive them."""
 
 import math
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
 
-from arm_control.hardware_info import HardwareInfo, JointInfo
-from arm_description.names import listing
-from arm_description.robot import Joint, Robot
-from arm_gazebo.build_report import BuildReport
+from arm_control.hardware.info import HardwareInfo, JointInfo
+from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Joint, Robot
 from arm_gazebo.errors import ModelError
-from arm_gazebo.robot.mimic_joints import SCALAR_TYPES, Following
+from arm_gazebo.spec.report import BuildReport
+from arm_node.names import listing
 
-DEFAULT_SPEED = {"revolute": 3.0, "continuous": 3.0, "prismatic": 0.5}
-"""Highest speed, in rad/s or m/s, on the way to a position, of a joint whose URDF gives none."""
-BOUNDLESS = 1e9
-"""A limit of speed or effort, in SI units, from which on it is none: no joint comes near it."""
+
+@dataclass(frozen=True, slots=True)
+class RobotJoint:
+    """A joint with one degree of freedom; positions in rad or m.
+
+    Attributes:
+        name: as in the URDF.
+        qpos_address: index in `data.qpos`.
+        dof_address: index in `data.qvel`.
+        actuator: index of its actuator in `data.ctrl` and `data.act`; None if it is not driven.
+        lower: lower position limit, -inf if there is none.
+        upper: upper position limit, inf if there is none.
+        velocity: highest speed of a set-point that moves to a position, above 0.
+        velocity_limit: velocity limit, inf if there is none.
+        effort: effort limit, inf if there is none.
+        initial: position at the start.
+        linear: whether the joint slides; otherwise it turns.
+    """
+
+    name: str
+    qpos_address: int
+    dof_address: int
+    actuator: int | None
+    lower: float = -math.inf
+    upper: float = math.inf
+    velocity: float = math.inf
+    velocity_limit: float = math.inf
+    effort: float = math.inf
+    initial: float = 0.0
+    linear: bool = False
+
+
+UNLIMITED = 1e9
+"""A speed or effort limit of this or more, in SI units, counts as no limit: no joint reaches it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A joint that is commanded: its bounds and where it starts, in rad or m.
+    """A commanded joint and its limits, per rad or m.
 
     Attributes:
-        joint: name.
-        velocity: highest speed of a set-point on its way to a position, above 0.
-        velocity_limit: highest speed at all, inf if it has no bound.
-        effort: highest force or torque, inf if it has no bound.
+        joint: name of the joint.
+        velocity: highest speed of a set-point that moves to a position, above 0.
+        velocity_limit: velocity limit, inf if there is none.
+        effort: effort limit, inf if there is none.
     """
 
     joint: str
@@ -39,16 +69,16 @@ class Drive:
 def drives(
     robot: Robot,
     hardware: Sequence[HardwareInfo],
-    follow: Iterable[Following],
+    follow: Mapping[str, Mimic],
     report: BuildReport,
 ) -> tuple[Drive, ...]:
-    """Return the joints that the hardware components command, in their order.
+    """Return the joints that the hardware components command, in order.
 
     Raises:
         ModelError: two components command the same joint.
     """
     known = {joint.name: joint for joint in robot.joints}
-    followers = {following.joint: following.leader for following in follow}
+    followers = {name: rule.joint for name, rule in follow.items()}
     owners: dict[str, str] = {}
     found = []
     for component in hardware:
@@ -60,18 +90,22 @@ def drives(
                 if info.name in owners:
                     raise ModelError(
                         f"joint '{info.name}' is commanded by the components "
-                        f"'{owners[info.name]}' and '{component.name}'; it can have one"
+                        f"'{owners[info.name]}' and '{component.name}'; only one may command it"
                     )
                 owners[info.name] = component.name
                 found.append(_drive(known[info.name], report))
     if hardware:
-        _name_missing(known, {i.name for c in hardware for i in c.joints} | {*followers}, report)
+        _warn_about_unnamed_joints(
+            known, {i.name for c in hardware for i in c.joints} | {*followers}, report
+        )
     return tuple(found)
 
 
-def _name_missing(known: dict[str, Joint], named: Container[str], report: BuildReport) -> None:
-    """Say which joints nobody moves or sees; a follower is seen where its leader is."""
-    missing = [j for j in known.values() if j.type in SCALAR_TYPES and j.name not in named]
+def _warn_about_unnamed_joints(
+    known: dict[str, Joint], named: Container[str], report: BuildReport
+) -> None:
+    """Warn about joints without a driver or joint state; mimic joints need no entry."""
+    missing = [j for j in known.values() if j.type.is_scalar and j.name not in named]
     if missing:
         many = len(missing) > 1
         report.warn(
@@ -85,16 +119,16 @@ def _name_missing(known: dict[str, Joint], named: Container[str], report: BuildR
 
 
 def _problem(info: JointInfo, known: dict[str, Joint], followers: dict[str, str]) -> str:
-    """Return why a joint of the hardware is not driven, empty if it can be."""
+    """Return why a joint of the hardware is not driven; empty if it is."""
     joint = known.get(info.name)
     if joint is None:
         return f"the robot has no such joint, it has {', '.join(known)}; it is left out"
-    if joint.type not in SCALAR_TYPES:
+    if not joint.type.is_scalar:
         return f"a {joint.type} joint cannot be commanded; it is left out"
     if info.name in followers and info.command_interfaces:
         return (
-            f"it mimics '{followers[info.name]}' and cannot be commanded besides, "
-            'unless mimic="false" in its <joint> there makes it independent'
+            f"it mimics '{followers[info.name]}' and cannot be commanded; "
+            'mimic="false" in its <joint> there makes it independent'
         )
     return ""
 
@@ -103,27 +137,27 @@ def _drive(joint: Joint, report: BuildReport) -> Drive:
     velocity = limit = joint.limit.velocity if joint.limit else 0.0
     effort = joint.limit.effort if joint.limit else 0.0
     element = f"joint '{joint.name}'"
-    if not 0 < velocity < BOUNDLESS:
-        velocity, limit = DEFAULT_SPEED[joint.type], math.inf
-        unit = "m/s" if joint.type == "prismatic" else "rad/s"
+    if not 0 < velocity < UNLIMITED:
+        velocity, limit = joint.type.default_speed, math.inf
         report.repair(
             element,
-            f"it has no velocity limit; it goes to positions at up to {velocity:g} {unit}",
+            "it has no velocity limit; it moves to positions at up to "
+            f"{velocity:g} {joint.type.unit}/s",
             joint.line,
         )
-    if not 0 < effort < BOUNDLESS:
+    if not 0 < effort < UNLIMITED:
         effort = math.inf
         report.repair(
-            element, "it has no effort limit; its drive is as strong as need be", joint.line
+            element, "it has no effort limit; its drive is as strong as necessary", joint.line
         )
     return Drive(joint.name, velocity, limit, effort)
 
 
 def add_actuators(spec: mujoco.MjSpec, driven: Iterable[Drive], default: mujoco.MjsDefault) -> None:
-    """Add one actuator for each driven joint, of the same name.
+    """Add one actuator for each driven joint, with the same name.
 
-    Its activation integrates its control within a control period, so that a set-point moves on
-    between two ticks without any Python; see `servo`. The servo sets the gains.
+    The activation integrates the control within a control period, so that the set-point moves
+    between two ticks without any Python code; see `servo`. The servo sets the gains.
     """
     for drive in driven:
         actuator = spec.add_actuator(
@@ -134,7 +168,7 @@ def add_actuators(spec: mujoco.MjSpec, driven: Iterable[Drive], default: mujoco.
             dyntype=mujoco.mjtDyn.mjDYN_INTEGRATOR,
             gaintype=mujoco.mjtGain.mjGAIN_FIXED,
             biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-            # The force answers to this step's set-point, not to the one before.
+            # The force follows this step's set-point, not that of the previous step.
             actearly=True,
         )
         actuator.gainprm = [0.0] * len(actuator.gainprm)

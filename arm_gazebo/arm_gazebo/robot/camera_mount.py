@@ -1,4 +1,4 @@
-"""The robot's cameras as cameras of the model."""
+"""Add the robot's cameras to the model."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,22 +11,22 @@ from arm_gazebo.errors import ModelError
 from arm_gazebo.sensors.camera import CameraSensor
 
 FORWARD_TO_MUJOCO = np.array([0.5, 0.5, -0.5, -0.5])
-"""Turns ROS's camera (looks along x, z up) into MuJoCo's (looks along -z, y up), w x y z."""
-SMALLEST_BUFFER = 800
-"""Pixels of the off-screen buffer each way: a renderer may ask for more than a camera does."""
+"""Rotates a ROS camera (looks along x, z up) to MuJoCo's (looks along -z, y up), w x y z."""
+MIN_BUFFER = 800
+"""Smallest side of the off-screen buffer in pixels: a renderer may need more than a camera."""
 
 
 def add_cameras(
     spec: mujoco.MjSpec, bodies: Mapping[str, mujoco.MjsBody], cameras: Sequence[CameraSensor]
 ) -> None:
-    """Add each camera to its link's body under the sensor's name, and room to render it.
+    """Add each camera to its link's body under the sensor's name, and enlarge the render buffer.
 
     Raises:
-        ModelError: a camera's link does not exist, or the world has a camera of its name.
+        ModelError: a camera's link does not exist, or the world already has a camera of that name.
     """
     buffer = spec.visual.global_
-    buffer.offwidth = max([SMALLEST_BUFFER, buffer.offwidth, *(c.width for c in cameras)])
-    buffer.offheight = max([SMALLEST_BUFFER, buffer.offheight, *(c.height for c in cameras)])
+    buffer.offwidth = max([MIN_BUFFER, buffer.offwidth, *(c.width for c in cameras)])
+    buffer.offheight = max([MIN_BUFFER, buffer.offheight, *(c.height for c in cameras)])
     # Four samples a pixel and a shadow map of 4096 make a frame twenty times slower in software.
     spec.visual.quality.offsamples = 0
     spec.visual.quality.shadowsize = 512

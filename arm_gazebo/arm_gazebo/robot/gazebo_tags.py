@@ -1,45 +1,77 @@
-"""What `<gazebo>` tags say about the physics and looks of links; sensors are read elsewhere."""
+"""Read the physics and colours of links from `<gazebo>` tags. Sensors are read elsewhere."""
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from arm_description.mesh_data import Color
-from arm_description.names import listing
-from arm_description.xml_document import parse_xml
-from arm_gazebo.build_report import BuildReport, Finding
-from arm_gazebo.robot.gazebo_materials import gazebo_color
+from arm_description.mesh.data import Color
+from arm_description.urdf.document import Description, as_document
+from arm_gazebo.spec.report import BuildReport, Finding
+from arm_node.names import listing
 
-SLIPPERIEST = 1e-5
-ROUGHEST = 10.0
-"""Nothing slides at a slope of 84 degrees; contacts of more are hard to solve."""
+_PREFIX = "Gazebo/"
+_RGB: dict[str, tuple[float, float, float]] = {
+    "Black": (0.0, 0.0, 0.0),
+    "Blue": (0.0, 0.0, 1.0),
+    "DarkGray": (0.175, 0.175, 0.175),
+    "DarkGrey": (0.175, 0.175, 0.175),
+    "DarkYellow": (0.7, 0.7, 0.0),
+    "FlatBlack": (0.1, 0.1, 0.1),
+    "Gold": (0.8, 0.65, 0.12),
+    "Gray": (0.7, 0.7, 0.7),
+    "Green": (0.0, 1.0, 0.0),
+    "Grey": (0.7, 0.7, 0.7),
+    "Indigo": (0.33, 0.0, 0.5),
+    "LightGray": (0.9, 0.9, 0.9),
+    "LightGrey": (0.9, 0.9, 0.9),
+    "Orange": (1.0, 0.51, 0.05),
+    "Purple": (1.0, 0.0, 1.0),
+    "Red": (1.0, 0.0, 0.0),
+    "SkyBlue": (0.13, 0.44, 0.7),
+    "Turquoise": (0.0, 1.0, 1.0),
+    "White": (1.0, 1.0, 1.0),
+    "Wood": (0.6, 0.45, 0.3),
+    "Yellow": (1.0, 1.0, 0.0),
+    "ZincYellow": (0.97, 0.95, 0.21),
+}
+
+
+def gazebo_color(name: str) -> Color | None:
+    """Return the colour of a material such as "Gazebo/Orange"; None if it is unknown."""
+    rgb = _RGB.get(name.removeprefix(_PREFIX))
+    return None if rgb is None else (*rgb, 1.0)
+
+
+MIN_FRICTION = 1e-5
+MAX_FRICTION = 10.0
+"""With it nothing slides on a slope of 84 degrees; more makes contacts hard to solve."""
 FRICTION_TAGS = ("mu", "mu1", "mu2")
 SELF_COLLIDE_TAGS = ("selfCollide", "self_collide")
-NEEDLESS_TAGS = frozenset(
+IGNORED_TAGS = frozenset(
     {
-        "sensor",  # read by whoever simulates it
+        "sensor",  # read by `arm_gazebo.sensors`
         "preserveFixedJoint",  # every frame is kept
         "disableFixedJointLumping",
         "disableJointLumping",
-        "implicitSpringDamper",  # damping always is implicit
+        "implicitSpringDamper",  # damping is always implicit
         "cfmDamping",
         "provideFeedback",
         "provide_feedback",
     }
 )
-NEEDLESS_PLUGINS = (
-    "ros2_control",  # the hardware of <ros2_control> needs none
+IGNORED_PLUGINS = (
+    "ros2_control",  # the hardware in <ros2_control> needs no plugin
     "ros_control",
-    "mimic",  # joints follow by themselves
-    "sensors",  # as sensors do what they do
+    "mimic",  # mimic joints need no plugin
+    "sensors",  # sensors need no plugin
     "-imu-",
     "forcetorque",
     "-contact-",
-    "joint-state-publisher",  # as joint_state_broadcaster
+    "joint-state-publisher",  # joint_state_broadcaster does this
     "joint_state_publisher",
 )
-"""Parts of the names of Gazebo's plugins whose work is done without them."""
+"""Parts of the names of Gazebo plugins that are not needed here."""
 INSTEAD_OF_PLUGINS = {
     "diff": "; diff_drive_controller drives wheels",
     "joint-position": "; position_controllers/JointGroupPositionController moves joints",
@@ -54,30 +86,36 @@ REASONS = {
 
 @dataclass(frozen=True, slots=True)
 class LinkTags:
-    """What is said about one link.
+    """The tags of one link.
 
     Attributes:
-        friction: coefficient of its collisions, None where nothing is said.
-        self_collide: whether it touches other links of the robot.
-        rgba: colour of all its visuals, None where nothing is said.
+        friction: friction coefficient of its collisions, None if not given.
+        friction_along: coefficient in the direction of `grip`; None if not given.
+        grip: <fdir1>, the first direction of friction; None if not given.
+        grip_frame: the link in whose axes `grip` is given; empty for this one.
+        self_collide: whether it collides with other links of the robot.
+        rgba: colour of all its visuals, None if not given.
     """
 
     friction: float | None = None
+    friction_along: float | None = None
+    grip: tuple[float, float, float] | None = None
+    grip_frame: str = ""
     self_collide: bool = False
     rgba: Color | None = None
 
 
-PLAIN = LinkTags()
+NO_LINK_TAGS = LinkTags()
 
 
 @dataclass(frozen=True, slots=True)
 class GazeboTags:
-    """What is said about a robot.
+    """The tags of a robot.
 
     Attributes:
-        links: by name, those about which something is said.
-        self_collide: whether all links touch each other.
-        findings: what cannot be simulated or makes no sense.
+        links: the links that have tags, by name.
+        self_collide: whether all links collide with each other.
+        findings: what is invalid or cannot be simulated.
     """
 
     links: Mapping[str, LinkTags] = field(default_factory=dict)
@@ -85,24 +123,24 @@ class GazeboTags:
     findings: tuple[Finding, ...] = ()
 
     def link(self, name: str) -> LinkTags:
-        """Return what is said about a link."""
-        return self.links.get(name, PLAIN)
+        """Return the tags of a link."""
+        return self.links.get(name, NO_LINK_TAGS)
 
 
-def parse_gazebo_tags(urdf_xml: str) -> GazeboTags:
-    """Return what a description's <gazebo> elements say; nothing in them is an error.
+def parse_gazebo_tags(description: Description) -> GazeboTags:
+    """Return the content of a description's <gazebo> elements; invalid values become findings.
 
     Raises:
         XmlError: the text is not XML.
     """
-    root = parse_xml(urdf_xml)
-    reader = _Reader({str(e.get("name")) for e in root if e.tag in ("link", "joint")})
+    root = as_document(description).root
+    reader = _TagReader({str(e.get("name")) for e in root if e.tag in ("link", "joint")})
     for gazebo in root.findall("gazebo"):
         reader.read(gazebo)
     return reader.tags()
 
 
-class _Reader:
+class _TagReader:
     """Collects the tags of one description."""
 
     def __init__(self, names: set[str]) -> None:
@@ -128,7 +166,7 @@ class _Reader:
                 int(gazebo.sourceline or 0),
             )
             return
-        before = self._links.get(reference, PLAIN)
+        before = self._links.get(reference, NO_LINK_TAGS)
         after = before
         for element in gazebo.iterchildren(tag="*"):
             after = self._take(after, element, reference)
@@ -139,9 +177,12 @@ class _Reader:
         if element.tag in FRICTION_TAGS and reference:
             friction = self._friction(element)
             known = tags.friction
-            # Contacts have one coefficient here; the slippery direction is the safe one.
+            # MuJoCo has one coefficient for both directions; the lower one is the safe choice.
             lowest = friction if known is None or friction is None else min(known, friction)
-            return replace(tags, friction=known if lowest is None else lowest)
+            along = tags.friction_along if element.tag == "mu2" else friction
+            return replace(tags, friction=known if lowest is None else lowest, friction_along=along)
+        if element.tag == "fdir1" and reference:
+            return self._grip(tags, element)
         if element.tag in SELF_COLLIDE_TAGS:
             wanted = _text(element).lower() in ("true", "1")
             self._self_collide |= wanted and not reference
@@ -156,14 +197,14 @@ class _Reader:
                 "no link carries it: its <gazebo> has no reference",
                 int(element.sourceline or 0),
             )
-        elif element.tag not in NEEDLESS_TAGS:
+        elif element.tag not in IGNORED_TAGS:
             self._left_out.setdefault(str(element.tag), []).append(int(element.sourceline or 0))
         return tags
 
     def _leave_out_plugin(self, element: Any) -> None:
         file = str(element.get("filename", "")).strip()
         name = f"{file} {element.get('name', '')}".lower()
-        if any(part in name for part in NEEDLESS_PLUGINS):
+        if any(part in name for part in IGNORED_PLUGINS):
             return
         instead = next((text for part, text in INSTEAD_OF_PLUGINS.items() if part in name), "")
         self._report.drop(
@@ -175,15 +216,27 @@ class _Reader:
     def _friction(self, element: Any) -> float | None:
         value = next(_numbers(_text(element)), math.nan)
         if not (math.isfinite(value) and value >= 0):
-            self._doubt(element, "is no number from 0 on; it is left out")
+            self._warn(element, "is not a number of at least 0; it is left out")
             return None
-        return min(max(value, SLIPPERIEST), ROUGHEST)
+        return min(max(value, MIN_FRICTION), MAX_FRICTION)
+
+    def _grip(self, tags: LinkTags, element: Any) -> LinkTags:
+        direction = list(_numbers(_text(element)))
+        if len(direction) != 3 or not all(map(math.isfinite, direction)) or not any(direction):
+            self._warn(element, "is not a direction x y z; it is left out")
+            return tags
+        frames = [value for key, value in element.items() if key.endswith("expressed_in")]
+        if frames and frames[0] not in self._names:
+            self._warn(element, f"is given in '{frames[0]}', which is not a link; it is left out")
+            return tags
+        x, y, z = direction
+        return replace(tags, grip=(x, y, z), grip_frame=frames[0] if frames else "")
 
     def _color(self, element: Any) -> Color | None:
         if element.tag == "material" and _text(element):
             color = gazebo_color(_text(element))
             if color is None:
-                self._doubt(element, "is no material of Gazebo's; the link keeps its colours")
+                self._warn(element, "is not a material of Gazebo's; the link keeps its colours")
             return color
         for tag in ("diffuse", "ambient"):
             found = element.find(f".//{tag}")
@@ -193,7 +246,7 @@ class _Reader:
                 return red, green, blue, alpha
         return None
 
-    def _doubt(self, element: Any, problem: str) -> None:
+    def _warn(self, element: Any, problem: str) -> None:
         self._report.warn(
             f"<gazebo> <{element.tag}>",
             f"'{_text(element)}' {problem}",

@@ -1,34 +1,33 @@
-"""Where the joints are when the simulation starts."""
+"""The positions of the joints when the simulation starts."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from arm_control.hardware_info import HardwareInfo
-from arm_description.robot import Joint, Robot
-from arm_gazebo.build_report import BuildReport
-from arm_gazebo.robot.mimic_joints import SCALAR_TYPES, Following
+from arm_control.hardware.info import HardwareInfo
+from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Joint, Robot
+from arm_gazebo.spec.report import BuildReport
 
 
 def initial_positions(
     robot: Robot,
     hardware: Sequence[HardwareInfo],
-    follow: Iterable[Following],
+    follow: Mapping[str, Mimic],
     report: BuildReport,
 ) -> dict[str, float]:
     """Return the starting position of every joint with one degree of freedom, in rad or m.
 
-    It is the `initial_value` of the hardware's position interface, 0 without one, moved into the
-    joint's limits. A mimicking joint starts where its leader puts it.
+    It is the `initial_value` of the hardware's position interface, or else 0, clamped to the
+    joint's limits. A mimic joint starts where its leader puts it.
     """
     given = _given_positions(hardware)
     positions = {
         joint.name: _within_limits(joint, given, report)
         for joint in robot.joints
-        if joint.type in SCALAR_TYPES
+        if joint.type.is_scalar
     }
-    for following in follow:
-        leader = positions[following.leader]
-        positions[following.joint] = following.multiplier * leader + following.offset
+    for name, rule in follow.items():
+        positions[name] = rule.position(positions[rule.joint])
     return positions
 
 
@@ -37,7 +36,7 @@ def _given_positions(hardware: Sequence[HardwareInfo]) -> dict[str, float]:
         joint.name: interface.initial_value
         for component in hardware
         for joint in component.joints
-        # What the state says goes before what the command says.
+        # The state interface takes precedence over the command interface.
         for interface in (*joint.command_interfaces, *joint.state_interfaces)
         if interface.name == "position" and interface.initial_value is not None
     }

@@ -1,4 +1,4 @@
-"""The shapes of links: visuals to be seen, collisions to be touched, and their bounds."""
+"""Add the shapes of links: visuals, collisions and their bounds."""
 
 import math
 from collections.abc import Iterator
@@ -8,34 +8,43 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.mesh_data import Color
-from arm_description.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Pose, Sphere, Visual
-from arm_gazebo.build_report import BuildReport
+from arm_description.mesh.data import Color
+from arm_description.transforms import wxyz_from_rpy
+from arm_description.urdf.robot import (
+    Box,
+    Capsule,
+    Cylinder,
+    Geometry,
+    Link,
+    Mesh,
+    Pose,
+    Sphere,
+    Visual,
+)
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.mesh.part import MeshPart
-from arm_gazebo.quaternion import wxyz
+from arm_gazebo.mesh.part import MIN_HALF_THICKNESS_M, MeshPart
 from arm_gazebo.robot.collision_policy import CollisionMasks, with_self
 from arm_gazebo.robot.gazebo_tags import GazeboTags
+from arm_gazebo.spec.report import BuildOutcome, BuildReport, Finding
 
 VISUAL_GROUP = 2
 COLLISION_GROUP = 3
-"""Groups as in MuJoCo's own models: its viewers show 0 to 2."""
+"""Groups as in MuJoCo's own models; its viewers show groups 0 to 2."""
 DEFAULT_COLOR: Color = (0.7, 0.7, 0.7, 1.0)
-STAND_IN_COLOR: Color = (0.9, 0.2, 0.7, 1.0)
+PLACEHOLDER_COLOR: Color = (0.9, 0.2, 0.7, 1.0)
 DEFAULT_FRICTION = 1.0
-"""MuJoCo's, and Gazebo's."""
+"""The default of both MuJoCo and Gazebo."""
 PRIORITIES = 1_000_000
-"""How many frictions below 1 are told apart."""
-STAND_IN_SIDE_M = 0.05
-"""Side of the box that stands for a mesh that cannot be had: small, and of no usual colour."""
-THINNEST_M = 1e-4
-SMALLEST_M = 1e-6
+"""Number of friction levels below 1 that priorities distinguish."""
+PLACEHOLDER_SIDE_M = 0.05
+"""Side of the box that replaces an unavailable mesh: small, and in a conspicuous colour."""
+MIN_SIZE_M = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class _Shape:
-    """What a geom needs besides its place: MuJoCo's type and half sizes, or a mesh's name."""
+    """A geom without its pose: MuJoCo's type and half sizes, or the name of a mesh."""
 
     type: mujoco.mjtGeom
     size: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -49,12 +58,15 @@ class LinkGeometry:
 
     Args:
         meshes: the model's meshes.
-        default: values of what is not set: the world file's own defaults are for the world.
-        tags: what the description says about friction, colours and self-collision.
-        masks: what collisions touch, where the tags say nothing else.
-        strict: whether a mesh that cannot be had is an error.
-        report: gets a warning for every shape that is replaced.
+        default: default values; the world file's own defaults are for the world only.
+        tags: friction, colours and self-collision in the description.
+        masks: collision masks of links whose tags do not override them.
+        strict: whether an unavailable mesh is an error.
+        report: receives a warning for every shape that is replaced.
     """
+
+    missing = BuildOutcome.REPAIRED
+    """The outcome to report for an unavailable mesh."""
 
     def __init__(
         self,
@@ -77,13 +89,13 @@ class LinkGeometry:
         """Add the visuals and collisions of a link to its body.
 
         Raises:
-            MeshError: strict, and a mesh cannot be had.
+            MeshError: a mesh is unavailable and `strict` is set.
         """
         tags = self._tags.link(link.name)
         masks = with_self(self._masks) if tags.self_collide else self._masks
         for visual in link.visuals:
             shapes = tuple(self._shapes(visual.geometry, link))
-            # A file of several colours knows better than the one colour of the URDF.
+            # A file with several colours overrides the single colour of the URDF.
             colorful = len({shape.rgba for shape in shapes}) > 1
             for shape in shapes:
                 geom = self._add_geom(body, visual.origin, shape)
@@ -102,7 +114,7 @@ class LinkGeometry:
     def bounds(self, link: Link) -> NDArray[np.float64] | None:
         """Return lowest and highest corner of the link's shapes in its frame, shape (2, 3).
 
-        Meshes that cannot be had do not count; None where nothing is left.
+        Unavailable meshes do not count; without any shape the result is None.
         """
         corners = [
             pose.matrix()[:3, :3] @ corner + pose.xyz
@@ -138,47 +150,54 @@ class LinkGeometry:
             yield _primitive(geometry)
             return
         try:
-            assets = self._meshes.assets(geometry)
+            assets = self._meshes.assets(geometry, _where(link))
         except MeshError as error:
-            yield self._stand_in(geometry, error, link)
+            yield self._placeholder(geometry, error, link)
             return
         self._report_simplified(geometry, link)
         for asset in assets:
             yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name, rgba=asset.rgba)
 
     def _hulls(self, geometry: Geometry, link: Link) -> Iterator[_Shape]:
-        """Yield shapes that can be touched: MuJoCo makes a mesh's hull, which a flat one lacks."""
+        """Yield collision shapes: MuJoCo computes a mesh's hull, but a flat mesh has none."""
         if not isinstance(geometry, Mesh):
             yield _primitive(geometry)
             return
         try:
             parts = self._meshes.parts(geometry)
         except MeshError as error:
-            yield self._stand_in(geometry, error, link)
+            yield self._placeholder(geometry, error, link)
             return
-        for part, asset in zip(parts, self._meshes.hulls(geometry), strict=True):
+        for part, asset in zip(parts, self._meshes.hulls(geometry, _where(link)), strict=True):
             if part.is_flat():
-                self._report.repair(
-                    f"link '{link.name}'",
-                    f"its collision mesh {geometry.uri} is flat; its bounding box is used",
-                    link.line,
-                )
-                yield _box_around(part)
+                yield self._flat(geometry, part, link)
             else:
                 yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name)
+
+    def _flat(self, mesh: Mesh, part: MeshPart, link: Link) -> _Shape:
+        """Return the collision shape for a mesh without a volume."""
+        if part.lies_along_axes():
+            shape, instead = _box_around(part), "its bounding box is used"
+        else:
+            asset = self._meshes.thickened(mesh, part, _where(link))
+            shape = _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name)
+            instead = "it is made a little thicker"
+        problem = f"its collision mesh {mesh.uri} is flat; {instead}"
+        self._report.repair(f"link '{link.name}'", problem, link.line)
+        return shape
 
     def _add_geom(self, body: mujoco.MjsBody, origin: Pose, shape: _Shape) -> mujoco.MjsGeom:
         geom = body.add_geom(
             self._default,
             type=shape.type,
             pos=np.asarray(origin.xyz) + origin.matrix()[:3, :3] @ np.asarray(shape.offset),
-            quat=wxyz(origin.rpy),
+            quat=wxyz_from_rpy(origin.rpy),
         )
         if shape.mesh:
             geom.meshname = shape.mesh
         else:
             geom.size = shape.size
-        # Mass comes from the link's inertial alone.
+        # Only the link's <inertial> contributes mass.
         geom.mass = 0.0
         return geom
 
@@ -193,29 +212,34 @@ class LinkGeometry:
                 link.line,
             )
 
-    def _stand_in(self, mesh: Mesh, error: MeshError, link: Link) -> _Shape:
+    def _placeholder(self, mesh: Mesh, error: MeshError, link: Link) -> _Shape:
         element = f"link '{link.name}'"
         if self._strict:
-            raise MeshError(f"{element} (line {link.line}): {error}") from error
+            raise MeshError(f"{_where(link)}: {error}") from error
         if mesh.uri not in self._reported:
             self._reported.add(mesh.uri)
-            self._report.repair(element, f"{error}\na box of 5 cm takes its place", link.line)
-        half = STAND_IN_SIDE_M / 2
-        return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=STAND_IN_COLOR)
+            message = f"{error}\n  a box of 5 cm replaces it"
+            self._report.add(Finding(self.missing, element, message, link.line))
+        half = PLACEHOLDER_SIDE_M / 2
+        return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=PLACEHOLDER_COLOR)
+
+
+def _where(link: Link) -> str:
+    return f"link '{link.name}' (line {link.line})"
 
 
 def set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
-    """Give a shape its sliding friction, and the more priority the more slippery it is.
+    """Set the sliding friction of a shape, and a priority that is higher for lower friction.
 
-    Of two shapes in contact Gazebo takes the lower coefficient, MuJoCo that of the higher
-    priority, and of equal ones the higher coefficient.
+    Of two shapes in contact Gazebo uses the lower coefficient. MuJoCo uses the coefficient of the
+    shape with the higher priority, and for equal priorities the higher coefficient.
     """
     geom.friction = [friction, *geom.friction[1:]]
     geom.priority = math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)
 
 
 def _shapes_of(link: Link) -> Iterator[tuple[Pose, Geometry]]:
-    """Yield the collisions of a link, or its visuals where it has none."""
+    """Yield the collisions of a link, or its visuals if it has no collisions."""
     for shape in link.collisions or link.visuals:
         yield shape.origin, shape.geometry
 
@@ -233,20 +257,20 @@ def _primitive(geometry: Box | Cylinder | Sphere | Capsule) -> _Shape:
 
 
 def _sizes(*sizes: float) -> tuple[float, float, float]:
-    """Return three half sizes, none of them 0: MuJoCo refuses what has no volume."""
-    padded = [max(size, SMALLEST_M) for size in sizes] + [0.0] * (3 - len(sizes))
+    """Return three half sizes; none is 0, because MuJoCo refuses shapes without a volume."""
+    padded = [max(size, MIN_SIZE_M) for size in sizes] + [0.0] * (3 - len(sizes))
     return (padded[0], padded[1], padded[2])
 
 
 def _box_around(part: MeshPart) -> _Shape:
     low, high = part.bounds
-    half = np.maximum((high - low) / 2, THINNEST_M).tolist()
+    half = np.maximum((high - low) / 2, MIN_HALF_THICKNESS_M).tolist()
     middle = ((low + high) / 2).tolist()
     return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half[0], half[1], half[2]), tuple(middle))
 
 
 def _color(visual: Visual, shape: _Shape) -> Color | None:
-    """Return a visual's colour: the URDF's, else the file's."""
+    """Return a visual's colour: from the URDF, or else from the mesh file."""
     if visual.material is not None and visual.material.rgba is not None:
         return visual.material.rgba
     return shape.rgba

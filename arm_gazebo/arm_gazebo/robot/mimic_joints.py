@@ -1,52 +1,36 @@
-"""Joints that follow others, as stiff equalities between their positions."""
+"""Add mimic joints as stiff equality constraints between joint positions."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import mujoco
 
-from arm_control.hardware_info import HardwareInfo
-from arm_description.robot import Joint, JointLimit, Robot
-from arm_gazebo.build_report import BuildReport
+from arm_control.hardware.info import HardwareInfo
+from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Joint, JointLimit, Robot
+from arm_gazebo.spec.report import BuildReport
 
-SCALAR_TYPES = ("revolute", "continuous", "prismatic")
 FITS_WITHIN = 1e-3
-"""How far, in rad or m, a follower may be driven past its own limit without a word."""
+"""How far, in rad or m, a mimic joint may be driven past its own limit without a warning."""
 
 
-@dataclass(frozen=True, slots=True)
-class Following:
-    """A joint whose position is multiplier x position of `leader` + offset.
-
-    The leader follows nobody: chains are resolved.
-    """
-
-    joint: str
-    leader: str
-    multiplier: float
-    offset: float
-
-
-def without_released(robot: Robot, hardware: Iterable[HardwareInfo]) -> Robot:
-    """Return the robot whose joints follow no other where mimic="false" in the hardware says so."""
+def without_independent_mimics(robot: Robot, hardware: Iterable[HardwareInfo]) -> Robot:
+    """Return the robot without the mimic rules that mimic="false" in the hardware disables."""
     free = {info.name for component in hardware for info in component.joints if info.mimic is None}
     joints = (replace(j, mimic=None) if j.name in free else j for j in robot.joints)
     return replace(robot, joints=tuple(joints))
 
 
-def followings(robot: Robot, report: BuildReport) -> tuple[Following, ...]:
-    """Return every joint that mimics another, with the end of its chain as its leader."""
-    found = []
+def followings(robot: Robot, report: BuildReport) -> dict[str, Mimic]:
+    """Return for each joint that mimics another how it follows the end of its chain."""
+    found: dict[str, Mimic] = {}
     for joint in robot.joints:
         if joint.mimic is None:
             continue
-        leader, multiplier, offset = joint, 1.0, 0.0
-        while leader.mimic is not None:
-            offset += multiplier * leader.mimic.offset
-            multiplier *= leader.mimic.multiplier
-            leader = robot.joint(leader.mimic.joint)
-        if joint.type not in SCALAR_TYPES or leader.type not in SCALAR_TYPES:
+        rule = robot.leader_of(joint.name)
+        leader = robot.joint(rule.joint)
+        if not (joint.type.is_scalar and leader.type.is_scalar):
             report.warn(
                 f"joint '{joint.name}'",
                 f"it is {joint.type} and mimics '{leader.name}', which is {leader.type}; "
@@ -54,42 +38,40 @@ def followings(robot: Robot, report: BuildReport) -> tuple[Following, ...]:
                 joint.line,
             )
             continue
-        found.append(Following(joint.name, leader.name, multiplier, offset))
-    return tuple(found)
+        found[joint.name] = rule
+    return found
 
 
 def add_equalities(
     spec: mujoco.MjSpec,
     robot: Robot,
-    follow: tuple[Following, ...],
+    follow: Mapping[str, Mimic],
     step_s: float,
     report: BuildReport,
 ) -> None:
-    """Tie followers to their leaders.
+    """Constrain mimic joints to their leaders.
 
-    MuJoCo's default tie lets a gripper's finger lag by 20 mrad; this one by 1.
+    With MuJoCo's default equality a gripper's finger lags by 20 mrad; with this one by 1 mrad.
     """
-    for following in follow:
+    for name, rule in follow.items():
         equality = spec.add_equality(
-            name=f"{following.joint}_mimic",
+            name=f"{name}_mimic",
             type=mujoco.mjtEq.mjEQ_JOINT,
             objtype=mujoco.mjtObj.mjOBJ_JOINT,
-            name1=following.joint,
-            name2=following.leader,
+            name1=name,
+            name2=rule.joint,
         )
-        data = [following.offset, following.multiplier] + [0.0] * (len(equality.data) - 2)
-        equality.data = data
+        equality.data = [rule.offset, rule.multiplier] + [0.0] * (len(equality.data) - 2)
         equality.solref = [max(0.004, 2 * step_s), 1.0]
         equality.solimp = [0.99, 0.999, 0.001, 0.5, 2.0]
-        _free_from_limits(spec, following, robot, report)
+        _free_from_limits(spec, robot.joint(name), robot.joint(rule.joint), rule, report)
 
 
 def _free_from_limits(
-    spec: mujoco.MjSpec, following: Following, robot: Robot, report: BuildReport
+    spec: mujoco.MjSpec, joint: Joint, leader: Joint, rule: Mimic, report: BuildReport
 ) -> None:
-    """Drop limits that the leader drives a follower past: they would fight the tie."""
-    joint, leader = robot.joint(following.joint), robot.joint(following.leader)
-    reached = _range(leader, following)
+    """Drop limits that the leader drives a mimic joint past, because they fight the equality."""
+    reached = _range(leader, rule)
     if joint.limit is None or reached is None:
         return
     lower, upper = joint.limit.lower, joint.limit.upper
@@ -104,11 +86,9 @@ def _free_from_limits(
     )
 
 
-def _range(leader: Joint, following: Following) -> tuple[float, float] | None:
+def _range(leader: Joint, rule: Mimic) -> tuple[float, float] | None:
     limit: JointLimit | None = leader.limit
     if limit is None:
         return None
-    ends = sorted(
-        following.multiplier * end + following.offset for end in (limit.lower, limit.upper)
-    )
+    ends = sorted(map(rule.position, (limit.lower, limit.upper)))
     return (ends[0], ends[1]) if all(map(math.isfinite, ends)) else None

@@ -1,33 +1,69 @@
-"""One robot on its way into a model that it may share with others."""
+"""Add one robot to a model, which it may share with other robots."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.hardware_info import HardwareInfo
-from arm_description.robot import Pose, Robot
-from arm_gazebo.build_report import BuildReport
+from arm_control.hardware.info import HardwareInfo
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.robot import Pose, Robot
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.robot.actuation import Drive, add_actuators, drives
+from arm_gazebo.robot.actuation import Drive, RobotJoint, add_actuators, drives
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
-from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.camera_mount import add_cameras
-from arm_gazebo.robot.collision_policy import CollisionLayer, leave_out_neighbours
-from arm_gazebo.robot.footing import Footing
+from arm_gazebo.robot.collision_policy import CollisionLayer, exclude_neighbour_contacts
+from arm_gazebo.robot.floor_contact import FloorContact
 from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.initial_state import initial_positions
-from arm_gazebo.robot.joint import RobotJoint
 from arm_gazebo.robot.link_geometry import LinkGeometry
-from arm_gazebo.robot.mimic_joints import add_equalities, followings, without_released
+from arm_gazebo.robot.mimic_joints import add_equalities, followings, without_independent_mimics
+from arm_gazebo.robot.rollers import add_rollers
+from arm_gazebo.robot.start_contacts import report_overlaps
+from arm_gazebo.robot.wheels import set_up_wheels
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
+from arm_gazebo.spec.mjcf_size import WORLD_LIMIT, MemoryLimit
+from arm_gazebo.spec.physics_timing import MAX_STEP_S
+from arm_gazebo.spec.report import BuildReport
+
+Base = Literal["fixed", "free"]
+
+
+@dataclass(frozen=True, slots=True)
+class BuildOptions:
+    """Choices for `build_model`.
+
+    Attributes:
+        step_s: physics step; see `physics_timing`.
+        base: whether a root link other than `world` is bolted down or stands free.
+        spawn: pose of the robot's root in the world. By default a fixed base is at the world's
+            origin, and a free base is at the height at which it stands on the floor.
+        self_collide: whether links of the robot collide with each other; off by default, as in
+            Gazebo.
+        strict: whether an unavailable mesh is an error instead of a box and a warning.
+        resources: finds the files that the description names.
+        mesh_cache: folder of the mesh cache; None for no cache.
+        memory_limit: limit on the memory of a world's MJCF.
+    """
+
+    step_s: float = MAX_STEP_S
+    base: Base = "fixed"
+    spawn: Pose | None = None
+    self_collide: bool = False
+    strict: bool = False
+    resources: ResourceFinder = field(default_factory=ResourceFinder)
+    mesh_cache: Path | None = None
+    memory_limit: MemoryLimit = WORLD_LIMIT
+
 
 DEFAULT_OPTIONS = BuildOptions()
 NO_TAGS = GazeboTags()
@@ -35,15 +71,15 @@ NO_TAGS = GazeboTags()
 
 @dataclass(frozen=True, slots=True)
 class RobotInWorld:
-    """A robot and what is wanted of it.
+    """A robot to add to a world.
 
     Attributes:
-        robot: the description.
-        hardware: says which joints are commanded and where they start.
-        cameras: become cameras of the model, of the same names.
+        robot: the parsed description.
+        hardware: the components, which give the commanded joints and their initial values.
+        cameras: the cameras, which keep their names in the model.
         options: the user's choices.
-        tags: what the description's <gazebo> elements say.
-        sensors: become sensors of the model.
+        tags: the content of the description's <gazebo> elements.
+        sensors: the sensors to add to the model.
     """
 
     robot: Robot
@@ -55,20 +91,20 @@ class RobotInWorld:
 
     @property
     def self_collides(self) -> bool:
-        """Whether some links of the robot touch each other."""
+        """Whether some links of the robot collide with each other."""
         tags = self.tags
         some = tags.self_collide or any(link.self_collide for link in tags.links.values())
         return self.options.self_collide or some
 
 
 class RobotPart:
-    """Adds one robot to a specification, and knows it again in the compiled model.
+    """Adds one robot to a specification, and finds it in the compiled model.
 
     Args:
-        spec: the world; gets links, joints, actuators and cameras.
+        spec: the world; receives links, joints, actuators and cameras.
         entry: the robot.
-        layer: tells its shapes from those of other robots.
-        report: gets what is repaired or left out.
+        layer: distinguishes its shapes from those of other robots.
+        report: receives what is repaired or left out.
 
     Raises:
         ModelError: the robot cannot be simulated as described; MeshError for its meshes.
@@ -85,9 +121,10 @@ class RobotPart:
         self._spec = spec
         self._entry = entry
         self._report = report
-        robot, options = without_released(entry.robot, entry.hardware), entry.options
+        robot, options = without_independent_mimics(entry.robot, entry.hardware), entry.options
         self._free = options.base == "free" and robot.root != WORLD_LINK
         self._bodies = self._add_links(layer)
+        add_rollers(spec, self._bodies, robot, entry.tags, report)
         self._follow = followings(robot, report)
         add_equalities(spec, robot, self._follow, options.step_s, report)
         self._drives = drives(robot, entry.hardware, self._follow, report)
@@ -96,22 +133,38 @@ class RobotPart:
         for sensor in entry.sensors:
             sensor.add_to(spec, self._bodies)
             if isinstance(sensor, ContactSensor) and not robot.link(sensor.link).collisions:
-                nothing = f"link '{sensor.link}' has no collision shape: nothing can touch it"
-                report.warn(f"contact sensor '{sensor.name}'", nothing)
+                problem = f"link '{sensor.link}' has no collision shape: nothing can touch it"
+                report.warn(f"contact sensor '{sensor.name}'", problem)
         self._start = initial_positions(robot, entry.hardware, self._follow, report)
 
     def place(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:
-        """Write where the robot starts into the positions of the whole model."""
+        """Write the robot's starting positions into the positions of the whole model."""
         for name, position in self._start.items():
             qpos[model.joint(name).qposadr[0]] = position
         if self._free:
             root, spawn = self._entry.robot.root, self._entry.options.spawn
-            _stand(model, qpos, root, spawn, self._report)
+            _place_on_floor(model, qpos, root, spawn, self._report)
 
-    def leave_out_neighbours(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:
-        """Exclude contacts within the robot that are there from the start."""
+    def set_up_wheels(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> bool:
+        """Make wheels roll and casters slide realistically; return whether there are wheels."""
+        return set_up_wheels(self._spec, model, qpos, self.bodies(model), self._report)
+
+    def report_overlaps(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:
+        """Report links that start below the floor, inside something or inside another link."""
+        can_be_free = not self._free and self._entry.robot.root != WORLD_LINK
+        report_overlaps(
+            model,
+            qpos,
+            self.bodies(model),
+            self._entry.self_collides,
+            self._report,
+            advice="; base:=free lets the robot stand on the floor" if can_be_free else "",
+        )
+
+    def exclude_neighbour_contacts(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:
+        """Exclude contacts between neighbouring links, and those that exist from the start."""
         links = [body.name for body in self._bodies.values() if body.name != WORLD_LINK]
-        leave_out_neighbours(self._spec, model, qpos, links, self._report)
+        exclude_neighbour_contacts(self._spec, model, qpos, links, self._report)
 
     def joints(self, model: mujoco.MjModel) -> dict[str, RobotJoint]:
         """Return the joints with one degree of freedom, by name, in the URDF's order."""
@@ -123,10 +176,10 @@ class RobotPart:
 
     def _add_links(self, layer: CollisionLayer) -> dict[str, mujoco.MjsBody]:
         entry, options = self._entry, self._entry.options
-        # Values of what is not set: the world file's own defaults are meant for the world.
+        # The world file's own defaults are for the world only.
         default = mujoco.MjSpec().default
         cache = None if options.mesh_cache is None else MeshCache(options.mesh_cache)
-        meshes = MeshLibrary(self._spec, options.package_path, cache)
+        meshes = MeshLibrary(self._spec, options.resources, cache)
         masks = layer.masks(options.self_collide or entry.tags.self_collide)
         geometry = LinkGeometry(meshes, default, entry.tags, masks, options.strict, self._report)
         tree = TreeOptions(options.step_s, default, self._free, options.spawn or Pose())
@@ -144,29 +197,29 @@ def _check_names(spec: mujoco.MjSpec, robot: Robot) -> None:
             if name in taken:
                 raise ModelError(
                     f"the world, or a robot in it, already has a "
-                    f"{'body' if kind == 'link' else kind} '{name}', and the {kind} of that name "
-                    f"of robot '{robot.name}' cannot join it; rename one of them, with a prefix "
-                    "where the description takes one"
+                    f"{'body' if kind == 'link' else kind} '{name}', so the {kind} of that name "
+                    f"in robot '{robot.name}' cannot be added; rename one of them, with a prefix "
+                    "if the description takes one"
                 )
 
 
-def _stand(
+def _place_on_floor(
     model: mujoco.MjModel,
     qpos: NDArray[np.float64],
     root: str,
     spawn: Pose | None,
     report: BuildReport,
 ) -> None:
-    """Put a free robot on the floor, unless a pose is given, and say if it will topple."""
+    """Put a free robot on the floor unless a pose is given, and warn if it will topple."""
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     body = model.body(root)
-    footing = Footing(model, data, body.id)
-    if spawn is None and footing.lowest is not None:
-        qpos[model.jnt_qposadr[body.jntadr[0]] + 2] -= footing.lowest
-    overhang = footing.overhang()
+    floor = FloorContact(model, data, body.id)
+    if spawn is None and floor.lowest is not None:
+        qpos[model.jnt_qposadr[body.jntadr[0]] + 2] -= floor.lowest
+    overhang = floor.overhang()
     if overhang > 0:
         report.warn(
             f"link '{root}'",

@@ -1,34 +1,35 @@
-"""The description of a robot that stands somewhere in a world which it shares with others."""
+"""Place a robot's description in a world that it shares with other robots."""
 
 from collections.abc import Sequence
 
 import lxml.etree as etree
 import numpy as np
 
-from arm_description.robot import Pose, Robot
 from arm_description.transforms import rpy_from_rotation
-from arm_description.urdf import parse_urdf
-from arm_description.xml_document import parse_xml
-from arm_gazebo.free_name import free_name
+from arm_description.urdf.description_source import source_of, with_source
+from arm_description.urdf.parser import ignore_remark, parse_urdf
+from arm_description.urdf.robot import Pose, Robot
+from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.robot.body_tree import WORLD_LINK
+from arm_gazebo.spec.names import free_name
 
 
 def placed(urdf: str, pose: Sequence[float]) -> str:
-    """Return the description with its root fixed to the link "world", where the pose says.
+    """Return the description with its root fixed to the link "world" at a pose.
 
-    For the state publisher, so that /tf has the robots of one world beside each other. Where a
-    link below the root is called "world", the one above the root is "ROOT_world".
+    The state publisher uses it, so that /tf shows the robots of one world at their places. If a
+    link below the root is already called "world", the new link is called "ROOT_world".
 
     Args:
-        urdf: of a robot whose root stays where it is.
-        pose: of the root in the world, x y z roll pitch yaw in m and rad; () for its own.
+        urdf: description of a robot whose root does not move.
+        pose: pose of the root in the world, x y z roll pitch yaw in m and rad; () for the origin.
 
     Raises:
-        DescriptionError: the description is none.
+        DescriptionError: the description is invalid.
     """
     x, y, z, roll, pitch, yaw = pose or (0.0,) * 6
     place = Pose((x, y, z), (roll, pitch, yaw))
-    robot = parse_urdf(urdf)
+    robot = parse_urdf(urdf, remark=ignore_remark)
     document = parse_xml(urdf)
     if robot.root == WORLD_LINK:
         moved = {joint.name: joint.origin for joint in robot.children(WORLD_LINK)}
@@ -43,11 +44,13 @@ def placed(urdf: str, pose: Sequence[float]) -> str:
         etree.SubElement(element, "parent", link=world)
         etree.SubElement(element, "child", link=robot.root)
         _set_origin(element, place.matrix())
-    return etree.tostring(document, encoding="unicode")
+    source = source_of(urdf)
+    text = etree.tostring(document, encoding="unicode")
+    return text if source.file is None else with_source(text, source.file, source.package_path)
 
 
 def _world_of(robot: Robot) -> str:
-    """Return a name for the link to add: with the root's, no two robots of one world share it."""
+    """Return a name for the new link; it contains the root's name to be unique in the world."""
     links = {link.name for link in robot.links}
     if WORLD_LINK not in links:
         return WORLD_LINK

@@ -1,1 +1,1 @@
-"""The ROS half of arm_gazebo: topics, services and parameters around the simulation."""
+"""The ROS interface of the simulation: topics, services and parameters."""

@@ -1,4 +1,4 @@
-"""Reports on /diagnostics how well each camera keeps up."""
+"""Report each camera's achieved rate on /diagnostics."""
 
 from collections.abc import Sequence
 
@@ -7,16 +7,15 @@ from rclpy.node import Node
 
 from arm_gazebo.camera.pipeline import CameraPipeline
 from arm_gazebo.camera.statistics import CameraReport
-from arm_gazebo.ros.camera_publisher import CameraPublisher
-from arm_gazebo.ros.image_topic import set_stamp
+from arm_gazebo.ros.camera_publisher import CameraPublisher, set_stamp
 from arm_gazebo.sensors.camera import CameraSensor
 
 PERIOD_S = 1.0
-LEAST_SHARE = 0.9
+MIN_ACHIEVED = 0.9
 
 
 class CameraDiagnostics:
-    """Publishes one DiagnosticArray a second, with one status per camera."""
+    """Publishes one DiagnosticArray per second, with one status per camera."""
 
     def __init__(
         self,
@@ -28,10 +27,10 @@ class CameraDiagnostics:
         """Start reporting.
 
         Args:
-            node: gets the publisher and a timer.
+            node: the node that gets the publisher and a timer.
             sensors: the cameras.
-            publishers: of each camera.
-            pipeline: what draws them.
+            publishers: the publisher of each camera.
+            pipeline: renders the cameras.
         """
         self._pipeline = pipeline
         self._cameras = tuple(zip(sensors, publishers, pipeline.statistics, strict=True))
@@ -52,9 +51,9 @@ def _status(
     sensor: CameraSensor, subscribers: int, report: CameraReport, backend: str
 ) -> DiagnosticStatus:
     achieved = report.achieved
-    slow = achieved is not None and achieved < LEAST_SHARE
+    slow = achieved is not None and achieved < MIN_ACHIEVED
     if achieved is None:
-        text = "nobody is looking"
+        text = "no subscribers"
     else:
         text = f"{achieved * sensor.rate_hz:.1f} of {sensor.rate_hz:g} Hz"
     values = {

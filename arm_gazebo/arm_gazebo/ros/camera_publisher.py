@@ -1,25 +1,94 @@
-"""One camera's topics: pictures, compressed pictures, distances and intrinsics."""
+"""One camera's topics: images, compressed images, depth, point clouds and camera info."""
 
 from array import array
 
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.node import Node
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
+from arm_gazebo.camera.depth_image import CHANNELS, PointGrid
 from arm_gazebo.camera.info import DISTORTION_MODEL, Intrinsics
-from arm_gazebo.ros.depth_publisher import DepthPublisher
-from arm_gazebo.ros.image_topic import QOS, set_stamp, watched
+from arm_gazebo.ros.topic import QOS, set_stamp, watched
 from arm_gazebo.sensors.camera import CameraSensor
 
+FLOAT_BYTES = 4
+POINT_FIELDS = ("x", "y", "z", "rgb")
 JPEG_QUALITY = 80
+
+
+class _DepthPublisher:
+    """Publishes 32FC1 images and organised point clouds. One thread.
+
+    Attributes:
+        depth: the (height, width) floats of the image message.
+    """
+
+    def __init__(self, node: Node, sensor: CameraSensor) -> None:
+        size = (sensor.height, sensor.width)
+        self._image = _depth_message(sensor)
+        self._images = [node.create_publisher(Image, t, QOS) for t in sensor.depth_topics]
+        self._cloud = _cloud_message(sensor)
+        self._clouds = [node.create_publisher(PointCloud2, t, QOS) for t in sensor.points_topics]
+        self.depth = np.frombuffer(self._image.data, np.float32).reshape(size)
+        self._points = np.frombuffer(self._cloud.data, np.float32).reshape(*size, CHANNELS)
+        self._grid = PointGrid(sensor)
+
+    @property
+    def subscribers(self) -> int:
+        """Number of subscribers."""
+        return sum(p.get_subscription_count() for p in (*self._images, *self._clouds))
+
+    def wants_colours(self) -> bool:
+        """Return whether the point cloud, which has colours, has subscribers."""
+        return bool(watched(self._clouds))
+
+    def publish(self, time_s: float, picture: NDArray[np.uint8] | None) -> None:
+        """Publish the depth on the topics that have subscribers.
+
+        Args:
+            time_s: stamp.
+            picture: (height, width, 3) colours of the points, None for no colours.
+        """
+        set_stamp(self._image.header, time_s)
+        for publisher in watched(self._images):
+            publisher.publish(self._image)
+        clouds = watched(self._clouds)
+        if clouds:
+            set_stamp(self._cloud.header, time_s)
+            self._grid.fill(self._points, self.depth, picture)
+            for publisher in clouds:
+                publisher.publish(self._cloud)
+
+
+def _depth_message(sensor: CameraSensor) -> Image:
+    message = Image(height=sensor.height, width=sensor.width, encoding="32FC1")
+    message.header.frame_id = sensor.optical_frame
+    message.step = sensor.width * FLOAT_BYTES
+    message.data = array("B", bytes(message.step * sensor.height))
+    return message
+
+
+def _cloud_message(sensor: CameraSensor) -> PointCloud2:
+    message = PointCloud2(height=sensor.height, width=sensor.width, is_dense=False)
+    message.header.frame_id = sensor.optical_frame
+    # Points without colour keep its bytes, so that all clouds have one layout.
+    names = POINT_FIELDS if sensor.image_topics else POINT_FIELDS[:3]
+    message.fields = [
+        PointField(name=name, offset=FLOAT_BYTES * index, datatype=PointField.FLOAT32, count=1)
+        for index, name in enumerate(names)
+    ]
+    message.point_step = FLOAT_BYTES * CHANNELS
+    message.row_step = message.point_step * sensor.width
+    message.data = array("B", bytes(message.row_step * sensor.height))
+    return message
 
 
 class CameraPublisher:
     """Publishes one camera; a `FrameSink`. One thread.
 
-    Messages are made once. Pictures are drawn straight into the bytes of the message: setting
-    `data` to a new array for each would cost a thousand times as much.
+    Messages are created once, and images are rendered directly into the bytes of the message.
+    Assigning a new array to `data` for each image would cost a thousand times as much.
     """
 
     def __init__(self, node: Node, sensor: CameraSensor) -> None:
@@ -37,7 +106,7 @@ class CameraPublisher:
             sensor.height, sensor.width, 3
         )
         self._colours = self._picture if sensor.image_topics else None
-        self._depth = DepthPublisher(node, sensor) if sensor.measures_depth else None
+        self._depth = _DepthPublisher(node, sensor) if sensor.measures_depth else None
 
     @property
     def picture(self) -> NDArray[np.uint8]:
@@ -51,28 +120,28 @@ class CameraPublisher:
 
     @property
     def subscribers(self) -> int:
-        """How many subscribers pictures and distances have, compressed pictures included."""
+        """Number of subscribers to images, compressed images, depth and points."""
         pictures = sum(p.get_subscription_count() for p in (*self._images, *self._jpegs))
         return pictures + (0 if self._depth is None else self._depth.subscribers)
 
     def wants_picture(self) -> bool:
-        """Return whether anybody looks at the colours now; about 1 us a topic."""
+        """Return whether the colours have subscribers now; takes about 1 us per topic."""
         if watched((*self._images, *self._jpegs)):
             return True
         return self._colours is not None and self._depth is not None and self._depth.wants_colours()
 
     def wants_depth(self) -> bool:
-        """Return whether anybody subscribes to the distances now; about 1 us a topic."""
+        """Return whether the depth has subscribers now; takes about 1 us per topic."""
         return self._depth is not None and self._depth.subscribers > 0
 
     def publish_info(self, time_s: float) -> None:
-        """Publish the intrinsics on every info topic."""
+        """Publish the camera info on every info topic."""
         set_stamp(self._info.header, time_s)
         for publisher in self._infos:
             publisher.publish(self._info)
 
     def publish_picture(self, time_s: float) -> None:
-        """Publish the picture where somebody subscribes to it, compressed or not."""
+        """Publish the image, raw and compressed, on the topics that have subscribers."""
         set_stamp(self._image.header, time_s)
         for publisher in watched(self._images):
             publisher.publish(self._image)
@@ -84,7 +153,7 @@ class CameraPublisher:
                 publisher.publish(self._jpeg)
 
     def publish_depth(self, time_s: float) -> None:
-        """Publish the distances, and the points that they and the picture make."""
+        """Publish the depth image and the point cloud."""
         if self._depth is not None:
             self._depth.publish(time_s, self._colours)
 
@@ -110,7 +179,7 @@ def _info_message(sensor: CameraSensor) -> CameraInfo:
 
 
 def _compress(picture: NDArray[np.uint8]) -> "array[int]":
-    # Loaded only where somebody asks for it: it costs 0.1 s and 40 MB.
+    # Imported only when needed, because it costs 0.1 s and 40 MB.
     import cv2
 
     swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)

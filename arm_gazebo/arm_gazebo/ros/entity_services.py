@@ -1,4 +1,4 @@
-"""The services of simulation_interfaces about entities: spawn, delete, find, ask, move."""
+"""The entity services of simulation_interfaces: spawn, delete, find, describe, move."""
 
 from typing import Any
 
@@ -15,10 +15,11 @@ from simulation_interfaces.srv import (
     SpawnEntity,
 )
 
-from arm_gazebo.ros.service_table import ServiceRow, create_services
 from arm_gazebo.ros.world_convert import (
+    ServiceRow,
     answer,
     bounds_message,
+    create_services,
     filter_of,
     info_message,
     matrix_of,
@@ -26,8 +27,8 @@ from arm_gazebo.ros.world_convert import (
     state_message,
     twist_of,
 )
-from arm_gazebo.world.keeper import SpawnRequest, WorldKeeper
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.editor import SpawnRequest, WorldEditor
+from arm_gazebo.world.refusal import Refusal, RequestError
 
 SPAWN_CODES = {
     Refusal.NAME_NOT_UNIQUE: SpawnEntity.Response.NAME_NOT_UNIQUE,
@@ -43,10 +44,10 @@ MOVE_CODES = {Refusal.INVALID_POSE: SetEntityState.Response.INVALID_POSE}
 
 
 class EntityServices:
-    """Creates the services on a node and answers them; they may block its executor."""
+    """Creates the services on a node and answers requests, which may block its executor."""
 
-    def __init__(self, node: Node, keeper: WorldKeeper) -> None:
-        self._keeper = keeper
+    def __init__(self, node: Node, editor: WorldEditor) -> None:
+        self._editor = editor
         services: tuple[ServiceRow, ...] = (
             (SpawnEntity, "spawn_entity", self._spawn),
             (DeleteEntity, "delete_entity", self._delete),
@@ -64,7 +65,7 @@ class EntityServices:
         self, request: SpawnEntity.Request, response: SpawnEntity.Response
     ) -> SpawnEntity.Response:
         def spawn() -> None:
-            response.entity_name = self._keeper.spawn(
+            response.entity_name = self._editor.spawn(
                 SpawnRequest(
                     name=request.name,
                     uri=request.entity_resource.uri,
@@ -79,12 +80,12 @@ class EntityServices:
         return answer(response, SPAWN_CODES, spawn)
 
     def _delete(self, request: Any, response: Any) -> Any:
-        return answer(response, {}, lambda: self._keeper.delete(request.entity))
+        return answer(response, {}, lambda: self._editor.delete(request.entity))
 
     def _names(self, request: GetEntities.Request, response: GetEntities.Response) -> Any:
         def find() -> None:
             chosen = filter_of(request.filters).choose(
-                self._keeper.entities, self._keeper.motions()
+                self._editor.entities, self._editor.motions()
             )
             response.entities = [entity.name for entity in chosen]
 
@@ -94,8 +95,8 @@ class EntityServices:
         self, request: GetEntitiesStates.Request, response: GetEntitiesStates.Response
     ) -> Any:
         def find() -> None:
-            motions = self._keeper.motions()
-            chosen = filter_of(request.filters).choose(self._keeper.entities, motions)
+            motions = self._editor.motions()
+            chosen = filter_of(request.filters).choose(self._editor.entities, motions)
             response.entities = [entity.name for entity in chosen]
             response.states = [state_message(motions.of(e)) for e in chosen]
 
@@ -103,8 +104,8 @@ class EntityServices:
 
     def _state(self, request: Any, response: Any) -> Any:
         def look() -> None:
-            entity = self._keeper.entities.find(request.entity)
-            response.state = state_message(self._keeper.motions().of(entity))
+            entity = self._editor.entities.find(request.entity)
+            response.state = state_message(self._editor.motions().of(entity))
 
         return answer(response, {}, look)
 
@@ -112,30 +113,30 @@ class EntityServices:
         def move() -> None:
             state = request.state
             if request.set_acceleration:
-                raise RefusedError(
+                raise RequestError(
                     Refusal.UNSUPPORTED, "accelerations follow from forces and cannot be set"
                 )
             pose = matrix_of(state.pose) if request.set_pose else None
             twist = twist_of(state.twist) if request.set_twist else None
-            self._keeper.place(request.entity, pose, state.header.frame_id, twist)
+            self._editor.place(request.entity, pose, state.header.frame_id, twist)
 
         return answer(response, MOVE_CODES, move)
 
     def _info(self, request: Any, response: Any) -> Any:
         def look() -> None:
-            response.info = info_message(self._keeper.entities.find(request.entity).note)
+            response.info = info_message(self._editor.entities.find(request.entity).note)
 
         return answer(response, {}, look)
 
     def _describe(self, request: Any, response: Any) -> Any:
         return answer(
-            response, {}, lambda: self._keeper.describe(request.entity, note_of(request.info))
+            response, {}, lambda: self._editor.describe(request.entity, note_of(request.info))
         )
 
     def _bounds(self, request: Any, response: Any) -> Any:
         def look() -> None:
-            entity = self._keeper.entities.find(request.entity)
-            motions = self._keeper.motions()
+            entity = self._editor.entities.find(request.entity)
+            motions = self._editor.motions()
             response.bounds = bounds_message(motions.bounds(entity, motions.of(entity).pose))
 
         return answer(response, {}, look)

@@ -1,10 +1,9 @@
-"""The services of simulation_interfaces about the simulation itself and the world it runs in."""
+"""The services of simulation_interfaces for the simulation's state and its world."""
 
 from typing import Any
 
-from rclpy.executors import Executor
 from rclpy.node import Node
-from simulation_interfaces.msg import Result, SimulatorFeatures
+from simulation_interfaces.msg import SimulatorFeatures
 from simulation_interfaces.srv import (
     GetAvailableWorlds,
     GetCurrentWorld,
@@ -13,17 +12,14 @@ from simulation_interfaces.srv import (
     LoadWorld,
     ResetSimulation,
     SetSimulationState,
-    StepSimulation,
     UnloadWorld,
 )
 
-from arm_control.errors import LoopStoppedError
-from arm_control.ros.executor_bridge import completed
-from arm_gazebo.ros.service_table import ServiceRow, create_services
-from arm_gazebo.ros.world_convert import answer, refuse, world_message
-from arm_gazebo.world.keeper import WorldKeeper
+from arm_gazebo.ros.world_convert import ServiceRow, answer, create_services, world_message
+from arm_gazebo.state.run_reset import ResetScope, RunReset
+from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.run_control import RunControl, RunState
 from arm_gazebo.world.spawn_model import FORMATS
 
@@ -45,7 +41,8 @@ FEATURES = (
     *(F.SPAWNING, F.DELETING, F.SPAWNING_RESOURCE_STRING, F.ENTITY_TAGS, F.ENTITY_CATEGORIES),
     *(F.ENTITY_BOUNDS, F.ENTITY_BOUNDS_BOX, F.ENTITY_STATE_GETTING, F.ENTITY_STATE_SETTING),
     *(F.ENTITY_INFO_GETTING, F.ENTITY_INFO_SETTING, F.SIMULATION_RESET, F.SIMULATION_RESET_STATE),
-    *(F.SIMULATION_RESET_SPAWNED, F.SIMULATION_STATE_GETTING, F.SIMULATION_STATE_SETTING),
+    *(F.SIMULATION_RESET_TIME, F.SIMULATION_RESET_SPAWNED),
+    *(F.SIMULATION_STATE_GETTING, F.SIMULATION_STATE_SETTING),
     *(F.SIMULATION_STATE_PAUSE, F.STEP_SIMULATION_SINGLE, F.STEP_SIMULATION_MULTIPLE),
     *(F.WORLD_LOADING, F.WORLD_RESOURCE_STRING, F.WORLD_UNLOADING, F.WORLD_INFO_GETTING),
     F.AVAILABLE_WORLDS,
@@ -53,21 +50,21 @@ FEATURES = (
 
 
 class RunServices:
-    """Creates the services on a node and answers them; they may block its executor."""
+    """Creates the services on a node and answers requests, which may block its executor."""
 
     def __init__(
         self,
         node: Node,
-        executor: Executor,
-        keeper: WorldKeeper,
+        editor: WorldEditor,
         run: RunControl,
+        reset: RunReset,
         loader: WorldLoader,
         world: NamedWorld,
         about: str,
     ) -> None:
-        self._executor = executor
-        self._keeper = keeper
+        self._editor = editor
         self._run = run
+        self._reset_run = reset
         self._loader = loader
         self._world: NamedWorld | None = world
         self._about = about
@@ -75,7 +72,6 @@ class RunServices:
             (GetSimulatorFeatures, "get_simulator_features", self._features),
             (GetSimulationState, "get_simulation_state", self._state),
             (SetSimulationState, "set_simulation_state", self._set_state),
-            (StepSimulation, "step_simulation", self._step),
             (ResetSimulation, "reset_simulation", self._reset),
             (LoadWorld, "load_world", self._load),
             (UnloadWorld, "unload_world", self._unload),
@@ -83,6 +79,11 @@ class RunServices:
             (GetAvailableWorlds, "get_available_worlds", self._available),
         )
         create_services(node, services)
+
+    @property
+    def world_name(self) -> str:
+        """The name of the world, "" for none."""
+        return "" if self._world is None else self._world.name
 
     def _features(self, _request: Any, response: GetSimulatorFeatures.Response) -> Any:
         response.features = SimulatorFeatures(
@@ -103,43 +104,24 @@ class RunServices:
             try:
                 target = RunState(request.state.state)
             except ValueError as error:
-                raise RefusedError(
+                raise RequestError(
                     Refusal.INCORRECT_TRANSITION,
-                    f"no state {request.state.state} can be asked for; there are "
+                    f"no state {request.state.state}; there are "
                     + ", ".join(f"{state.value} {state.name}" for state in RunState),
                 ) from error
             self._run.go_to(target)
 
         return answer(response, STATE_CODES, change)
 
-    async def _step(self, request: StepSimulation.Request, response: Any) -> Any:
-        # A coroutine: whoever wants to end a long run of steps has to be heard meanwhile.
-        try:
-            done = await completed(self._run.step(request.steps), self._executor)
-        except RefusedError as error:
-            return refuse(response, {}, error)
-        except (LoopStoppedError, ValueError) as error:
-            return refuse(response, {}, RefusedError(Refusal.FAILED, str(error)))
-        response.result.result = Result.RESULT_OK
-        if done < request.steps:
-            response.result.result = Result.RESULT_OPERATION_FAILED
-            response.result.error_message = (
-                f"{done} of {request.steps} steps: the state was changed"
-            )
-        return response
-
     def _reset(self, request: ResetSimulation.Request, response: Any) -> Any:
         def reset() -> None:
-            scope = request.scope
-            if scope == ResetSimulation.Request.SCOPE_TIME:
-                raise RefusedError(
-                    Refusal.UNSUPPORTED,
-                    "time never goes back: controllers, transforms and cameras count on it",
+            scope = request.scope or ResetSimulation.Request.SCOPE_ALL
+            self._reset_run.reset(
+                ResetScope(
+                    time=bool(scope & ResetSimulation.Request.SCOPE_TIME),
+                    state=bool(scope & ResetSimulation.Request.SCOPE_STATE),
+                    spawned=bool(scope & ResetSimulation.Request.SCOPE_SPAWNED),
                 )
-            everything = scope == ResetSimulation.Request.SCOPE_DEFAULT
-            self._keeper.reset(
-                spawned=everything or bool(scope & ResetSimulation.Request.SCOPE_SPAWNED),
-                state=everything or bool(scope & ResetSimulation.Request.SCOPE_STATE),
             )
 
         return answer(response, {}, reset)
@@ -150,8 +132,8 @@ class RunServices:
             base, world = self._loader.load(
                 resource.uri, resource.resource_string, request.fail_on_unsupported_element
             )
-            with self._run.to_stand(RunState.STOPPED):
-                self._keeper.replace_world(base)
+            with self._run.paused_as(RunState.STOPPED):
+                self._editor.replace_world(base)
             self._world = world
             response.world = world_message(world)
 
@@ -160,8 +142,8 @@ class RunServices:
     def _unload(self, _request: Any, response: UnloadWorld.Response) -> Any:
         def unload() -> None:
             self._loaded()
-            with self._run.to_stand(RunState.NO_WORLD):
-                self._keeper.replace_world(self._loader.nowhere())
+            with self._run.paused_as(RunState.NO_WORLD):
+                self._editor.replace_world(self._loader.load_empty())
             self._world = None
 
         return answer(response, UNLOAD_CODES, unload)
@@ -183,5 +165,5 @@ class RunServices:
 
     def _loaded(self) -> NamedWorld:
         if self._world is None:
-            raise RefusedError(Refusal.NO_WORLD, "no world is loaded")
+            raise RequestError(Refusal.NO_WORLD, "no world is loaded")
         return self._world

@@ -1,42 +1,52 @@
-"""Puts the simulation together: model, hardware, controller manager, loop, clock, cameras, window.
+"""Assemble the simulation: model, hardware, controller manager, loop, clock, cameras, window.
 
-Start: everything is made while time stands still, then the loop goes. End: the services stop,
-the controllers are shut down on the loop, the loop is joined, and only then are nodes destroyed.
+Start: everything is created while the loop is paused, then the loop resumes. End: the services
+stop, the controllers shut down on the loop, the loop is joined, and then the nodes are destroyed.
 """
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.executors import Executor
 from rclpy.node import Node
 
-from arm_control.control_loop import ControlLoop
-from arm_control.outbox import Outbox
-from arm_control.pacer import Pacer
-from arm_control.ros.controller_manager_node import ControllerManagerNode
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.lock_step import LockStep
+from arm_control.loop.outbox import Outbox
+from arm_control.loop.pacer import Pacer
+from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.emergency_stop import EmergencyStopServer
+from arm_gazebo.assembly.settings import SimulationSettings, read_above_zero, read_settings
+from arm_gazebo.assembly.world import AssembledWorld, assemble_world
 from arm_gazebo.camera.feed import CameraFeed
-from arm_gazebo.errors import SettingsError
-from arm_gazebo.hardware.sensor_feed import SensorFeed
+from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
-from arm_gazebo.mesh.cache import cache_folder
-from arm_gazebo.model.builder import build_world
+from arm_gazebo.hardware.simulated_sensors import SensorFeed, SimulatedSensor
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.physics.tick import SimulationTick
-from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
-from arm_gazebo.robot.part import RobotInWorld
+from arm_gazebo.recording.session import RunParts
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
+from arm_gazebo.ros.fault_parameter import FaultParameter
+from arm_gazebo.ros.live_parameters import follow_parameter
 from arm_gazebo.ros.managed_robot import ManagedRobot
-from arm_gazebo.ros.simulation_parameters import SimulationSettings, read_settings
+from arm_gazebo.ros.run_recording import RunRecording
+from arm_gazebo.spec.physics_timing import PhysicsTiming
+from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.feed import WindowFeed
-from arm_node.discovery import answers_held_back
 from arm_node.notify import notify
+from arm_node.parameter_values import read_not_negative
+from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
+from arm_node.workarounds.discovery import prompt_discovery
 
 if TYPE_CHECKING:
     from arm_gazebo.ros.simulation_server import SimulationServer
@@ -50,69 +60,153 @@ logger = logging.getLogger(NODE_NAME)
 
 @contextmanager
 def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[None]:
-    """Build the simulation from the process's parameters, run it, and take it down.
+    """Build the simulation from the process's parameters, run it, and tear it down.
 
     Raises:
-        GazeboError, ArmControlError, DescriptionError: it cannot be built as asked for.
+        GazeboError, ArmControlError, DescriptionError: it cannot be built.
     """
-    # What is made is taken down in reverse, from wherever the making stops. Nodes go last: one that
-    # goes while the executor looks at it takes the process along.
+    # Everything is torn down in reverse order, also after a failure half-way. Nodes come last:
+    # destroying one while the executor uses it crashes the process.
     with ExitStack() as nodes, ExitStack() as ending:
         ending.callback(process.join_spinning)
-        with answers_held_back():
+        with prompt_discovery():
             node = Node(NODE_NAME)
         nodes.callback(node.destroy_node)
         process.executor.add_node(node)
-        settings = read_settings(node)
+        settings = read_settings(partial(declare, node))
         outbox = Outbox()
         clock = RosClockPublisher(node, outbox)
         robots = []
         for robot_settings in settings.robots:
             robots.append(ManagedRobot(robot_settings, arguments, clock))
             nodes.callback(robots[-1].destroy_nodes)
-        timing = _timing(robots, settings)
-        entries = _entries(robots, settings, timing)
-        built = build_world(entries, settings.world)
-        built.report.log(logger)
-        simulation = Simulation(built, timing, settings.hold_joints)
+        world = assemble_world(
+            [robot.robot for robot in robots], settings, _update_rates_hz(robots)
+        )
+        simulation, timing = world.simulation, world.simulation.timing
         for robot in robots:
             robot.drive(simulation, settings.seed)
         feeds = [
             ending.enter_context(closing(feed))
             for feed in _feeds(robots, settings, node.get_namespace())
         ]
-        managers = [robot.manager for robot in robots]
-        shown = [*feeds, *_sensor_feed(robots, node, timing)]
-        tick = SimulationTick(managers, simulation, clock, shown, timing.period_s)
-        loop = _loop(process, tick, timing, settings, robots[0].node, outbox)
-        ending.enter_context(_standing_still(loop))
-        for robot in robots:
-            ending.callback(robot.shutdown)
-            robot.serve(loop, process.executor)
-        loop.resume()
+        managers = [robot.robot.manager for robot in robots]
+        consumers = [*feeds, *_sensor_feed(robots, node, timing)]
+        cameras = [feed for feed in feeds if isinstance(feed, CameraFeed)]
+        tick = SimulationTick(managers, simulation, clock, consumers, timing.period_s)
+        loop = _loop(process, tick, simulation, settings, robots[0].node, outbox)
+        _follow_pace(node, process.executor, loop, nodes, ending)
+        FaultParameter(node, FaultInjector(simulation, managers, tick, _sensors(robots)), loop)
+        ending.enter_context(_started_paused(loop))
+        state = _complete_state(simulation, managers, consumers, clock)
+        run = _parts(robots, settings, simulation, state, tick, loop)
+        recording = ending.enter_context(closing(RunRecording(node, run, settings.record_run)))
+        _serve_robots(robots, node, loop, process.executor, ending)
+        if not settings.paused:
+            loop.resume()
         for feed in feeds:
-            feed.start(built.model)
-        hardware = [component for robot in robots for component in robot.hardware]
-        _supervise(node, clock, loop.pacer, simulation, hardware, feeds)
-        starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
-        server = starter.submit(
-            _serve, simulation, loop, entries, hardware, feeds, settings.world, process.stop
-        )
-        server.add_done_callback(lambda made: _check(made, process))
-        nodes.callback(lambda: server.exception() or server.result().destroy_node())
-        ending.callback(lambda: server.exception() or server.result().shutdown())
+            feed.start(simulation.model)
+        hardware = [component for robot in robots for component in robot.robot.hardware]
+        _supervise(node, clock, loop.pacer, simulation, hardware, [*feeds, recording])
+        statistics = _statistics(simulation, tick, loop, consumers)
+        serving = (state, partial(_is_set, node, "reset_clock"), loop, settings.spawn_limit)
+        serving = (world, *serving, hardware, feeds, cameras, statistics, process.stop)
+        _start_services(process, nodes, ending, serving)
+        _remark(world)
         yield
 
 
+def _serve_robots(
+    robots: Sequence[ManagedRobot],
+    node: Node,
+    loop: ControlLoop,
+    executor: Executor,
+    ending: ExitStack,
+) -> None:
+    """Serve each robot's manager, and the emergency stop of all of them.
+
+    Raises:
+        ArmControlError: a required controller cannot start.
+    """
+    for robot in robots:
+        ending.callback(robot.shutdown)
+        robot.serve(loop, executor)
+    namespaces = {robot.node.get_namespace() for robot in robots}
+    if node.get_namespace() not in namespaces:
+        managers = [robot.robot.manager for robot in robots]
+        EmergencyStopServer(node, executor, loop, managers)
+
+
+def _complete_state(
+    simulation: Simulation,
+    managers: Sequence[ControllerManager],
+    feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
+    clock: RosClockPublisher,
+) -> CompleteState:
+    scheduled = [feed for feed in feeds if not isinstance(feed, WindowFeed)]
+    return CompleteState(simulation, managers, scheduled, clock)
+
+
+def _statistics(
+    simulation: Simulation,
+    tick: SimulationTick,
+    loop: ControlLoop,
+    feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
+) -> SimulationStatistics:
+    streams = [feed.counts for feed in feeds if not isinstance(feed, WindowFeed)]
+    return SimulationStatistics(simulation, tick.costs, loop.pacer, streams)
+
+
+def _remark(world: AssembledWorld) -> None:
+    """Say what the simulation leaves out of its world."""
+    if world.left_out:
+        remark = f"world {world.named.name}: {world.left_out}"
+        logger.warning("%s", remark)
+        notify(f"X_REMARK={remark}")
+
+
+def _parts(
+    robots: Sequence[ManagedRobot],
+    settings: SimulationSettings,
+    simulation: Simulation,
+    state: CompleteState,
+    tick: SimulationTick,
+    loop: ControlLoop,
+) -> RunParts:
+    """Return what a recording needs of the run."""
+    each = zip(robots, settings.robots, strict=True)
+    return RunParts(
+        simulation,
+        state,
+        tick,
+        loop,
+        [(robot.robot, of_robot, robot.node.settings) for robot, of_robot in each],
+        settings.hold_joints,
+        settings.position_proportional_gain,
+        settings.seed,
+    )
+
+
+def _start_services(
+    process: NodeProcess, nodes: ExitStack, ending: ExitStack, serving: tuple[Any, ...]
+) -> None:
+    """Start the services on a thread of their own; the stacks end them."""
+    starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
+    server = starter.submit(_serve, *serving)
+    server.add_done_callback(lambda made: _check(made, process))
+    nodes.callback(lambda: server.exception() or server.result().destroy_node())
+    ending.callback(lambda: server.exception() or server.result().shutdown())
+
+
 def _serve(*arguments: Any) -> "SimulationServer":
-    """Serve simulation_interfaces; its messages take time to load, and the robot waits for none."""
+    """Serve simulation_interfaces; the robot does not wait while its messages load."""
     from arm_gazebo.ros.simulation_server import SimulationServer
 
     return SimulationServer(*arguments)
 
 
 def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
-    """End the process where its services could not be made."""
+    """End the process if its services could not be created."""
     error = server.exception()
     if error is not None:
         logger.error("the services of the simulation failed", exc_info=error)
@@ -122,29 +216,91 @@ def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
 def _loop(
     process: NodeProcess,
     tick: SimulationTick,
-    timing: PhysicsTiming,
+    simulation: Simulation,
     settings: SimulationSettings,
     manager: ControllerManagerNode,
     outbox: Outbox,
 ) -> ControlLoop:
-    """Make the loop that all robots share; the first one's manager says how it runs."""
+    """Create the loop that all robots share, with the settings of the first robot's manager."""
+    lock_step = None
+    if settings.lockstep:
+        lock_step = LockStep(settings.lockstep, settings.lockstep_timeout_s)
     pacer = Pacer(
-        timing.period_s,
+        simulation.timing.period_s,
         real_time_factor=settings.real_time_factor,
         print_warnings=manager.settings.overruns.print_warnings,
     )
     return ControlLoop(
-        tick,
+        tick if lock_step is None else _answered_ticks(tick, simulation, lock_step),
         pacer,
         on_failure=lambda _: process.stop(EXIT_FAILED),
         priority=manager.loop_priority(),
         outbox=outbox,
+        lock_step=lock_step,
     )
 
 
+def _is_set(node: Node, parameter: str) -> bool:
+    return bool(node.get_parameter(parameter).value)
+
+
+def _answered_ticks(
+    tick: SimulationTick, simulation: Simulation, lock_step: LockStep
+) -> Callable[[], None]:
+    """Return a tick after which the partners' answers are awaited."""
+
+    def run() -> None:
+        lock_step.begin_tick()
+        tick()
+        lock_step.end_tick(simulation.time_s)
+
+    return run
+
+
+def _follow_partners(
+    node: Node,
+    executor: Executor,
+    loop: ControlLoop,
+    lock_step: LockStep,
+    nodes: ExitStack,
+    ending: ExitStack,
+) -> None:
+    """Listen to the partners of a lock-stepped simulation."""
+    # Imported only here, because most simulations have no partners.
+    from arm_gazebo.ros.lock_step_partners import LockStepPartners
+
+    partners = LockStepPartners(node, executor, loop, lock_step)
+    nodes.callback(partners.destroy)
+    ending.callback(partners.shutdown)
+    lock_step.add_source(partners.take_commands)
+
+    def set_timeout(timeout_s: float) -> None:
+        loop.call(lambda: lock_step.set_timeout(timeout_s))
+
+    follow_parameter(node, "lockstep_timeout", read_above_zero, set_timeout)
+
+
+def _follow_pace(
+    node: Node, executor: Executor, loop: ControlLoop, nodes: ExitStack, ending: ExitStack
+) -> None:
+    """Let clients change the pace, and with a lock-step its partners."""
+    follow_parameter(node, "real_time_factor", read_not_negative, partial(_set_speed, loop))
+    if loop.lock_step is not None:
+        _follow_partners(node, executor, loop, loop.lock_step, nodes, ending)
+
+
+def _set_speed(loop: ControlLoop, factor: float) -> None:
+    """Change the pace between two ticks; a loop that waits for its next tick starts it at once."""
+
+    def change() -> None:
+        loop.pacer.real_time_factor = factor
+
+    loop.call(change)
+
+
 @contextmanager
-def _standing_still(loop: ControlLoop) -> Iterator[None]:
-    """Start the loop, whose time stands still at first; end it and wait for that."""
+def _started_paused(loop: ControlLoop) -> Iterator[None]:
+    """Start the loop paused; on exit, stop and join it."""
     loop.start(paused=True)
     try:
         yield
@@ -153,55 +309,44 @@ def _standing_still(loop: ControlLoop) -> Iterator[None]:
         loop.join(LOOP_JOIN_TIMEOUT_S)
 
 
-def _timing(robots: Sequence[ManagedRobot], settings: SimulationSettings) -> PhysicsTiming:
-    """Return period and step of the one loop that all robots share."""
-    rates = {robot.node.settings.update_rate: robot.node for robot in robots}
-    if len(rates) > 1:
-        each = ", ".join(f"{n.get_fully_qualified_name()} {rate} Hz" for rate, n in rates.items())
-        raise SettingsError(f"robots in one world have one update_rate, not several: {each}")
-    return physics_timing(robots[0].node.settings.update_rate, settings.physics_step_s)
-
-
-def _entries(
-    robots: Sequence[ManagedRobot], settings: SimulationSettings, timing: PhysicsTiming
-) -> list[RobotInWorld]:
-    options = BuildOptions(
-        step_s=timing.step_s,
-        self_collide=settings.self_collide,
-        strict=settings.strict,
-        mesh_cache=cache_folder(),
-    )
-    return [robot.in_world(options) for robot in robots]
+def _update_rates_hz(robots: Sequence[ManagedRobot]) -> dict[str, int]:
+    """Return the update rate of each robot's manager by the name of its node."""
+    nodes = [robot.node for robot in robots]
+    return {node.get_fully_qualified_name(): node.settings.update_rate for node in nodes}
 
 
 def _feeds(
     robots: Sequence[ManagedRobot], settings: SimulationSettings, namespace: str
 ) -> Iterator[CameraFeed | WindowFeed]:
-    """Make what shows the simulation.
+    """Create the feeds of window and cameras.
 
     Raises:
-        WindowError: a window is asked for where there is no display.
+        WindowError: a window is requested but there is no display.
     """
     if not settings.headless:
         check_display()
         yield WindowFeed()
-    cameras = [camera for robot in robots for camera in robot.cameras]
+    cameras = [camera for robot in robots for camera in robot.robot.cameras]
     if cameras:
         ros_arguments = ("-r", f"__ns:={namespace}")
         yield CameraFeed(cameras, settings.render_backend, settings.seed, ros_arguments)
 
 
+def _sensors(robots: Sequence[ManagedRobot]) -> list[SimulatedSensor]:
+    return [sensor for robot in robots for sensor in robot.robot.sensors]
+
+
 def _sensor_feed(
     robots: Sequence[ManagedRobot], node: Node, timing: PhysicsTiming
 ) -> Iterator[SensorFeed]:
-    """Make what publishes the robots' sensors; nothing where there are none."""
-    instruments = [instrument for robot in robots for instrument in robot.instruments]
-    if instruments:
-        # Only here: messages take time to load, and most robots have no sensors.
-        from arm_gazebo.ros.sensor_publisher import sensor_publisher
+    """Create the feed of the robots' sensors, if there are any."""
+    sensors = _sensors(robots)
+    if sensors:
+        # Imported only here, because messages load slowly and most robots have no sensors.
+        from arm_gazebo.ros.sensor_publisher import SensorPublisher
 
-        sinks = [sensor_publisher(node, instrument.sensor) for instrument in instruments]
-        yield SensorFeed(instruments, sinks, timing.period_s)
+        sinks = [SensorPublisher(node, sensor.description) for sensor in sensors]
+        yield SensorFeed(sensors, sinks, timing.period_s)
 
 
 def _supervise(
@@ -210,11 +355,11 @@ def _supervise(
     pacer: Pacer,
     simulation: Simulation,
     hardware: Sequence[SimulatedHardware],
-    feeds: Sequence[CameraFeed | WindowFeed],
+    supervised: Sequence[CameraFeed | WindowFeed | RunRecording],
 ) -> None:
-    """Now and then: pass on what the loop may not log itself, look after child processes."""
+    """Periodically log what the loop must not log itself, and supervise child processes."""
 
-    def look() -> None:
+    def check() -> None:
         for component in hardware:
             for warning in component.take_warnings():
                 logger.warning("%s", warning)
@@ -223,10 +368,10 @@ def _supervise(
             logger.warning("%s", warning)
         for failure in simulation.take_failures():
             logger.error("%s", failure)
-        for feed in feeds:
-            feed.supervise()
+        for part in supervised:
+            part.supervise()
         factor = pacer.statistics.achieved_factor
         if factor:  # 0 until there is something to average
             notify(f"STATUS=real-time factor {factor:.2f}")
 
-    node.create_timer(SUPERVISION_PERIOD_S, look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+    node.create_timer(SUPERVISION_PERIOD_S, check, clock=Clock(clock_type=ClockType.STEADY_TIME))

@@ -1,4 +1,4 @@
-"""Publishes the world's shapes on /world_markers, for RViz and for the browser page."""
+"""Publish the world's shapes on /world_markers, for RViz and the browser page."""
 
 import math
 
@@ -12,78 +12,78 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import WORLD_FRAME
-from arm_gazebo.world.keeper import WorldKeeper
 from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
-from arm_node.message_template import MessageTemplate
+from arm_node.workarounds.message_template import MessageTemplate
 
 TOPIC = "world_markers"
 QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PERIOD_S = 0.1
 MOVED = 1e-4
-"""Change of a coordinate, in m or of a quaternion, from which on a shape has moved."""
+"""Smallest change of a coordinate, in m or of a quaternion, that counts as motion."""
 TYPES = {
     Solid.BOX: Marker.CUBE,
     Solid.BALL: Marker.SPHERE,
     Solid.CYLINDER: Marker.CYLINDER,
     Solid.TRIANGLES: Marker.TRIANGLE_LIST,
 }
-MOST_GONE = 1000
-"""Deleted shapes that are told on and on: a message may be lost where a newer one follows."""
+MAX_REMOVED = 1000
+"""Limit on the deleted shapes that every message repeats, because a message may be lost."""
 
 
 class WorldMarkerPublisher:
-    """Looks ten times a second, while somebody listens, whether something moved.
+    """Publishes all shapes when something has moved, at most ten times a second.
 
-    Every message has all shapes, so that the last one is enough for whoever comes late. It is
-    serialised once for each model; then only the poses in its bytes change. The thread of the
-    node's executor, which is the keeper's: it sleeps on while nobody listens.
+    Every message contains all shapes, so that a late subscriber needs only the last one. It is
+    serialised once for each model; then only the poses in its bytes change. It runs on the thread
+    of the node's executor, which is the editor's thread, and only while there are subscribers.
     """
 
-    def __init__(self, node: Node, keeper: WorldKeeper) -> None:
-        self._keeper = keeper
+    def __init__(self, node: Node, editor: WorldEditor) -> None:
+        self._editor = editor
         self._timer = node.create_timer(
-            PERIOD_S, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME)
+            PERIOD_S, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
         self._timer.cancel()
         self._publisher = node.create_publisher(
             MarkerArray, TOPIC, QOS, event_callbacks=PublisherEventCallbacks(matched=self._match)
         )
-        self._awaited = False
+        self._has_new_subscriber = False
         self._model: object = None
         self._shown: dict[tuple[str, int], None] = {}
-        self._gone: dict[tuple[str, int], None] = {}
+        self._removed: dict[tuple[str, int], None] = {}
 
     def _match(self, matched: QoSPublisherMatchedInfo) -> None:
         if not matched.current_count:
             self._timer.cancel()
         elif matched.current_count_change > 0:
-            self._awaited = True
+            self._has_new_subscriber = True
             self._timer.reset()
 
-    def _look(self) -> None:
-        if self._model is not self._keeper.model:
+    def _check(self) -> None:
+        if self._model is not self._editor.model:
             self._take_model()
-        poses = self._shapes.poses(*self._keeper.motions().geom_poses)
-        if self._awaited or not np.abs(poses - self._poses).max(initial=0.0) < MOVED:
+        poses = self._shapes.poses(*self._editor.motions().geom_poses)
+        if self._has_new_subscriber or not np.abs(poses - self._poses).max(initial=0.0) < MOVED:
             self._poses = poses
             self._template.float64[self._places] = poses.ravel()
             self._template.publish(self._publisher)
-            self._awaited = False
+            self._has_new_subscriber = False
 
     def _take_model(self) -> None:
-        self._model = self._keeper.model
-        self._shapes = WorldShapes(self._keeper.model, self._keeper.entities)
+        self._model = self._editor.model
+        self._shapes = WorldShapes(self._editor.model, self._editor.entities)
         shown = dict.fromkeys(shape.key for shape in self._shapes.shapes)
-        gone = {**self._gone, **self._shown}
-        self._gone = dict.fromkeys([key for key in gone if key not in shown][-MOST_GONE:])
+        before = {**self._removed, **self._shown}
+        self._removed = dict.fromkeys([key for key in before if key not in shown][-MAX_REMOVED:])
         self._shown = shown
         markers = [_marker(shape) for shape in self._shapes.shapes]
-        gone_markers = [_deletion(owner, number) for owner, number in self._gone]
-        self._template = MessageTemplate(MarkerArray(markers=[*markers, *gone_markers]))
+        deletions = [_deletion(owner, number) for owner, number in self._removed]
+        self._template = MessageTemplate(MarkerArray(markers=[*markers, *deletions]))
         places = self._template.indices("markers[*].pose")
         self._places = places[: 7 * len(markers)]
-        # Not a number: whatever is compared with it has moved.
+        # NaN makes every shape count as moved in the next comparison.
         self._poses = np.full((len(markers), 7), math.nan)
 
 
@@ -103,7 +103,7 @@ def _deletion(owner: str, number: int) -> Marker:
 
 
 def _empty(owner: str, number: int, action: int) -> Marker:
-    # Without a stamp: the newest transform to the world's frame will do.
+    # A zero stamp means the latest transform to the world's frame.
     marker = Marker(ns=owner, id=number, action=action)
     marker.header.frame_id = WORLD_FRAME
     return marker

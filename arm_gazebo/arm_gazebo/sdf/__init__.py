@@ -1,1 +1,1 @@
-"""Gazebo's worlds and models as parts of a MuJoCo model."""
+"""Convert Gazebo worlds and models to parts of a MuJoCo model."""

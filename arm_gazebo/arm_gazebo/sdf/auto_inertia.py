@@ -1,4 +1,4 @@
-"""What `<inertial auto="true">` means: mass and inertia go by a link's collisions."""
+"""`<inertial auto="true">`: compute mass and inertia of a link from its collisions."""
 
 from dataclasses import dataclass
 
@@ -6,24 +6,32 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.robot import Box, Capsule, Collision, Cylinder, Inertial, Link, Mesh, Sphere
-from arm_description.transforms import transform
+from arm_description.transforms import transform, wxyz_from_rpy
+from arm_description.urdf.robot import (
+    Box,
+    Capsule,
+    Collision,
+    Cylinder,
+    Inertial,
+    Link,
+    Mesh,
+    Sphere,
+)
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.quaternion import wxyz
 from arm_gazebo.sdf.frames import pose_of
 
 DEFAULT_DENSITY = 1000.0
-"""SDF's own, in kg/m3: water's."""
+"""SDF's default in kg/m3, the density of water."""
 
 
 @dataclass(frozen=True, slots=True)
 class AutoInertia:
-    """What one link says about an inertia that is to be computed.
+    """The input for the inertia of one link.
 
     Attributes:
-        densities: of its collisions, kg/m3.
-        mass: kg, to which all is scaled; None for what the densities make.
+        densities: density of each collision in kg/m3.
+        mass: total mass in kg that the result is scaled to; None to use the densities alone.
     """
 
     densities: tuple[float, ...]
@@ -31,10 +39,9 @@ class AutoInertia:
 
 
 def auto_inertial(link: Link, auto: AutoInertia, meshes: MeshLibrary) -> Inertial | None:
-    """Return the inertia of a link whose collisions are solid, None where they have no volume.
+    """Return the inertia of a link with solid collisions; None if they have no volume.
 
-    A mesh that does not close around a volume counts as its convex hull, and one that cannot be
-    had not at all.
+    A mesh that does not enclose a volume counts as its convex hull. A missing mesh is skipped.
     """
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body()
@@ -43,7 +50,7 @@ def auto_inertial(link: Link, auto: AutoInertia, meshes: MeshLibrary) -> Inertia
             _add_solid(spec, body, collision, density, meshes)
         model = spec.compile()
     except ValueError:
-        # MuJoCo's, about a flat mesh or a sum that no float holds.
+        # MuJoCo raises this for a flat mesh and for an overflow.
         return None
     mass = float(model.body_mass[1])
     if mass <= 0:
@@ -80,12 +87,12 @@ def _add_solid(
         case Capsule(radius, length):
             geom = body.add_geom(type=kinds.mjGEOM_CAPSULE, size=[radius, length / 2, 0.0])
     geom.pos = collision.origin.xyz
-    geom.quat = wxyz(collision.origin.rpy)
+    geom.quat = wxyz_from_rpy(collision.origin.rpy)
     geom.density = density
 
 
 def _add_mesh(spec: mujoco.MjSpec, meshes: MeshLibrary, mesh: Mesh) -> str:
-    """Add all parts of a mesh as one, for only together may they enclose a volume."""
+    """Add all parts of a mesh as one, because they may enclose a volume only together."""
     parts = [part.drawn for part in meshes.parts(mesh)]
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     vertices = np.concatenate([part.vertices for part in parts])
@@ -104,7 +111,7 @@ def _add_mesh(spec: mujoco.MjSpec, meshes: MeshLibrary, mesh: Mesh) -> str:
 
 
 def _encloses(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
-    """Return whether triangles close around a volume, with their outsides outside.
+    """Return whether triangles enclose a volume and face outwards.
 
     Args:
         vertices: shape (v, 3).
@@ -116,6 +123,6 @@ def _encloses(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
     _, same = np.unique(vertices, axis=0, return_inverse=True)
     start = same.reshape(-1).astype(np.int64)[faces]
     end = np.roll(start, -1, axis=1)
-    # Each side of a triangle is that of another one, which passes it the other way.
-    there, back = start * len(vertices) + end, end * len(vertices) + start
-    return np.array_equal(np.sort(there, axis=None), np.sort(back, axis=None))
+    # In a closed surface each edge belongs to two triangles, which run along it in opposite ways.
+    forward, backward = start * len(vertices) + end, end * len(vertices) + start
+    return np.array_equal(np.sort(forward, axis=None), np.sort(backward, axis=None))

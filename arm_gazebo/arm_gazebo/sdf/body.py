@@ -1,14 +1,14 @@
-"""An SDF model's bodies and planes in a MuJoCo specification."""
+"""Add an SDF model's bodies and planes to a MuJoCo specification."""
 
 from dataclasses import replace
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
-from arm_description.robot import Link, Pose, Robot
-from arm_gazebo.build_report import BuildReport
+from arm_description.transforms import wxyz_from_rpy
+from arm_description.urdf.robot import Link, Robot
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.quaternion import wxyz
 from arm_gazebo.robot.body_tree import BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import WORLD_CONTYPE, CollisionMasks
 from arm_gazebo.robot.gazebo_tags import GazeboTags
@@ -20,7 +20,9 @@ from arm_gazebo.robot.link_geometry import (
     set_friction,
 )
 from arm_gazebo.sdf.auto_inertia import auto_inertial
+from arm_gazebo.sdf.frames import pose_of
 from arm_gazebo.sdf.model import DEFAULT_INERTIAL, SdfModel, SdfPlane
+from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
 
@@ -29,26 +31,27 @@ def add_model(
     spec: mujoco.MjSpec,
     meshes: MeshLibrary,
     model: SdfModel,
-    pose: Pose,
+    pose: NDArray[np.float64],
     report: BuildReport,
     strict: bool = False,
 ) -> None:
-    """Add a model to a world, its frame as a body of the model's name.
+    """Add a rigid body of a model to a world; its frame becomes a body of the same name.
 
     Args:
         spec: the world.
-        meshes: of the world.
-        model: what to add.
-        pose: of the model's frame in the world.
-        report: gets what is repaired.
-        strict: whether a mesh that cannot be had is an error.
+        meshes: the meshes of the world.
+        model: the rigid body to add.
+        pose: (4, 4) pose of the model's frame in the world.
+        report: receives the repairs.
+        strict: whether an unavailable mesh is an error.
 
     Raises:
-        MeshError: strict, and a mesh cannot be had.
+        MeshError: a mesh is unavailable and `strict` is set.
     """
     default = mujoco.MjSpec().default
     geometry = _SdfGeometry(model, meshes, strict, report)
-    options = TreeOptions(spec.option.timestep, default, not model.static, pose)
+    place = pose_of(pose @ model.frame)
+    options = TreeOptions(spec.option.timestep, default, not model.static, place)
     robot = model.robot if model.static else _with_inertia(model, meshes, report)
     bodies = BodyTree(spec, robot, geometry, options, report).add()
     for plane in model.planes:
@@ -56,7 +59,7 @@ def add_model(
 
 
 def _with_inertia(model: SdfModel, meshes: MeshLibrary, report: BuildReport) -> Robot:
-    """Return a model's robot with the inertias that are to be computed."""
+    """Return a model's robot with its automatic inertias computed."""
     links: list[Link] = []
     for link in model.robot.links:
         auto = model.automatic.get(link.name)
@@ -65,7 +68,7 @@ def _with_inertia(model: SdfModel, meshes: MeshLibrary, report: BuildReport) -> 
             inertial = DEFAULT_INERTIAL
             report.repair(
                 f"link '{link.name}'",
-                "its inertia is to be computed, and it has no collision with a volume; 1 kg and "
+                "its automatic inertia needs a collision with a volume, and it has none; 1 kg and "
                 "1 kg m2 are used",
                 link.line,
             )
@@ -74,9 +77,9 @@ def _with_inertia(model: SdfModel, meshes: MeshLibrary, report: BuildReport) -> 
 
 
 def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:
-    """Add a plane to a body that stands still."""
+    """Add a plane to a static body."""
     geom = body.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, pos=plane.pose.xyz, quat=wxyz(plane.pose.rpy)
+        type=mujoco.mjtGeom.mjGEOM_PLANE, pos=plane.pose.xyz, quat=wxyz_from_rpy(plane.pose.rpy)
     )
     if plane.size is None:
         geom.size = [0.0, 0.0, 1.0]
@@ -90,14 +93,16 @@ def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:
 
 
 class _SdfGeometry(LinkGeometry):
-    """Adds the shapes of links, each collision with a friction of its own.
+    """Adds the shapes of links, with a separate friction for each collision.
 
     Args:
-        model: says the frictions.
-        meshes: of the world.
-        strict: whether a mesh that cannot be had is an error.
-        report: gets what is repaired.
+        model: gives the frictions.
+        meshes: the meshes of the world.
+        strict: whether an unavailable mesh is an error.
+        report: receives the repairs.
     """
+
+    missing = BuildOutcome.LEFT_OUT
 
     def __init__(
         self, model: SdfModel, meshes: MeshLibrary, strict: bool, report: BuildReport

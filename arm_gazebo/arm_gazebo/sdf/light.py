@@ -1,4 +1,4 @@
-"""The lights of SDF worlds, and their sky."""
+"""Add the lights and the sky of an SDF world."""
 
 import math
 
@@ -15,13 +15,13 @@ KINDS = {
 }
 DOWN = (0.0, 0.0, -1.0)
 SUN_DIRECTION = (-0.5, 0.1, -0.9)
-"""That of Gazebo's own sun."""
+"""Direction of the light of Gazebo's own sun."""
 SUN_HEIGHT_M = 10.0
 NO_ATTENUATION = (1.0, 0.0, 0.0)
 
 
 def add_sky(spec: mujoco.MjSpec, world: SdfElement) -> None:
-    """Give a world the background and the light from everywhere that its <scene> tells."""
+    """Add the background and the ambient light that a world's <scene> describes."""
     scene = world.child("scene")
     grey = (0.4, 0.4, 0.4, 1.0)
     ambient = scene.color("ambient", grey) if scene else grey
@@ -43,15 +43,15 @@ def add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
     """Add a <light>.
 
     Raises:
-        WorldError: a value makes no sense.
+        WorldError: a value is invalid.
     """
     kind = light.attribute("type")
     if kind not in KINDS:
-        raise light.error(f"has the type '{kind}', which is none of {', '.join(KINDS)}")
+        raise light.error(f"has the type '{kind}', which is not one of {', '.join(KINDS)}")
     pose = pose_of(light.pose().matrix)
     x, y, z = light.numbers("direction", 3, DOWN)
     if not (x or y or z):
-        raise light.error("has a direction of no length")
+        raise light.error("has a direction of zero length")
     added = spec.worldbody.add_light(name=light.name, type=KINDS[kind], pos=pose.xyz)
     added.dir = rotation_from_rpy(pose.rpy) @ (x, y, z)
     added.diffuse = light.color("diffuse", (1.0, 1.0, 1.0, 1.0))[:3]
@@ -59,7 +59,7 @@ def add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
     added.castshadow = light.flag("cast_shadows")
     attenuation = light.child("attenuation")
     if attenuation and kind != "directional":
-        # All three may be 0, and MuJoCo divides by their sum.
+        # MuJoCo divides by the sum of the three, which may all be 0.
         terms = [attenuation.number(term, 0.0) for term in ("constant", "linear", "quadratic")]
         added.attenuation = terms if sum(terms) > 0 else NO_ATTENUATION
     spot = light.child("spot")
@@ -68,7 +68,7 @@ def add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
 
 
 def add_sun(spec: mujoco.MjSpec) -> None:
-    """Add Gazebo's own sun, for worlds that include it by name."""
+    """Add Gazebo's own sun, which worlds include by name."""
     spec.worldbody.add_light(
         name="sun",
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,

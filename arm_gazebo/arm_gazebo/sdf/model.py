@@ -1,15 +1,17 @@
-"""One <model> of an SDF file, as the robot that it is: links, all fixed to the model's frame."""
+"""Read an SDF <model> as rigid bodies, each a robot whose links are fixed to one frame."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.errors import DescriptionError
-from arm_description.mesh_data import Color
-from arm_description.resources import SCHEMES
-from arm_description.robot import (
+from arm_description.errors import DescriptionError, ResourceNotFoundError
+from arm_description.mesh.data import Color
+from arm_description.resources import SCHEMES, resolve_uri
+from arm_description.urdf.joint_type import JointType
+from arm_description.urdf.robot import (
     Box,
     Capsule,
     Collision,
@@ -26,27 +28,29 @@ from arm_description.robot import (
     Vector,
     Visual,
 )
-from arm_gazebo.robot.gazebo_materials import gazebo_color
+from arm_gazebo.robot.gazebo_tags import gazebo_color
 from arm_gazebo.robot.link_geometry import DEFAULT_FRICTION
 from arm_gazebo.sdf.auto_inertia import DEFAULT_DENSITY, AutoInertia
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames, pose_of
+from arm_gazebo.sdf.rigid_bodies import RigidBody, rigid_bodies
+from arm_gazebo.sdf.scope import Matrix, SdfScope
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "plane")
 
 DEFAULT_INERTIAL = Inertial(1.0, Pose(), (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
-"""SDF's own, whatever the shape: 1 kg, and 1 kg m2 about every axis."""
+"""SDF's default for any shape: 1 kg, and 1 kg m2 about every axis."""
 
 
 @dataclass(frozen=True, slots=True)
 class SdfPlane:
-    """An infinite plane to be touched, or a finite one to be seen.
+    """An infinite collision plane, or a finite visual plane.
 
     Attributes:
-        pose: in the model's frame; z is the normal.
-        size: full sides of what is seen, None for what is touched.
-        rgba: colour of what is seen.
-        friction: of what is touched, at most 1.
+        pose: pose in the frame of the rigid body; z is the normal.
+        size: full side lengths of a visual plane, None for a collision plane.
+        rgba: colour of a visual plane.
+        friction: friction of a collision plane, at most 1.
     """
 
     pose: Pose
@@ -57,85 +61,91 @@ class SdfPlane:
 
 @dataclass(frozen=True, slots=True)
 class SdfModel:
-    """A model: one rigid body, for joints that move are not read.
+    """One rigid body of a model, usually the whole model: moving joints are not simulated.
 
     Attributes:
-        robot: the model's frame as root, named after the model, and `MODEL::LINK` for each link.
-        frictions: by link, of each of its collisions, at most 1.
-        automatic: the links whose inertia is to be computed; they have none in `robot`.
-        planes: which no link of a robot can have.
+        robot: the body's frame as root, and a link called `MODEL::LINK` for each link.
+        frame: (4, 4) pose of the body's frame in the frame of the model.
+        frictions: by link, the friction of each collision, at most 1.
+        automatic: the links whose inertia is computed; they have no inertia in `robot`.
+        planes: the planes, which cannot be part of a robot's link.
         static: whether it is part of the world.
     """
 
     robot: Robot
+    frame: Matrix
     frictions: Mapping[str, tuple[float, ...]]
     automatic: Mapping[str, AutoInertia]
     planes: tuple[SdfPlane, ...]
     static: bool
 
 
-def read_model(model: SdfElement, name: str, static: bool | None = None) -> SdfModel:
-    """Return what a <model> describes.
+def read_model(scope: SdfScope, name: str, static: bool | None = None) -> tuple[SdfModel, ...]:
+    """Return the rigid bodies that a <model> and the models in it describe.
 
     Args:
-        model: the element.
-        name: of the model in its world.
-        static: overrides what the model says; None lets it be.
+        scope: the scope of the <model>.
+        name: name of the model in its world.
+        static: overrides the model's <static>; None keeps it.
 
     Raises:
-        WorldError: a value is not what it must be.
+        WorldError: a value is invalid.
     """
-    links = model.children("link")
-    frames = _frames_in(model)
-    said = model.flag("static")
-    fixed = said if static is None else static
-    read = [_LinkReader(link, f"{name}::{link.name}", frames) for link in links]
+    return tuple(_read_body(scope.element, body) for body in rigid_bodies(scope, name, static))
+
+
+def _read_body(model: SdfElement, body: RigidBody) -> SdfModel:
+    to_body = np.linalg.inv(body.frame)
+    read = [
+        _LinkReader(link, f"{part.name}::{link.name}", part.scope.frames, to_body @ part.frame)
+        for part in body.parts
+        for link in part.scope.links
+    ]
     planes = tuple(plane for reader in read for plane in reader.planes())
-    if planes and not fixed:
+    if planes and not body.static:
         raise model.error("has a <plane>, and a plane cannot move; make the model <static>")
-    names = [reader.name for reader in read]
     joints = tuple(
-        Joint(f"{name}::fixed::{link.name}", "fixed", name, of, pose_of(frames.matrix(link)))
-        for link, of in zip(links, names, strict=True)
+        Joint(
+            f"{body.name}::fixed::{reader.name}",
+            JointType.FIXED,
+            body.name,
+            reader.name,
+            reader.pose(),
+        )
+        for reader in read
     )
     try:
-        robot = Robot(name, (Link(name), *(reader.link() for reader in read)), joints)
+        links = (Link(body.name), *(reader.link() for reader in read))
+        robot = Robot(body.name, links, joints)
     except DescriptionError as error:
-        raise model.error(f"is no model: {error}") from error
+        raise model.error(f"is not a valid model: {error}") from error
     frictions = {reader.name: reader.frictions() for reader in read}
     automatic = {reader.name: auto for reader in read if (auto := reader.auto_inertia())}
-    return SdfModel(robot, frictions, automatic, planes, fixed)
-
-
-def placement_offset(model: SdfElement, frame: str) -> NDArray[np.float64]:
-    """Return a model's frame (4, 4) in the one of its frames that its pose places.
-
-    Args:
-        model: the element.
-        frame: name of the placed one, "" for the model's own.
-
-    Raises:
-        WorldError: the model has no such frame.
-    """
-    return np.asarray(np.linalg.inv(_frames_in(model).named(frame, model)), np.float64)
-
-
-def _frames_in(model: SdfElement) -> SdfFrames:
-    # Joints are frames too, though nothing else of them is simulated.
-    parts = (*model.aside("joint"), *model.children("link"), *model.children("frame"))
-    return SdfFrames({part.name: part for part in parts})
+    return SdfModel(robot, body.frame, frictions, automatic, planes, body.static)
 
 
 class _LinkReader:
-    """Reads one link; `name` is what it is called in the world."""
+    """Reads one link.
 
-    def __init__(self, link: SdfElement, name: str, frames: SdfFrames) -> None:
+    Args:
+        link: the <link> element.
+        name: name of the link in the world.
+        frames: the frames of its model.
+        model_frame: (4, 4) pose of its model in the rigid body.
+    """
+
+    def __init__(self, link: SdfElement, name: str, frames: SdfFrames, model_frame: Matrix) -> None:
         self._link = link
         self._frames = frames
+        self._model_frame = model_frame
         self.name = name
 
+    def pose(self) -> Pose:
+        """Return the pose of the link in the rigid body."""
+        return pose_of(self._model_frame @ self._frames.matrix(self._link))
+
     def link(self) -> Link:
-        """Return all of it but planes."""
+        """Return the link without its planes."""
         visuals = tuple(
             Visual(shape.name, self._pose(shape), geometry, Material("", _color(shape)))
             for shape, geometry in self._solids("visual")
@@ -147,23 +157,23 @@ class _LinkReader:
         return Link(self.name, self._inertial(), visuals, collisions, self._link.line)
 
     def frictions(self) -> tuple[float, ...]:
-        """Return the frictions of the link's collisions but planes."""
+        """Return the frictions of the link's collisions, except planes."""
         return tuple(_friction(collision) for collision, _ in self._solids("collision"))
 
     def auto_inertia(self) -> AutoInertia | None:
-        """Return what the link's inertia is to be computed from, None where it is given."""
+        """Return the input for an automatic inertia, None if the link gives its inertia."""
         inertial = self._link.child("inertial")
-        if inertial is None or not inertial.truth("auto"):
+        if inertial is None or not inertial.boolean("auto"):
             return None
-        usual = inertial.size("density") if inertial.child("density") else DEFAULT_DENSITY
+        default = inertial.size("density") if inertial.child("density") else DEFAULT_DENSITY
         densities = tuple(
-            collision.size("density") if collision.child("density") else usual
+            collision.size("density") if collision.child("density") else default
             for collision, _ in self._solids("collision")
         )
         return AutoInertia(densities, inertial.size("mass") if inertial.child("mass") else None)
 
     def planes(self) -> Iterator[SdfPlane]:
-        """Yield the link's planes in the model's frame."""
+        """Yield the link's planes in the frame of the rigid body."""
         for kind in ("visual", "collision"):
             for shape in self._link.children(kind):
                 plane = shape.at("geometry", "plane")
@@ -171,11 +181,11 @@ class _LinkReader:
                     continue
                 normal = np.array(plane.numbers("normal", 3, (0.0, 0.0, 1.0)))
                 if not np.linalg.norm(normal):
-                    raise plane.error("has a normal of no length")
+                    raise plane.error("has a normal of zero length")
                 upright = np.eye(4)
-                upright[:3, :3] = _turn_to(normal / np.linalg.norm(normal))
+                upright[:3, :3] = _rotation_to(normal / np.linalg.norm(normal))
                 frame = self._frames.matrix(self._link) @ self._frames.within(self._link, shape)
-                pose = pose_of(frame @ upright)
+                pose = pose_of(self._model_frame @ frame @ upright)
                 x, y = plane.numbers("size", 2, (1.0, 1.0))
                 if kind == "visual":
                     yield SdfPlane(pose, (x, y), _color(shape))
@@ -184,7 +194,7 @@ class _LinkReader:
 
     def _solids(self, kind: str) -> Iterator[tuple[SdfElement, Geometry]]:
         for shape in self._link.children(kind):
-            geometry = _geometry(shape.needed("geometry"))
+            geometry = _geometry(shape.required("geometry"))
             if geometry is not None:
                 yield shape, geometry
 
@@ -195,7 +205,7 @@ class _LinkReader:
         inertial = self._link.child("inertial")
         if inertial is None:
             return DEFAULT_INERTIAL
-        if inertial.truth("auto"):
+        if inertial.boolean("auto"):
             return None
         moments = inertial.child("inertia")
         keys = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}
@@ -207,7 +217,7 @@ class _LinkReader:
 
 
 def _geometry(element: SdfElement) -> Geometry | None:
-    """Return a shape, None for a plane and for what is unknown, which is listed as unread."""
+    """Return a shape; None for a plane, and for an unknown shape, which is reported as unread."""
     shape = next((child for tag in SHAPES if (child := element.child(tag))), None)
     match shape.tag if shape else "":
         case "box" if shape:
@@ -231,16 +241,26 @@ def _mesh(shape: SdfElement) -> Mesh:
     if not uri:
         raise shape.error("needs a <uri>")
     if not uri.startswith((*SCHEMES, "/")) and "://" not in uri:
-        # A plain path starts in the folder of the file that names it.
+        # A plain path is relative to the folder of the file that names it.
         uri = str(shape.source.parent.resolve() / uri)
+    elif uri.startswith("model://"):
+        uri = _beside(uri, shape.source.parent.resolve())
     x, y, z = shape.numbers("scale", 3, (1.0, 1.0, 1.0))
     scale: Vector = (x, y, z)
     return Mesh(uri, scale)
 
 
+def _beside(uri: str, folder: Path) -> str:
+    """Return the path of a file in the model's folder or one beside it, else the URI."""
+    try:
+        return str(resolve_uri(uri, [folder, folder.parent]))
+    except ResourceNotFoundError:
+        return uri
+
+
 def _color(visual: SdfElement) -> Color | None:
     material = visual.child("material")
-    # The transparency of a visual comes on top of its colour's.
+    # A visual's transparency multiplies the alpha of its colour.
     opacity = 1.0 - min(max(visual.number("transparency", 0.0), 0.0), 1.0)
     if material is None:
         return None
@@ -257,16 +277,16 @@ def _color(visual: SdfElement) -> Color | None:
 def _friction(collision: SdfElement) -> float:
     """Return the coefficient of the first direction, at most 1; MuJoCo has one for both.
 
-    Gazebo takes the lower coefficient of two shapes, so that more than the 1 of all that say
-    nothing counts only where both have more. MuJoCo takes the higher one: a ground of 100, as
-    Gazebo saves it, would hold every wheel and foot.
+    Of two shapes in contact Gazebo takes the lower coefficient, so a value above the default of 1
+    matters only if both shapes have one. MuJoCo takes the higher one: the ground's 100 in worlds
+    that Gazebo saved would hold every wheel and foot.
     """
     ode = collision.at("surface", "friction", "ode")
     mu = ode.number("mu", DEFAULT_FRICTION) if ode else DEFAULT_FRICTION
     return min(max(mu, 0.0), DEFAULT_FRICTION)
 
 
-def _turn_to(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotation_to(normal: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return a rotation (3, 3) that turns z to a unit vector."""
     side = np.eye(3)[int(np.argmin(np.abs(normal)))]
     x = np.cross(side, normal)

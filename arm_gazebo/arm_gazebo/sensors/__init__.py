@@ -1,1 +1,1 @@
-"""The cameras and other sensors of a URDF: what they are, not what they read."""
+"""The cameras and other sensors that a URDF describes."""

@@ -1,4 +1,4 @@
-"""A camera of the robot: what it sees with, how often, and where its pictures go."""
+"""A camera of the robot: its optics, its rate and its topics."""
 
 import math
 from dataclasses import dataclass
@@ -8,36 +8,37 @@ DEFAULT_SIZE = (320, 240)
 DEFAULT_RATE_HZ = 30.0
 DEFAULT_CLIP = (0.1, 100.0)
 NEARER_SHARE = 0.1
-"""Share of the near clip from which on a depth camera draws: what is nearer than the clip hides
-what is behind it, and is told from it."""
+"""Fraction of the near clip distance at which a depth camera starts to draw. An object nearer
+than the clip distance still hides what is behind it, and its pixels are reported as too near."""
 SAME_FRAME = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class CameraSensor:
-    """What one camera sees with, how often, and where its pictures go.
+    """The optics, the rate and the topics of one camera.
 
     Attributes:
-        name: unique in the robot, see `told_apart`; the MuJoCo camera has the same.
-        link: link that carries the camera; it looks along the link's x axis, z up.
-        optical_frame: frame of the messages' headers: z forward, x right, y down.
-        width: picture's width in pixels.
-        height: picture's height in pixels.
+        name: unique in the robot, see `unique_names`; the MuJoCo camera has the same name.
+        link: link that carries the camera, which looks along the link's x axis, z up.
+        optical_frame: frame in the messages' headers: z forward, x right, y down.
+        width: image width in pixels.
+        height: image height in pixels.
         hfov: horizontal field of view in rad, in (0, pi).
         near: nearest visible distance in m.
         far: farthest visible distance in m.
         rate_hz: frames per second of simulation time.
-        noise_mean: mean of the Gaussian noise: of the picture, as a fraction of the full range;
-            of a camera without picture of the depth, in m.
-        noise_stddev: its standard deviation likewise; 0 for none.
-        image_topics: topics of the picture; relative ones are in the node's namespace.
-        info_topics: topics of the intrinsics.
-        depth_topics: topics of the distances.
-        points_topics: topics of the cloud of points.
+        noise_mean: mean of the Gaussian noise: for a colour image a fraction of the full range,
+            for a camera that has only depth in m.
+        noise_stddev: standard deviation of the noise in the same unit; 0 for no noise.
+        image_topics: topics of the image; relative ones are in the node's namespace.
+        info_topics: topics of the camera info.
+        depth_topics: topics of the depth image.
+        points_topics: topics of the point cloud.
         xyz: position of the camera in its link, in m.
         rpy: orientation of the camera in its link, in rad.
-        optics_in_frame: (3, 4) row by row, pose of z forward, x right, y down in `optical_frame`,
-            which Gazebo's users may call one that looks along x; points are in that frame.
+        optics_in_frame: (3, 4) row by row, pose of the optical axes (z forward, x right, y down)
+            in `optical_frame`. It differs from the identity where the user names a frame that
+            looks along x. Points are published in `optical_frame`.
     """
 
     name: str
@@ -61,7 +62,7 @@ class CameraSensor:
 
     @property
     def focal_length(self) -> float:
-        """Focal length in pixels, the same along both axes: pixels are square."""
+        """Focal length in pixels, equal along both axes because pixels are square."""
         return self.width / 2 / math.tan(self.hfov / 2)
 
     @property
@@ -76,10 +77,10 @@ class CameraSensor:
 
     @property
     def measures_depth(self) -> bool:
-        """Whether distances are among what it shows."""
+        """Whether the camera publishes depth or points."""
         return bool(self.depth_topics or self.points_topics)
 
     @property
     def nearest_drawn(self) -> float:
-        """From which distance on things are drawn, in m."""
+        """Distance in m at which the camera starts to draw."""
         return self.near * NEARER_SHARE if self.measures_depth else self.near

@@ -1,4 +1,4 @@
-"""The frames that stand still relative to a camera's link: which is its optical one, and where."""
+"""The frames that are fixed to a camera's link, and the optical frame among them."""
 
 import math
 from collections import deque
@@ -7,50 +7,50 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.robot import Pose
 from arm_description.transforms import rotation_from_rpy
+from arm_description.urdf.robot import Pose
 
 Matrix = NDArray[np.float64]
 
 OPTICAL_RPY = (-math.pi / 2, 0.0, -math.pi / 2)
-"""From a link that looks along x, z up, to a frame that looks along z, y down (REP 103)."""
+"""From a link that looks along x, z up, to the optical frame: z forward, y down (REP 103)."""
 OPTICAL = rotation_from_rpy(OPTICAL_RPY)
-LIKENESS = 0.01
+ROTATION_TOLERANCE = 0.01
 
 
 class CameraFrames:
-    """A link of a URDF, and all that hangs on it by fixed joints.
+    """A link of a URDF and every link that fixed joints attach to it.
 
     Args:
-        root: the document.
-        link: carries the camera.
+        root: the root element of the URDF.
+        link: name of the link that carries the camera.
     """
 
     def __init__(self, root: Any, link: str) -> None:
         self._link = link
         self._poses: dict[str, Matrix] = {link: np.eye(4)}
         fixed = [joint for joint in root.findall("joint") if joint.get("type") == "fixed"]
-        beyond = deque([link])
-        while beyond:
-            parent = beyond.popleft()
+        pending = deque([link])
+        while pending:
+            parent = pending.popleft()
             for joint in fixed:
                 child, origin = _child_of(joint, parent), _origin(joint)
                 if child and origin is not None and child not in self._poses:
                     self._poses[child] = self._poses[parent] @ origin.matrix()
-                    beyond.append(child)
+                    pending.append(child)
 
     def optical(self) -> str:
-        """Return the nearest frame with the optical orientation; the link if there is none."""
+        """Return the nearest frame with the optical orientation, or the link if there is none."""
         for name, pose in self._poses.items():
-            if np.abs(pose[:3, :3] - OPTICAL).max() < LIKENESS:
+            if np.abs(pose[:3, :3] - OPTICAL).max() < ROTATION_TOLERANCE:
                 return name
         return self._link
 
     def optics_in(self, frame: str, camera: Pose) -> Matrix | None:
-        """Return the (4, 4) pose of a camera's optical axes in a frame; None for a strange one.
+        """Return the (4, 4) pose of a camera's optical axes in a frame.
 
         Args:
-            frame: the link, or what is fixed to it.
+            frame: the link, or a frame that is fixed to it; for any other frame the result is None.
             camera: pose of the camera in its link.
         """
         pose = self._poses.get(frame)
@@ -62,7 +62,7 @@ class CameraFrames:
 
 
 def _child_of(joint: Any, parent: str) -> str:
-    """Return the child of a joint of this parent; empty for another's joint."""
+    """Return the child link of a joint; empty if the joint has another parent link."""
     above, below = joint.find("parent"), joint.find("child")
     if above is None or below is None or above.get("link") != parent:
         return ""
@@ -70,7 +70,7 @@ def _child_of(joint: Any, parent: str) -> str:
 
 
 def _origin(joint: Any) -> Pose | None:
-    """Return where a joint is in its parent; None where that is nonsense."""
+    """Return the pose of a joint in its parent link; None if the origin is invalid."""
     origin = joint.find("origin")
     if origin is None:
         return Pose()

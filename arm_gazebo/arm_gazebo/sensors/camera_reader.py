@@ -1,4 +1,4 @@
-"""The cameras of a URDF, in Gazebo's own tags."""
+"""Read the cameras of a URDF from Gazebo's sensor tags."""
 
 import logging
 import math
@@ -6,8 +6,8 @@ from collections.abc import Container, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from arm_description.robot import Pose
-from arm_description.xml_document import parse_xml
+from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.robot import Pose
 from arm_gazebo.sensors.camera import (
     DEFAULT_CLIP,
     DEFAULT_HFOV,
@@ -17,40 +17,41 @@ from arm_gazebo.sensors.camera import (
     CameraSensor,
 )
 from arm_gazebo.sensors.camera_frames import CameraFrames
+from arm_gazebo.sensors.noise import noise_type
+from arm_gazebo.sensors.reader import TYPES, sensor_type
 from arm_gazebo.sensors.tags import (
     COLOR_FORMATS,
-    TYPES,
     SensorTags,
     sensor_elements,
-    sensor_type,
-    told_apart,
+    unique_names,
 )
 
 logger = logging.getLogger(__name__)
 
 MAX_SIDE = 8192
-"""Widest picture, in pixels: what common GL drivers can render into."""
+"""Largest image side in pixels that common OpenGL drivers can render."""
 FORMATS = (
     *COLOR_FORMATS,
     *("L8", "L_INT8", "L16", "L_INT16", "B8G8R8", "BGR_INT8", "R_FLOAT16", "R_FLOAT32"),
     *("BAYER_RGGB8", "BAYER_BGGR8", "BAYER_GBRG8", "BAYER_GRBG8"),
 )
-"""Gazebo's; whatever is asked for, pictures are rgb8, and `leftovers` says so."""
-NOISE_TYPES = ("none", "gaussian", "gaussian_quantized")
+"""Gazebo's formats. All are accepted, but images are always rgb8; `unread_elements` says so."""
 CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
 
 
-def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[CameraSensor, ...]:
+def parse_cameras(
+    description: Description, source: str = "robot_description"
+) -> tuple[CameraSensor, ...]:
     """Return the cameras of a URDF, in document order.
 
     A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
-    `depth_camera` or `rgbd_camera`. What a tag leaves out has Gazebo's default.
+    `depth_camera` or `rgbd_camera`. Values that a tag leaves out have Gazebo's defaults.
 
     Raises:
-        SensorError: a value is nonsense; the message names sensor, element and line.
+        SensorError: a value is invalid; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
-    root = parse_xml(urdf_xml, source)
+    root = as_document(description, source).root
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []
     taken: dict[str, CameraSensor] = {}
@@ -65,7 +66,7 @@ def parse_cameras(urdf_xml: str, source: str = "robot_description") -> tuple[Cam
         camera = _read_camera(tags, root, taken)
         _take_topics(camera, tags, taken)
         cameras.append(camera)
-    names = told_apart(cameras)
+    names = unique_names(cameras)
     return tuple(replace(c, name=name) for c, name in zip(cameras, names, strict=True))
 
 
@@ -73,7 +74,7 @@ def _camera_tags(root: Any) -> Iterator[SensorTags]:
     for link, sensor in sensor_elements(root):
         kind = sensor_type(sensor)
         if kind in CAMERA_TYPES:
-            yield SensorTags(sensor, link, "camera")
+            yield SensorTags(sensor, link, kind, "camera")
         elif kind is None:
             logger.warning(
                 "sensor %r (line %s) has type %r: it is not simulated, only %s are",
@@ -84,10 +85,10 @@ def _camera_tags(root: Any) -> Iterator[SensorTags]:
 
 @dataclass(frozen=True, slots=True)
 class _Topics:
-    """Where what a camera shows goes, by its type.
+    """The topics of a camera, which depend on its type.
 
-    Below `<topic>` as Gazebo names it, or where a tag of its own says, which takes the place of
-    what one would tell Gazebo's bridge.
+    They are below `<topic>` with Gazebo's names. A tag for one topic, such as `<image_topic>`,
+    overrides its name; it replaces the remapping in a configuration of Gazebo's bridge.
     """
 
     image_topics: tuple[str, ...] = ()
@@ -121,7 +122,7 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
     far_default = max(DEFAULT_CLIP[1], 2 * near)
     if tags.type == "camera":
         tags.choice("image/format", FORMATS)
-    noisy = _noise_type(tags) != "none"
+    noisy = noise_type(tags, "noise") != "none"
     topics = _Topics.of(tags, taken)
     numbers = tags.pose()
     pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
@@ -136,7 +137,7 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
         hfov=tags.number("horizontal_fov", DEFAULT_HFOV, lambda v: 0 < v < math.pi, "in (0, pi)"),
         near=near,
         far=tags.number("clip/far", far_default, lambda v: v > near, f"above near, {near:g}"),
-        # Gazebo reads rate 0 as "every step"; nobody wants 500 pictures a second.
+        # Gazebo reads rate 0 as "every step", but nobody wants 500 images a second.
         rate_hz=tags.rate_hz() or DEFAULT_RATE_HZ,
         noise_mean=_noise(tags, "mean", -1, "from -1 to 1") if noisy else 0.0,
         noise_stddev=_noise(tags, "stddev", 0, "from 0 to 1") if noisy else 0.0,
@@ -150,14 +151,6 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
     )
 
 
-def _noise_type(tags: SensorTags) -> str:
-    # SDF has it as an attribute, too.
-    kind = tags.attribute("noise", "type") or tags.choice("noise/type", NOISE_TYPES)
-    if kind not in NOISE_TYPES:
-        raise tags.error("noise", f"type {kind!r} is not one of {', '.join(NOISE_TYPES)}")
-    return kind
-
-
 def _noise(tags: SensorTags, tag: str, least: float, must_be: str) -> float:
     return tags.number(f"noise/{tag}", 0.0, lambda v: least <= v <= 1, must_be)
 
@@ -168,9 +161,10 @@ def _pixels(tags: SensorTags, tag: str, default: int) -> int:
 
 
 def _default_info_topics(images: tuple[str, ...], taken: Container[str]) -> tuple[str, ...]:
-    """Return both customs: below the image topic, and beside it as Gazebo and ROS drivers do.
+    """Return two camera info topics: below the image topic, and beside it as ROS drivers have it.
 
-    The one beside it is left out where an earlier camera has it: two cameras would mix there.
+    The topic beside the image is left out if an earlier camera uses it, because the messages of
+    two cameras would mix.
     """
     below = _below(images, "camera_info")
     beside = ["".join(image.rpartition("/")[:2]) + "camera_info" for image in images]
@@ -185,6 +179,6 @@ def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, Camera
 
 
 def _optics_in(frames: CameraFrames, frame: str, camera: Pose) -> tuple[float, ...]:
-    """Return the camera's optical axes in a frame; one that is not known is taken for optical."""
+    """Return the camera's optical axes in a frame; an unknown frame counts as the optical one."""
     pose = frames.optics_in(frame, camera)
     return SAME_FRAME if pose is None else tuple(pose[:3].ravel().tolist())

@@ -8,56 +8,64 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.sensor_interfaces import FORCE_TORQUE_INTERFACES
-from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement
+from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import FORCE_TORQUE_INTERFACES
+from arm_description.urdf.robot import Robot
+from arm_gazebo.sensors.link_sensor import WRENCH_FIELDS, LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.tags import SensorTags
 
 DATA = mujoco.mjtConDataField
 WANTED = (DATA.mjCONDATA_FOUND, DATA.mjCONDATA_FORCE, DATA.mjCONDATA_TORQUE, DATA.mjCONDATA_POS)
 NET_FORCE = 3
-"""MuJoCo's way to make one of all contacts: the sum of the forces, at their middle."""
+"""MuJoCo's reduction of all contacts to one: the summed force at the contacts' centre."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContactSensor(LinkSensor):
-    """A contact sensor of all collision shapes of a link.
+    """A contact sensor that covers all collision shapes of a link.
 
-    A reading is the number of contact points, and the force and torque that others exert on the
-    link, about its origin and in its axes.
+    A reading is the number of contact points, and the force and torque that other bodies exert on
+    the link, about its origin and in its axes.
     """
 
     type: ClassVar[str] = "contact"
     channels: ClassVar[tuple[str, ...]] = ("contacts", *FORCE_TORQUE_INTERFACES)
 
     @classmethod
-    def read(cls, tags: SensorTags) -> "ContactSensor":
+    def read(cls, tags: SensorTags, robot: Robot) -> "ContactSensor":
         """Return the sensor that the tags describe.
 
         Raises:
-            SensorError: a value is nonsense.
+            SensorError: a value is invalid.
         """
         return cls(
             name=tags.name,
             link=tags.reference,
             frame_id=tags.frame(tags.reference),
-            # Gazebo has it below <contact>; either place counts.
+            # Gazebo writes the topic below <contact>; both places are accepted.
             topic=tags.own_topics()[0],
             rate_hz=tags.rate_hz(),
         )
 
+    def topics(self) -> Sequence[SensorTopic]:
+        """Return the topic of the force, and the one that tells whether there is contact."""
+        return (
+            SensorTopic("geometry_msgs/msg/WrenchStamped", WRENCH_FIELDS, first=1),
+            SensorTopic("std_msgs/msg/Bool", ("data",), suffix="/in_contact"),
+        )
+
     def measurements(self) -> Sequence[Measurement]:
-        """Return the net contact, and where the link is and how it is turned."""
+        """Return the measurements of the net contact and of the link's pose."""
         sensor, body = mujoco.mjtSensor, mujoco.mjtObj.mjOBJ_BODY
         options = (sum(1 << int(field) for field in WANTED), NET_FORCE, 1)
         site = mujoco.mjtObj.mjOBJ_SITE
         return [
             Measurement("net", sensor.mjSENS_CONTACT, body, self.link, options=options),
             Measurement("position", sensor.mjSENS_FRAMEPOS, site, self.key),
-            Measurement("turned", sensor.mjSENS_FRAMEQUAT, site, self.key),
+            Measurement("orientation", sensor.mjSENS_FRAMEQUAT, site, self.key),
         ]
 
     def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the channels; MuJoCo's force is what the link does to the others."""
+        """Return the channels. MuJoCo's force is the one that the link exerts on other bodies."""
         reading = np.zeros(len(self.channels))
         reading[0] = measured[0]
         if measured[0]:

@@ -1,4 +1,4 @@
-"""A force-torque sensor: what a joint passes on between its two links."""
+"""A force-torque sensor: the wrench that a joint transmits between its two links."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.sensor_interfaces import FORCE_TORQUE_INTERFACES
-from arm_description.robot import Joint
-from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement
+from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import FORCE_TORQUE_INTERFACES
+from arm_description.urdf.robot import Robot
+from arm_gazebo.sensors.link_sensor import WRENCH_FIELDS, LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.noise import SILENT, NoiseModel, read_noise
 from arm_gazebo.sensors.tags import SensorTags
 
@@ -21,16 +21,16 @@ QUIET = (SILENT,) * 6
 
 @dataclass(frozen=True, slots=True)
 class ForceTorqueSensor(LinkSensor):
-    """A sensor in a joint, which may be fixed; `link` is the joint's child.
+    """A sensor in a joint, which may be fixed; `link` is the joint's child link.
 
-    The torque is about the sensor's origin: the joint's, moved by `<pose>`.
+    The torque is about the sensor's origin: the joint's origin, moved by `<pose>`.
 
     Attributes:
         parent: the joint's parent link.
-        frame: whose axes force and torque are seen in: child, parent, or sensor.
-        direction: child_to_parent for what the child does to the parent, as Gazebo's default,
-            or parent_to_child.
-        channel_noise: of force x, y, z in N and torque x, y, z in N m.
+        frame: the axes of force and torque: child, parent, or sensor.
+        direction: child_to_parent (Gazebo's default) for the wrench that the child exerts on the
+            parent, or parent_to_child.
+        channel_noise: noise of force x, y, z in N and torque x, y, z in N m.
     """
 
     parent: str = ""
@@ -40,14 +40,16 @@ class ForceTorqueSensor(LinkSensor):
 
     type: ClassVar[str] = "force_torque"
     channels: ClassVar[tuple[str, ...]] = FORCE_TORQUE_INTERFACES
+    reference: ClassVar[str] = "joint"
 
     @classmethod
-    def read(cls, tags: SensorTags, joint: Joint) -> "ForceTorqueSensor":
+    def read(cls, tags: SensorTags, robot: Robot) -> "ForceTorqueSensor":
         """Return the sensor that the tags describe.
 
         Raises:
-            SensorError: a value is nonsense.
+            SensorError: a value is invalid.
         """
+        joint = robot.joint(tags.reference)
         pose = tags.pose()
         frame = tags.choice("frame", FRAMES)
         noise = (
@@ -72,8 +74,12 @@ class ForceTorqueSensor(LinkSensor):
         """The noise of each channel."""
         return self.channel_noise
 
+    def topics(self) -> Sequence[SensorTopic]:
+        """Return the topic of the wrench."""
+        return (SensorTopic("geometry_msgs/msg/WrenchStamped", WRENCH_FIELDS),)
+
     def measurements(self) -> Sequence[Measurement]:
-        """Return force, torque, and how the sensor is turned in the parent."""
+        """Return the measurements of force, torque, and the sensor's orientation in the parent."""
         sensor, site = mujoco.mjtSensor, mujoco.mjtObj.mjOBJ_SITE
         wrench = [
             Measurement("force", sensor.mjSENS_FORCE, site, self.key),
@@ -81,14 +87,14 @@ class ForceTorqueSensor(LinkSensor):
         ]
         if self.frame != "parent":
             return wrench
-        turned = Measurement("turned", sensor.mjSENS_FRAMEQUAT, site, self.key, self.parent)
-        return [*wrench, turned]
+        kind = sensor.mjSENS_FRAMEQUAT
+        return [*wrench, Measurement("orientation", kind, site, self.key, self.parent)]
 
     def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return force and torque; MuJoCo's are those that the parent exerts on the child."""
+        """Return force and torque. MuJoCo measures what the parent exerts on the child."""
         wrench = measured[:6].copy()
         if self.frame == "parent":
-            turned = measured[6:]
-            mujoco.mju_rotVecQuat(wrench[:3], measured[:3], turned)
-            mujoco.mju_rotVecQuat(wrench[3:], measured[3:6], turned)
+            orientation = measured[6:]
+            mujoco.mju_rotVecQuat(wrench[:3], measured[:3], orientation)
+            mujoco.mju_rotVecQuat(wrench[3:], measured[3:6], orientation)
         return wrench if self.direction == "parent_to_child" else 0.0 - wrench

@@ -8,28 +8,31 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.sensor_interfaces import IMU_INTERFACES
-from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement
+from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import IMU_INTERFACES
+from arm_description.urdf.robot import Robot
+from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.noise import SILENT, NoiseModel, read_noise
 from arm_gazebo.sensors.tags import SensorTags
 
 XYZW = [1, 2, 3, 0, *range(4, 10)]
-"""MuJoCo's quaternions have their scalar first, ROS's last."""
+"""MuJoCo puts a quaternion's scalar first, ROS puts it last."""
 AXES = ("x", "y", "z")
 QUIET = (SILENT,) * 3
+UNKNOWN = -1.0
+"""First number of the covariance of a quantity that the message does not contain."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImuSensor(LinkSensor):
     """An IMU.
 
-    It shows the orientation of its own axes in the world (x east, z up: REP 103), and in its own
+    It measures the orientation of its axes in the world (x east, z up: REP 103), and in its own
     axes the angular velocity and the specific force: at rest +9.81 m/s2 upwards.
 
     Attributes:
-        angular_velocity_noise: along x, y, z, in rad/s.
-        linear_acceleration_noise: along x, y, z, in m/s2.
-        has_orientation: whether it tells its orientation.
+        angular_velocity_noise: noise along x, y, z, in rad/s.
+        linear_acceleration_noise: noise along x, y, z, in m/s2.
+        has_orientation: whether it reports its orientation.
     """
 
     angular_velocity_noise: tuple[NoiseModel, ...] = QUIET
@@ -40,11 +43,11 @@ class ImuSensor(LinkSensor):
     channels: ClassVar[tuple[str, ...]] = IMU_INTERFACES
 
     @classmethod
-    def read(cls, tags: SensorTags) -> "ImuSensor":
+    def read(cls, tags: SensorTags, robot: Robot) -> "ImuSensor":
         """Return the sensor that the tags describe.
 
         Raises:
-            SensorError: a value is nonsense.
+            SensorError: a value is invalid.
         """
         pose = tags.pose()
         return cls(
@@ -63,11 +66,23 @@ class ImuSensor(LinkSensor):
 
     @property
     def noise(self) -> tuple[NoiseModel, ...]:
-        """The noise of each channel: none for the orientation."""
+        """The noise of each channel; the orientation has none."""
         return (*(SILENT,) * 4, *self.angular_velocity_noise, *self.linear_acceleration_noise)
 
+    def topics(self) -> Sequence[SensorTopic]:
+        """Return the topic of the readings, with the covariances that follow from the noise."""
+        fields = ("orientation", "angular_velocity", "linear_acceleration")
+        covariances = {
+            "angular_velocity_covariance": _covariance(self.angular_velocity_noise),
+            "linear_acceleration_covariance": _covariance(self.linear_acceleration_noise),
+        }
+        if self.has_orientation:
+            return (SensorTopic("sensor_msgs/msg/Imu", fields, constants=covariances),)
+        covariances["orientation_covariance"] = (UNKNOWN, *(0.0,) * 8)
+        return (SensorTopic("sensor_msgs/msg/Imu", fields[1:], first=4, constants=covariances),)
+
     def measurements(self) -> Sequence[Measurement]:
-        """Return orientation, angular velocity and specific force."""
+        """Return the measurements of orientation, angular velocity and specific force."""
         kinds = {
             "orientation": mujoco.mjtSensor.mjSENS_FRAMEQUAT,
             "angular_velocity": mujoco.mjtSensor.mjSENS_GYRO,
@@ -79,6 +94,10 @@ class ImuSensor(LinkSensor):
     def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the channels."""
         return measured[XYZW]
+
+
+def _covariance(noise: tuple[NoiseModel, ...]) -> tuple[float, ...]:
+    return tuple(np.diag([model.stddev**2 for model in noise]).ravel().tolist())
 
 
 def _noise(tags: SensorTags, vector: str) -> tuple[NoiseModel, ...]:

@@ -1,4 +1,4 @@
-"""Gaussian noise for the numbers of a sensor."""
+"""Gaussian noise on sensor readings."""
 
 import zlib
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from arm_gazebo.sensors.tags import SensorTags
 
 BANK_SIZE = 1 << 16
 STRIDE = 40503
-"""Odd, so that every start in the bank comes before one comes again; near the golden section."""
+"""Odd, so that every offset in the bank is used once before any repeats; near the golden ratio."""
 TYPES = ("none", "gaussian", "gaussian_quantized")
 
 
 @dataclass(frozen=True, slots=True)
 class NoiseModel:
-    """What a description says about the noise of one number, in the number's unit.
+    """The noise of one value as described, in the value's unit.
 
     Attributes:
-        mean: of what is added anew to each reading.
+        mean: mean of the noise that is drawn for each reading.
         stddev: its standard deviation.
-        bias_mean: of what is drawn once for a run, of either sign.
+        bias_mean: mean of the bias that is drawn once a run, with a random sign.
         bias_stddev: its standard deviation.
     """
 
@@ -32,24 +32,33 @@ class NoiseModel:
 
     @property
     def is_silent(self) -> bool:
-        """Whether nothing is ever added."""
+        """Whether there is no noise at all."""
         return self == NoiseModel()
 
 
 SILENT = NoiseModel()
 
 
-def read_noise(tags: SensorTags, where: str) -> NoiseModel:
-    """Return the noise that stands at a path below a sensor, such as `angular_velocity/x`.
+def noise_type(tags: SensorTags, tag: str) -> str:
+    """Return the type of the noise at a path below a sensor; SDF allows an attribute as well.
 
     Raises:
-        SensorError: it makes no sense.
+        SensorError: there is no such type.
     """
-    tag = f"{where}/noise"
     kind = tags.attribute(tag, "type") or tags.choice(f"{tag}/type", TYPES)
     if kind not in TYPES:
         raise tags.error(tag, f"type {kind!r} is not one of {', '.join(TYPES)}")
-    if kind == "none":
+    return kind
+
+
+def read_noise(tags: SensorTags, where: str) -> NoiseModel:
+    """Return the noise described at a path below a sensor, such as `angular_velocity/x`.
+
+    Raises:
+        SensorError: the noise is invalid.
+    """
+    tag = f"{where}/noise"
+    if noise_type(tags, tag) == "none":
         return SILENT
 
     def number(name: str, least: float, must_be: str) -> float:
@@ -64,10 +73,10 @@ def read_noise(tags: SensorTags, where: str) -> NoiseModel:
 
 
 class SensorNoise:
-    """The noise of all numbers of a sensor in one run.
+    """The noise of all values of a sensor in one run.
 
-    What is added to a reading depends on the seed, the sensor's name and the number of the state
-    alone, so the same run gives the same readings whoever listens.
+    The noise depends only on the seed, the sensor's name and the number of the state, so the same
+    run gives the same readings whoever subscribes.
     """
 
     def __init__(self, models: tuple[NoiseModel, ...], name: str, seed: int) -> None:
@@ -81,6 +90,6 @@ class SensorNoise:
         self._bank = random.standard_normal(BANK_SIZE + count)
 
     def add_to(self, values: NDArray[np.float64], state_number: int) -> None:
-        """Add the noise of one state to the sensor's numbers, in place."""
+        """Add the noise of one state to the sensor's values, in place."""
         start = state_number * STRIDE % BANK_SIZE
         values += self._offset + self._stddev * self._bank[start : start + len(values)]

@@ -1,39 +1,62 @@
-"""The sensors of a URDF that MuJoCo reads: IMUs, force-torque and contact sensors."""
+"""Read the sensors of a URDF that MuJoCo computes: IMUs, force-torque and contact sensors."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
-from arm_description.robot import Robot
-from arm_description.xml_document import parse_xml
+from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.force_torque import ForceTorqueSensor
 from arm_gazebo.sensors.imu import ImuSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
-from arm_gazebo.sensors.tags import SensorTags, sensor_elements, sensor_type, told_apart
+from arm_gazebo.sensors.tags import SensorTags, sensor_elements, unique_names
 
-LINK_SENSOR_TYPES = ("imu", "force_torque", "contact")
+SENSORS: Mapping[str, type[LinkSensor]] = {
+    sensor.type: sensor for sensor in (ImuSensor, ForceTorqueSensor, ContactSensor)
+}
+"""The sensors that MuJoCo computes, by Gazebo's name of their type."""
+
+TYPES: Mapping[str, str] = {
+    "camera": "camera",
+    "depth": "depth_camera",
+    "depth_camera": "depth_camera",
+    "rgbd": "rgbd_camera",
+    "rgbd_camera": "rgbd_camera",
+    **{name: name for name in SENSORS},
+}
+"""The simulated types by Gazebo's names, older names included."""
+
+
+def sensor_type(element: Any) -> str | None:
+    """Return the type of a `<sensor>` element; None if it is not simulated."""
+    return TYPES.get(str(element.get("type", "")).strip())
 
 
 def parse_link_sensors(
-    urdf_xml: str, robot: Robot, source: str = "robot_description"
+    description: Description, robot: Robot, source: str = "robot_description"
 ) -> tuple[LinkSensor, ...]:
-    """Return the sensors of a description, in document order; cameras are read elsewhere.
+    """Return the sensors of a description except cameras, in document order.
 
     Args:
-        urdf_xml: the description.
-        robot: the same, parsed.
-        source: what the text is called in messages.
+        description: the robot description.
+        robot: the robot parsed from it.
+        source: name of the description in messages.
 
     Raises:
-        SensorError: a value is nonsense; the message names sensor, element and line.
+        SensorError: a value is invalid; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
     sensors: list[LinkSensor] = []
-    for reference, element in sensor_elements(parse_xml(urdf_xml, source)):
-        kind = sensor_type(element)
-        if kind not in LINK_SENSOR_TYPES:
+    for reference, element in sensor_elements(as_document(description, source).root):
+        kind = sensor_type(element) or ""
+        sensor_class = SENSORS.get(kind)
+        if sensor_class is None:
             continue
         tags = SensorTags(element, reference, kind)
-        sensor = _read(tags, robot)
+        known = robot.joints if sensor_class.reference == "joint" else robot.links
+        tags.check_reference(sensor_class.reference, [part.name for part in known])
+        sensor = sensor_class.read(tags, robot)
         for other in sensors:
             if other.key == sensor.key:
                 raise tags.error(
@@ -43,14 +66,5 @@ def parse_link_sensors(
             if other.topic == sensor.topic:
                 raise tags.topic_error(sensor.topic, "sensor", other)
         sensors.append(sensor)
-    names = told_apart(sensors)
+    names = unique_names(sensors)
     return tuple(replace(s, name=name) for s, name in zip(sensors, names, strict=True))
-
-
-def _read(tags: SensorTags, robot: Robot) -> LinkSensor:
-    if tags.type == "force_torque":
-        joints = {joint.name: joint for joint in robot.joints}
-        tags.check_reference("joint", joints)
-        return ForceTorqueSensor.read(tags, joints[tags.reference])
-    tags.check_reference("link", [link.name for link in robot.links])
-    return ImuSensor.read(tags) if tags.type == "imu" else ContactSensor.read(tags)

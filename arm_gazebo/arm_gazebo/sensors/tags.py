@@ -1,4 +1,4 @@
-"""The tags of one `<sensor>` of a URDF: typed look-ups whose errors say where they failed."""
+"""The tags of one `<sensor>` of a URDF: typed look-ups whose errors name element and line."""
 
 import math
 import re
@@ -8,17 +8,6 @@ from typing import Any, Protocol
 
 from arm_gazebo.errors import SensorError
 
-TYPES = {
-    "camera": "camera",
-    "depth": "depth_camera",
-    "depth_camera": "depth_camera",
-    "rgbd": "rgbd_camera",
-    "rgbd_camera": "rgbd_camera",
-    "imu": "imu",
-    "force_torque": "force_torque",
-    "contact": "contact",
-}
-"""What is simulated: Gazebo's names, older ones included, and the one used here."""
 COLOR_FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
 TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
@@ -28,10 +17,10 @@ _DIGIT_FIRST = re.compile(r"(^|/)(?=[0-9])")
 
 
 def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
-    """Return the `<sensor>` elements of a URDF and what each is attached to, in their order.
+    """Yield the link or joint and the `<sensor>` element of each sensor of a URDF, in order.
 
-    Those of links and joints that are not there are left out, as by Gazebo: a xacro's condition
-    that leaves out a link often forgets its tags. `parse_gazebo_tags` says so.
+    As in Gazebo, sensors of missing links and joints are skipped: a xacro condition that leaves
+    out a link often forgets its tags. `parse_gazebo_tags` reports them.
     """
     known = {str(part.get("name")).strip() for part in root if part.tag in ("link", "joint")}
     for gazebo in root.findall("gazebo"):
@@ -40,17 +29,12 @@ def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
             yield reference, sensor
 
 
-def sensor_type(element: Any) -> str | None:
-    """Return the type of a sensor, None if it is not simulated."""
-    return TYPES.get(str(element.get("type", "")).strip())
-
-
-class OnLink(Protocol):
-    """A sensor that is read: whose name it has, and where it sits."""
+class _AttachedSensor(Protocol):
+    """A named sensor on a link."""
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The sensor's name."""
         ...
 
     @property
@@ -59,48 +43,52 @@ class OnLink(Protocol):
         ...
 
 
-def told_apart(sensors: Sequence[OnLink]) -> list[str]:
-    """Return names that are unique in the robot: LINK/NAME where several links have the same.
+def unique_names(sensors: Sequence[_AttachedSensor]) -> list[str]:
+    """Return names that are unique in the robot: LINK/NAME if several links use the same name.
 
-    Gazebo's names are unique in their link only.
+    In Gazebo, names are unique only within a link.
     """
     names = Counter(sensor.name for sensor in sensors)
     return [s.name if names[s.name] == 1 else f"{s.link}/{s.name}" for s in sensors]
 
 
 class SensorTags:
-    """One `<sensor>`.
+    """The tags of one `<sensor>`.
 
     Attributes:
         reference: the link or joint that it is attached to.
-        name: its own.
-        type: one of the values of `TYPES`.
+        name: the sensor's name.
+        type: the sensor's type.
 
     Args:
-        element: the sensor.
-        reference: see above.
-        below: element in which the tags of this type of sensor stand, too.
+        element: the `<sensor>` element.
+        reference: the link or joint that it is attached to.
+        type_name: the sensor's type.
+        below: child element that may hold the tags as well; by default that of the type's name,
+            such as `<imu>`.
 
     Raises:
-        SensorError: it has no name.
+        SensorError: the sensor has no name.
     """
 
-    def __init__(self, element: Any, reference: str, below: str) -> None:
+    def __init__(
+        self, element: Any, reference: str, type_name: str, below: str | None = None
+    ) -> None:
         self._element = element
-        self._below = below
+        self._below = below or type_name
         self.reference = reference
-        self.type = sensor_type(element) or "unknown"
+        self.type = type_name
         self.name = str(element.get("name") or "").strip()
         if not self.name:
             raise self.error("sensor", "a sensor needs a name")
 
     def error(self, tag: str, problem: str, element: Any = None) -> SensorError:
-        """Return an error about one tag, or attribute, of this sensor."""
+        """Return an error about one tag or attribute of this sensor."""
         line = (self._element if element is None else element).sourceline
         return SensorError(f"{self.type} sensor {self.name!r}, <{tag}> (line {line}): {problem}")
 
-    def topic_error(self, topic: str, kind: str, owner: OnLink) -> SensorError:
-        """Return an error about a topic of this sensor that another one has."""
+    def topic_error(self, topic: str, kind: str, owner: _AttachedSensor) -> SensorError:
+        """Return an error about a topic of this sensor that another sensor uses."""
         return self.error(
             "topic",
             f"{topic!r} is taken by {kind} {owner.name!r} of link {owner.link!r}; give one of them "
@@ -111,7 +99,7 @@ class SensorTags:
         """Check that the link or joint exists.
 
         Raises:
-            SensorError: it does not; the message names those that do.
+            SensorError: it does not exist; the message names those that do.
         """
         if self.reference not in known:
             raise self.error(
@@ -119,20 +107,20 @@ class SensorTags:
             )
 
     def texts(self, *tags: str) -> list[tuple[Any, str]]:
-        """Return element and text of every filled tag of these names, outer ones first."""
+        """Return element and text of every non-empty tag of these names, outer ones first."""
         paths = (f"./{tag} | ./{self._below}/{tag}" for tag in tags)
         found = (element for path in paths for element in self._element.xpath(path))
         return [(e, str(e.text or "").strip()) for e in found if str(e.text or "").strip()]
 
     def attribute(self, tag: str, name: str) -> str:
-        """Return an attribute of the first tag of this name; empty where there is none."""
+        """Return an attribute of the first tag of this name; empty if there is none."""
         found = self._element.xpath(f"./{tag} | ./{self._below}/{tag}")
         return str(found[0].get(name, "")).strip() if found else ""
 
     def number(
         self, tag: str, default: float, fits: Callable[[float], bool], must_be: str
     ) -> float:
-        """Return a finite number that fits; `must_be` says in words what fits."""
+        """Return a finite number that `fits` accepts; `must_be` words the condition for errors."""
         for element, text in self.texts(tag):
             try:
                 value = float(text)
@@ -144,11 +132,11 @@ class SensorTags:
         return default
 
     def rate_hz(self) -> float:
-        """Return the update rate; 0, as Gazebo has it, for every step."""
+        """Return the update rate; 0 means every step, as in Gazebo."""
         return self.number("update_rate", 0.0, lambda v: v >= 0, "at least 0")
 
     def choice(self, tag: str, choices: tuple[str, ...]) -> str:
-        """Return a tag's text, the first choice where it is missing."""
+        """Return a tag's text, or the first choice if the tag is missing."""
         for element, text in self.texts(tag):
             if text not in choices:
                 raise self.error(tag, f"{text!r} is not one of {', '.join(choices)}", element)
@@ -165,16 +153,16 @@ class SensorTags:
         return tuple(dict.fromkeys(names))
 
     def own_topics(self) -> tuple[str, ...]:
-        """Return what `<topic>` says; where it says nothing, the name made into a topic."""
+        """Return the topics in `<topic>`, or else a topic made from the sensor's name."""
         return self.topics("topic") or (_topic_of(self.name),)
 
     def frame(self, default: str) -> str:
-        """Return the frame of the messages' headers."""
+        """Return the frame in the messages' headers."""
         frames = self.texts(*FRAME_TAGS)
         return frames[0][1] if frames else default
 
     def pose(self) -> tuple[float, ...]:
-        """Return x y z roll pitch yaw of the sensor in what it is attached to."""
+        """Return x y z roll pitch yaw of the sensor in its link or joint."""
         for element, text in self.texts("pose"):
             try:
                 values = tuple(float(word) for word in text.split())
@@ -187,6 +175,6 @@ class SensorTags:
 
 
 def _topic_of(name: str) -> str:
-    """Return the valid ROS topic name that is nearest to any name."""
+    """Return a valid ROS topic name that resembles the given name."""
     topic = _SLASHES.sub("/", _NO_TOPIC.sub("_", name)).rstrip("/")
     return _DIGIT_FIRST.sub(r"\1_", topic) or "sensor"

@@ -1,1 +1,1 @@
-"""The window, in a process of its own."""
+"""The viewer window, which runs in a separate process."""

@@ -1,4 +1,4 @@
-"""Where a window can open: the display that the environment names."""
+"""Check that a window can open on the display that the environment names."""
 
 import os
 import re
@@ -11,32 +11,31 @@ from arm_gazebo.errors import WindowError
 LOCAL_DISPLAY = re.compile(r"(?:unix)?:(\d+)(?:\.\d+)?")
 X11_SOCKET = "/tmp/.X11-unix/X"
 CONNECT_TIMEOUT_S = 2.0
-WAYS_OUT = (
+ADVICE = (
     "set DISPLAY to a display that runs ('ssh -X', or 'Xvfb :99' and DISPLAY=:99), "
     "or leave out headless:=false"
 )
 
 
 def check_display(environ: Mapping[str, str] = os.environ) -> None:
-    """Check that a window can open, as far as that shows without opening one.
+    """Check that a window can open, as far as possible without opening one.
 
     Raises:
-        WindowError: there is no display, or nobody answers there.
+        WindowError: there is no display, or no server answers on it.
     """
     if environ.get("WAYLAND_DISPLAY"):
         return
     display = environ.get("DISPLAY", "")
     if not display:
         raise WindowError(
-            "headless:=false opens a window, and there is no display: DISPLAY is not set; "
-            + WAYS_OUT
+            "headless:=false opens a window, and there is no display: DISPLAY is not set; " + ADVICE
         )
     local = LOCAL_DISPLAY.fullmatch(display)
-    # Displays of other machines are left to the window: it says what is wrong with them.
+    # Displays on other machines are left to the window process, which reports their faults.
     if local is not None and not any(_answers(path) for path in _sockets(local.group(1))):
         raise WindowError(
             f"headless:=false opens a window, and no X server answers on DISPLAY={display}; "
-            + WAYS_OUT
+            + ADVICE
         )
 
 

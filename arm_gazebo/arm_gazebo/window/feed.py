@@ -1,4 +1,4 @@
-"""Hands states of the simulation to the window's process, as often as a screen shows them."""
+"""Sends states of the simulation to the window process, at the rate of a screen."""
 
 import math
 import time
@@ -10,13 +10,14 @@ from arm_gazebo.feed.state_feed import PreparedModel, StateFeed
 from arm_gazebo.window.process import WindowProcess
 
 INTERVAL_S = 1 / 60
-"""Wall time between two states; screens show no more."""
+"""Wall time between two states; a screen shows no more."""
 
 
 class WindowFeed:
-    """The simulation's side of its window, which is a process of its own.
+    """The simulation's side of its window, which is a separate process.
 
-    `start`, then `publish_due` at each tick and `supervise` now and then; `close`.
+    Call `start`, then `publish_due` at each tick and `supervise` about once a second, and finally
+    `close`.
     """
 
     def __init__(
@@ -24,10 +25,10 @@ class WindowFeed:
         process: WindowProcess | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Prepare; nothing is started, but `close` is needed from here on.
+        """Prepare without starting the process; `close` is required afterwards.
 
         Args:
-            process: runs the child; default one on the display of this process's environment.
+            process: runs the child; by default on the display that the environment names.
             clock: wall time in s.
         """
         self._process = process or WindowProcess()
@@ -45,11 +46,11 @@ class WindowFeed:
         self._feed.set_model(model)
 
     def prepare(self, model: mujoco.MjModel) -> PreparedModel:
-        """Return a model to be shown later; see `StateFeed.prepare`."""
+        """Return a model to show later; see `StateFeed.prepare`."""
         return self._feed.prepare(model)
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
-        """Send the state if the last one is old enough; loop thread only. Never waits.
+        """Send the state if the last one is old enough. Loop thread only; never waits.
 
         Args:
             time_s: simulation time of the state.
@@ -61,11 +62,11 @@ class WindowFeed:
             self._feed.send(time_s, (), data)
 
     def supervise(self) -> None:
-        """See whether the window is still there; without one nothing is sent any more."""
+        """Check whether the window still exists; stop sending if it does not."""
         self._feed.supervise()
         if self._process.pid is None:
             self._feed.close()
 
     def close(self) -> None:
-        """Close the window and wait for its end, some seconds at most; idempotent. Any thread."""
+        """Close the window and wait some seconds at most for its end. Idempotent; any thread."""
         self._feed.close()

@@ -1,1 +1,1 @@
-"""The world while it runs: what is in it, and how it is changed."""
+"""The running world: its entities, and changes to it."""

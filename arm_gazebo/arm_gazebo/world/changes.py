@@ -1,4 +1,4 @@
-"""What was changed in a world since it was built, and the model of both together."""
+"""The changes to a world since it was built, and the model with these changes applied."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from arm_gazebo.errors import WorldError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.state_transfer import StateTransfer
-from arm_gazebo.robot.joint import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint
 from arm_gazebo.world.spawn_model import SpawnModel
 
 Matrix = NDArray[np.float64]
@@ -19,12 +19,12 @@ ASLEEP_AT_FIRST = mujoco.mjtSleepPolicy.mjSLEEP_INIT
 
 @dataclass(frozen=True, slots=True)
 class Spawned:
-    """A model that was put into the world.
+    """A spawned model.
 
     Attributes:
-        name: before "::" in the names of all that is in it.
-        model: what it is made of.
-        pose: (4, 4) of its frame in the world, in which its root body is at `model.origin`.
+        name: prefix of its element names, before "::".
+        model: the model that was spawned.
+        pose: (4, 4) pose of its frame in the world; its root body is at `model.origin` in it.
     """
 
     name: str
@@ -38,18 +38,18 @@ class Spawned:
 
     @property
     def prefix(self) -> str:
-        """What stands before every name of the model in the world."""
+        """The prefix of every name of the model in the world."""
         return f"{self.name}::"
 
 
 @dataclass(frozen=True, slots=True)
 class WorldChanges:
-    """Changes of a world, none by default; the world itself stays as it is.
+    """Changes to a world, by default none; the original world is not modified.
 
     Attributes:
-        removed: bodies right below the world that were deleted.
+        removed: top-level bodies that were deleted.
         spawned: models that were added.
-        moved: new poses (4, 4) of bodies right below the world that cannot move by themselves.
+        moved: new poses (4, 4) of static top-level bodies.
     """
 
     removed: frozenset[str] = frozenset()
@@ -57,11 +57,11 @@ class WorldChanges:
     moved: Mapping[str, Matrix] = field(default_factory=dict)
 
     def with_spawned(self, spawned: Spawned) -> "WorldChanges":
-        """Return these changes and a model more."""
+        """Return these changes with another spawned model."""
         return replace(self, spawned=(*self.spawned, spawned))
 
     def without(self, root: str) -> "WorldChanges":
-        """Return these changes and a body less, spawned or the world's own."""
+        """Return these changes without a body, which was spawned or is part of the world."""
         moved = {body: pose for body, pose in self.moved.items() if body != root}
         kept = tuple(spawned for spawned in self.spawned if spawned.root != root)
         if len(kept) < len(self.spawned):
@@ -69,16 +69,22 @@ class WorldChanges:
         return replace(self, removed=self.removed | {root}, moved=moved)
 
     def with_moved(self, root: str, pose: Matrix) -> "WorldChanges":
-        """Return these changes with a body elsewhere."""
+        """Return these changes with a body moved."""
         return replace(self, moved={**self.moved, root: pose})
 
 
+NOTHING = WorldChanges()
+"""The world as it was built."""
+
+
 def changed_model(base: BuiltModel, changes: WorldChanges) -> BuiltModel:
-    """Return the model of a world with changes; the base's own specification stays as it is.
+    """Return the model of a world with changes; the base's specification is not modified.
 
     Raises:
-        WorldError: both together do not compile.
+        WorldError: the changed world does not compile.
     """
+    if base.spec is None:
+        raise WorldError("a world from a recording cannot be changed")
     spec = base.spec.copy()
     for name in changes.removed:
         spec.delete(spec.body(name))
@@ -86,26 +92,26 @@ def changed_model(base: BuiltModel, changes: WorldChanges) -> BuiltModel:
         _attach(spec, spawned)
     for name, pose in changes.moved.items():
         body = spec.body(name)
-        # Frames of an MJCF around it would move it once more.
+        # Frames around it in the MJCF would be applied to the new pose again.
         body.set_frame(spec.worldbody.add_frame())
         _place(body, pose)
     for body in spec.bodies:
         if body.sleep == ASLEEP_AT_FIRST:
-            # It may have lost what it lay on, or be under way by now.
+            # Its support may be gone, or it may be moving by now.
             body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_AUTO
     try:
         model = spec.compile()
     except (ValueError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
         raise WorldError(f"the world does not compile with this change: {reason}") from error
-    # Pictures are clipped, and windows opened, as in the world of the start.
+    # Keep the clip planes and the window's view of the original world.
     model.stat.extent = base.model.stat.extent
     model.stat.center = base.model.stat.center
     model.vis.map.znear, model.vis.map.zfar = base.model.vis.map.znear, base.model.vis.map.zfar
     return BuiltModel(
         model,
         spec,
-        joints={name: _found_again(joint, model) for name, joint in base.joints.items()},
+        joints={name: _joint_in(model, joint) for name, joint in base.joints.items()},
         bodies={
             name: int(model.body(base.model.body(body).name).id)
             for name, body in base.bodies.items()
@@ -124,7 +130,7 @@ def quaternion_of(pose: Matrix) -> NDArray[np.float64]:
 
 
 def _attach(spec: mujoco.MjSpec, spawned: Spawned) -> None:
-    # Attaching takes the body out of where it was.
+    # Attaching removes the body from its own specification.
     model = spawned.model.spec.copy()
     frame = spec.worldbody.add_frame()
     body = frame.attach_body(model.body(spawned.model.root), spawned.prefix, "")
@@ -137,8 +143,8 @@ def _place(body: mujoco.MjsBody, pose: Matrix) -> None:
     body.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
-def _found_again(joint: RobotJoint, model: mujoco.MjModel) -> RobotJoint:
-    """Return a joint of the robot at its place in another model."""
+def _joint_in(model: mujoco.MjModel, joint: RobotJoint) -> RobotJoint:
+    """Return a robot joint with its indices in another model."""
     found = model.joint(joint.name)
     return replace(
         joint,
@@ -149,7 +155,7 @@ def _found_again(joint: RobotJoint, model: mujoco.MjModel) -> RobotJoint:
 
 
 def _start(base: BuiltModel, model: mujoco.MjModel) -> NDArray[np.float64]:
-    """Return where everything starts: the robots as before, what is new at its pose."""
+    """Return the starting positions: robots as before, new entities at their poses."""
     qpos = model.qpos0.copy()
     StateTransfer(base.model, model, base.robot_roots).carry_positions(base.qpos, qpos)
     qpos.setflags(write=False)

@@ -1,4 +1,4 @@
-"""What there is in a simulated world, as its clients know it."""
+"""The entities of a simulated world, as clients see them."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -9,11 +9,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.names import listing
-from arm_gazebo.free_name import free_name
 from arm_gazebo.model.built_model import BuiltModel
+from arm_gazebo.spec.names import free_name
 from arm_gazebo.world.changes import WorldChanges
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.refusal import Refusal, RequestError
+from arm_node.names import listing
 
 NAME = re.compile(r"[A-Za-z0-9_.\-]{1,100}", re.ASCII)
 NAMESPACE = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
@@ -32,12 +32,12 @@ class Category(Enum):
 
 @dataclass(frozen=True, slots=True)
 class EntityNote:
-    """What is known about an entity beside its motion.
+    """Information about an entity apart from its motion.
 
     Attributes:
-        category: what kind of thing it is.
-        description: for people.
-        tags: for filters.
+        category: kind of entity.
+        description: text for people.
+        tags: tags for filters.
     """
 
     category: Category
@@ -46,15 +46,15 @@ class EntityNote:
 
 
 @dataclass(frozen=True, slots=True)
-class Entity:
-    """A thing in the world, or a robot.
+class WorldEntity:
+    """An object in the world, or a robot.
 
     Attributes:
-        name: what clients call it.
-        roots: names of its bodies right below the world.
-        note: what is known about it.
-        free_joint: joint by which the first root moves, "" where it cannot.
-        origin: pose (4, 4) of the first root in the entity's frame, mostly the same.
+        name: name of the entity.
+        roots: names of its top-level bodies.
+        note: information about it.
+        free_joint: free joint of the first root, "" if it cannot move freely.
+        origin: pose (4, 4) of the first root in the entity's frame, usually the identity.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Entity:
 
     @property
     def is_robot(self) -> bool:
-        """Whether controllers may drive it, so that it stays."""
+        """Whether it is a robot, which controllers drive and which cannot be deleted."""
         return self.note.category is Category.ROBOT
 
 
@@ -74,8 +74,8 @@ class Entities:
 
     Args:
         built: the model.
-        changes: tell which things were spawned, under which names.
-        notes: what clients said about entities, instead of what follows from the model.
+        changes: names of the spawned models.
+        notes: descriptions by clients, which override those from the model.
     """
 
     def __init__(
@@ -83,12 +83,12 @@ class Entities:
     ) -> None:
         model, robots = built.model, built.robot_roots
         things = {spawned.root: spawned for spawned in changes.spawned}
-        found: dict[str, Entity] = {}
+        found: dict[str, WorldEntity] = {}
         for name, roots in built.robots.items():
             if not roots:
                 continue
             note = EntityNote(Category.ROBOT, "a robot of the launch", ("robot",))
-            found[name] = Entity(name, roots, notes.get(name, note), _free_joint(model, roots))
+            found[name] = WorldEntity(name, roots, notes.get(name, note), _free_joint(model, roots))
         for body in np.flatnonzero(model.body_parentid == 0).tolist():
             root = model.body(body).name
             if body == 0 or root in robots:
@@ -97,48 +97,47 @@ class Entities:
             name = thing.name if thing else free_name(root, found)
             note = notes.get(name, _note(model, body, thing.model.format if thing else ""))
             origin = thing.model.origin if thing else np.eye(4)
-            found[name] = Entity(name, (root,), note, _free_joint(model, (root,)), origin)
+            found[name] = WorldEntity(name, (root,), note, _free_joint(model, (root,)), origin)
         self._found = found
 
-    def __iter__(self) -> Iterator[Entity]:
+    def __iter__(self) -> Iterator[WorldEntity]:
         return iter(self._found.values())
 
-    def find(self, name: str) -> Entity:
-        """Return an entity; RefusedError where there is none."""
+    def find(self, name: str) -> WorldEntity:
+        """Return an entity; raise RequestError if it does not exist."""
         if name not in self._found:
-            raise RefusedError(
-                Refusal.NOT_FOUND, f"no entity '{name}'; there are {listing(sorted(self._found))}"
+            raise RequestError(
+                Refusal.NOT_FOUND,
+                f"no entity '{name}'; there are {listing(sorted(self._found))}",
             )
         return self._found[name]
 
     def name_for(self, wanted: str, renaming: bool, default: str) -> str:
-        """Return the name that a new entity gets.
+        """Return the name for a new entity.
 
         Args:
-            wanted: what the client asks for, maybe nothing.
-            renaming: whether another one will do.
-            default: what to start from where nothing is asked for.
+            wanted: the requested name, or "".
+            renaming: whether another name is acceptable.
+            default: the base of the name if none is requested.
 
         Raises:
-            RefusedError: it is taken, or can be no name.
+            RequestError: the name is taken or invalid.
         """
         if not wanted and not renaming:
-            raise RefusedError(
+            raise RequestError(
                 Refusal.NAME_INVALID, "the name is empty, and allow_renaming is not set"
             )
         name = wanted or re.sub(r"[^A-Za-z0-9_.\-]", "_", default)[:80] or "entity"
         if not NAME.fullmatch(name):
-            raise RefusedError(
+            raise RequestError(
                 Refusal.NAME_INVALID,
-                f"the name {name[:120]!r} is none: it takes 1 to 100 letters, digits and _ . -",
+                f"the name {name[:120]!r} is invalid: it takes 1 to 100 letters, digits and _ . -",
             )
         if name not in self._taken:
             return name
         if renaming:
             return free_name(name, self._taken)
-        raise RefusedError(
-            Refusal.NAME_NOT_UNIQUE, f"there is an entity '{name}' already, or it is 'world'"
-        )
+        raise RequestError(Refusal.NAME_NOT_UNIQUE, f"the name '{name}' is already taken")
 
     @property
     def _taken(self) -> set[str]:
@@ -146,7 +145,7 @@ class Entities:
 
 
 def _free_joint(model: mujoco.MjModel, roots: tuple[str, ...]) -> str:
-    """Return the name of the joint that lets the first root move freely, or an empty one."""
+    """Return the name of the first root's free joint, or ""."""
     if not roots:
         return ""
     first = model.body(roots[0]).jntadr[0]

@@ -1,4 +1,4 @@
-"""Where entities are and how they move, computed from a copy of the simulation's state."""
+"""Compute poses and velocities of entities from a copy of the simulation's state."""
 
 from dataclasses import dataclass
 
@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.physics.world_state import WorldState
+from arm_gazebo.physics.state_probe import WorldState
 from arm_gazebo.world.changes import Matrix
-from arm_gazebo.world.entity import Entity
+from arm_gazebo.world.entity import WorldEntity
 
 Vector = NDArray[np.float64]
 Box = NDArray[np.float64]
@@ -16,7 +16,7 @@ PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class EntityMotion:
     """Pose and velocity of a frame in the world, at one time.
 
     Attributes:
@@ -33,10 +33,10 @@ class Motion:
 
 
 class EntityMotions:
-    """Computes on a state of its own: nothing here touches the running simulation. One thread.
+    """Computes on its own copy of the state and never touches the running simulation. One thread.
 
     Args:
-        model: is only read.
+        model: the model, which is not modified.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -45,7 +45,7 @@ class EntityMotions:
         self._time_s = 0.0
 
     def take(self, state: WorldState) -> None:
-        """Go by this state of the same model from now on."""
+        """Use this state of the same model from now on."""
         data = self._data
         self._time_s = state.time_s
         data.qpos[:], data.qvel[:] = state.qpos, state.qvel
@@ -59,21 +59,21 @@ class EntityMotions:
         """Positions (ngeom, 3) and rotations (ngeom, 9) of all shapes in the world."""
         return self._data.geom_xpos, self._data.geom_xmat
 
-    def of(self, entity: Entity) -> Motion:
-        """Return the motion of an entity's frame; of its first root, where they are the same."""
+    def of(self, entity: WorldEntity) -> EntityMotion:
+        """Return the motion of an entity's frame."""
         root = self.motion(entity.roots[0])
         pose = root.pose @ np.linalg.inv(entity.origin)
         linear = root.linear + np.cross(root.angular, pose[:3, 3] - root.pose[:3, 3])
-        return Motion(root.time_s, pose, linear, root.angular)
+        return EntityMotion(root.time_s, pose, linear, root.angular)
 
-    def motion(self, body: str) -> Motion:
+    def motion(self, body: str) -> EntityMotion:
         """Return the motion of a body's frame."""
         index = self._model.body(body).id
         velocity = np.zeros(6)
         mujoco.mj_objectVelocity(
             self._model, self._data, mujoco.mjtObj.mjOBJ_XBODY, index, velocity, 0
         )
-        return Motion(self._time_s, self.pose(body), velocity[3:], velocity[:3])
+        return EntityMotion(self._time_s, self.pose(body), velocity[3:], velocity[:3])
 
     def pose(self, body: str) -> Matrix:
         """Return the pose (4, 4) of a body's frame in the world."""
@@ -83,12 +83,12 @@ class EntityMotions:
         pose[:3, 3] = self._data.xpos[index]
         return pose
 
-    def bounds(self, entity: Entity, frame: Matrix | None = None) -> Box | None:
-        """Return the box around an entity's shapes, None where it has none.
+    def bounds(self, entity: WorldEntity, frame: Matrix | None = None) -> Box | None:
+        """Return the bounding box of an entity's shapes; None if it has no shapes.
 
         Args:
-            entity: whose.
-            frame: pose (4, 4) of the frame whose axes the box follows; the world's by default.
+            entity: the entity.
+            frame: pose (4, 4) of the frame that the box is aligned to; by default the world.
 
         Returns:
             Lowest and highest corner in that frame, shape (2, 3).
@@ -107,5 +107,5 @@ class EntityMotions:
 
 
 def _corners(box: NDArray[np.float64]) -> list[Vector]:
-    """Return the corners of MuJoCo's box of a shape: its middle and half sides."""
+    """Return the corners of MuJoCo's bounding box, which is given by centre and half sides."""
     return [box[:3] + np.where(choice, box[3:], -box[3:]) for choice in np.ndindex(2, 2, 2)]

@@ -1,26 +1,35 @@
-"""Worlds that a running simulation can go on in, with the robots that it has."""
+"""Load another world for a running simulation with its robots."""
 
+import logging
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.resources import resolve_uri
-from arm_description.xml_document import parse_xml
-from arm_gazebo.build_report import BuildReport, Outcome
+from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import GazeboError
+from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
-from arm_gazebo.model.world_path import find_world, shipped_worlds
 from arm_gazebo.robot.part import RobotInWorld
+from arm_gazebo.spec.mjcf_references import check_readable
+from arm_gazebo.spec.mjcf_size import check_mjcf_size
+from arm_gazebo.spec.report import BuildOutcome, BuildReport
 from arm_gazebo.world.mjcf_files import check_mjcf_files
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.refusal import Refusal, RequestError
+from arm_gazebo.world.trial import WORLD_PROCESSOR_S, MjcfTrial
+from arm_node.user_file import read_text
 
 SUFFIXES = (".xml", ".mjcf", *SDF_SUFFIXES)
 TEXT_SUFFIXES = {"sdf": ".sdf", "mujoco": ".xml"}
-NOWHERE = "<mujoco model='no_world'/>"
+LEFT_OUT = (BuildOutcome.DROPPED, BuildOutcome.LEFT_OUT)
+NO_WORLD = "<mujoco model='no_world'/>"
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +37,9 @@ class NamedWorld:
     """A world that can be loaded.
 
     Attributes:
-        name: for people.
-        uri: of its file, "" where it was given as a text.
-        description: for people.
+        name: name for people.
+        uri: URI of its file, "" if it was given as text.
+        description: text for people.
     """
 
     name: str
@@ -39,87 +48,118 @@ class NamedWorld:
 
 
 class WorldLoader:
-    """Reads worlds and builds the robots into them; one thread, not the simulation's.
+    """Reads worlds and adds the robots to them. One thread other than the simulation's.
 
     Args:
-        entries: the robots.
+        entries: the robots; the first one's options give the memory limit of a world.
+        trial: tries each MJCF before it is compiled in this process; None for a new one.
     """
 
-    def __init__(self, entries: Sequence[RobotInWorld]) -> None:
+    def __init__(self, entries: Sequence[RobotInWorld], trial: MjcfTrial | None = None) -> None:
         self._entries = tuple(entries)
+        self._trial = trial or MjcfTrial()
 
     def load(self, uri: str, text: str, all_elements: bool) -> tuple[BuiltModel, NamedWorld]:
         """Return a world with the robots in it.
 
         Args:
-            uri: a shipped world's name, a path or a URI; goes before `text`.
+            uri: a shipped world's name, a path or a URI; takes precedence over `text`.
             text: SDF or MuJoCo XML.
-            all_elements: refuse a world of which something cannot be simulated.
+            all_elements: whether to refuse a world with elements that cannot be simulated.
 
         Raises:
-            RefusedError: there is no such world, or it cannot be simulated with the robots.
+            RequestError: the world does not exist, or cannot be simulated with the robots.
         """
         if uri.strip():
             path = _find(uri.strip())
-            return self._build(path, all_elements), named_world(path)
+            built = self._tried_and_built(path, all_elements)
+            return built, named_world(path, built.report)
         if not text.strip():
-            raise RefusedError(
-                Refusal.NO_RESOURCE, "no world to load: neither uri nor resource_string is given"
+            raise RequestError(
+                Refusal.NO_RESOURCE,
+                "no world to load: neither uri nor resource_string is given",
             )
-        return self._build_text(text, all_elements), NamedWorld("resource_string")
+        built = self._build_text(text, all_elements)
+        return built, NamedWorld("resource_string", description=built.report.left_out)
 
-    def nowhere(self) -> BuiltModel:
-        """Return the robots with nothing around them, not even a floor."""
-        return self._build_text(NOWHERE, False)
+    def load_empty(self) -> BuiltModel:
+        """Return the robots in an empty world without a floor."""
+        with _temporary_file(NO_WORLD, "mujoco") as path:
+            return self._build(path, False)
 
     def _build_text(self, text: str, all_elements: bool) -> BuiltModel:
         try:
             tag = str(parse_xml(text, "resource_string").tag)
         except XmlError as error:
-            raise RefusedError(Refusal.UNREADABLE, str(error)) from error
+            raise RequestError(Refusal.UNREADABLE, str(error)) from error
         if tag not in TEXT_SUFFIXES:
-            raise RefusedError(
+            raise RequestError(
                 Refusal.UNSUPPORTED_FORMAT,
                 f"resource_string: <{tag}> is neither <sdf> nor <mujoco>",
             )
         if tag == "mujoco":
             check_mjcf_files(text)
-        # The readers of worlds go by files, and files named in the text start beside it.
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder, "resource_string").with_suffix(TEXT_SUFFIXES[tag])
-            path.write_text(text, encoding="utf-8")
-            return self._build(path, all_elements)
+        with _temporary_file(text, tag) as path:
+            return self._tried_and_built(path, all_elements)
+
+    def _tried_and_built(self, path: Path, all_elements: bool) -> BuiltModel:
+        """Build an untrusted world; an MJCF is first compiled in a separate process."""
+        if path.suffix not in SDF_SUFFIXES and path not in shipped_worlds().values():
+            self._try(path)
+        return self._build(path, all_elements)
+
+    def _try(self, path: Path) -> None:
+        limit = self._entries[0].options.memory_limit
+        try:
+            text = read_text(path)
+            check_readable(text, path)
+            check_mjcf_size(text, path.name, path, limit)
+        except (GazeboError, DescriptionError, OSError, ValueError) as error:
+            raise RequestError(Refusal.UNREADABLE, " ".join(str(error).split())) from error
+        problem = self._trial.problem("", path, limit, WORLD_PROCESSOR_S)
+        if problem:
+            raise RequestError(Refusal.UNREADABLE, f"the world {path} is not usable: {problem}")
 
     def _build(self, path: Path, all_elements: bool) -> BuiltModel:
         try:
             if all_elements:
                 report = BuildReport()
                 load_world(path, report)
-                left_out = [str(f) for f in report.findings if f.outcome is Outcome.DROPPED]
+                left_out = [str(f) for f in report.findings if f.outcome in LEFT_OUT]
                 if left_out:
-                    raise RefusedError(Refusal.UNSUPPORTED_ELEMENTS, "; ".join(left_out))
-            return build_world(self._entries, path)
-        except RefusedError:
+                    raise RequestError(Refusal.UNSUPPORTED_ELEMENTS, "; ".join(left_out))
+            built = build_world(self._entries, path)
+            if built.report.left_out:
+                logger.warning("world %s: %s", path.stem, built.report.left_out)
+            return built
+        except RequestError:
             raise
         except (GazeboError, DescriptionError, OSError, ValueError) as error:
-            raise RefusedError(Refusal.UNREADABLE, " ".join(str(error).split())) from error
+            raise RequestError(Refusal.UNREADABLE, " ".join(str(error).split())) from error
 
 
-def named_world(path: Path) -> NamedWorld:
-    """Return what to call the world of a file."""
-    shipped = path in shipped_worlds().values()
-    return NamedWorld(path.stem, path.absolute().as_uri(), "shipped" if shipped else "")
+def named_world(path: Path, report: BuildReport | None = None) -> NamedWorld:
+    """Return the name and description of a world file.
+
+    Args:
+        path: path of the file.
+        report: the report of the build, which names what is missing.
+    """
+    shipped = "shipped" if path in shipped_worlds().values() else ""
+    left_out = report.left_out if report else ""
+    description = "; ".join(filter(None, (shipped, left_out)))
+    return NamedWorld(path.stem, path.absolute().as_uri(), description)
 
 
 def available_worlds(folders: Sequence[str], go_on: bool = False) -> list[NamedWorld]:
-    """Return the shipped worlds, then those in folders.
+    """Return the shipped worlds, then the worlds in folders.
 
     Args:
         folders: paths or URIs.
-        go_on: pass over folders that cannot be read.
+        go_on: whether to skip folders that cannot be read.
 
     Raises:
-        RefusedError: a folder cannot be read.
+        RequestError: a folder cannot be read.
     """
     found = list(shipped_worlds().values())
     for folder in folders:
@@ -127,17 +167,28 @@ def available_worlds(folders: Sequence[str], go_on: bool = False) -> list[NamedW
             files = sorted(resolve_uri(folder).iterdir())
         except (ResourceNotFoundError, OSError) as error:
             if not go_on:
-                raise RefusedError(Refusal.FAILED, str(error)) from error
+                raise RequestError(Refusal.FAILED, str(error)) from error
             continue
         found += [file for file in files if file.suffix in SUFFIXES]
     return [named_world(file) for file in found]
+
+
+@contextmanager
+def _temporary_file(text: str, tag: str) -> Iterator[Path]:
+    """Write a text to a file, because the readers take files and look for others beside them."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "resource_string").with_suffix(TEXT_SUFFIXES[tag])
+        path.write_text(text, encoding="utf-8")
+        yield path
 
 
 def _find(uri: str) -> Path:
     try:
         path = resolve_uri(uri) if "://" in uri else find_world(uri)
     except (GazeboError, ResourceNotFoundError) as error:
-        raise RefusedError(Refusal.NO_RESOURCE, str(error)) from error
+        raise RequestError(Refusal.NO_RESOURCE, str(error)) from error
     if path.suffix not in SUFFIXES:
-        raise RefusedError(Refusal.UNSUPPORTED_FORMAT, f"{path} is none of {', '.join(SUFFIXES)}")
+        raise RequestError(
+            Refusal.UNSUPPORTED_FORMAT, f"{path} does not end in one of {', '.join(SUFFIXES)}"
+        )
     return path

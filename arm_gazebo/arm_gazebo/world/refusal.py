@@ -1,4 +1,4 @@
-"""Why a request about the running world is refused."""
+"""The reasons for refusing a request to the running world."""
 
 from enum import Enum, auto
 
@@ -6,7 +6,7 @@ from arm_gazebo.errors import GazeboError
 
 
 class Refusal(Enum):
-    """The kinds of refusal that clients are told apart by numbers."""
+    """The kinds of refusal that result codes distinguish."""
 
     UNSUPPORTED = auto()
     NOT_FOUND = auto()
@@ -26,8 +26,8 @@ class Refusal(Enum):
     INCORRECT_TRANSITION = auto()
 
 
-class RefusedError(GazeboError):
-    """A request about the running world that is refused; nothing was changed.
+class RequestError(GazeboError):
+    """A request to the running world is refused; nothing was changed.
 
     Attributes:
         refusal: the kind; the message is for the user.

@@ -1,12 +1,12 @@
-"""Whether the simulated time runs, and what may follow on what."""
+"""The run state of the simulation and its allowed transitions."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
 from enum import Enum
 
-from arm_control.control_loop import ControlLoop
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_control.loop.control_loop import ControlLoop
+from arm_gazebo.world.refusal import Refusal, RequestError
 
 
 class RunState(Enum):
@@ -20,13 +20,13 @@ class RunState(Enum):
 
 
 class RunControl:
-    """Starts, pauses, stops and steps a control loop; one thread, which is not the loop's.
+    """Starts, pauses, stops and steps a control loop. One thread other than the loop's.
 
-    A stopped simulation is a paused one that starts anew.
+    A stopped simulation is a paused one that was reset.
 
     Args:
-        loop: runs the simulation; its own `paused` counts, whoever paused it.
-        reset: puts everything back to where it started.
+        loop: runs the simulation; its `paused` is authoritative, whoever paused it.
+        reset: returns everything to its starting state.
         quit_process: asks the process to end.
     """
 
@@ -36,51 +36,55 @@ class RunControl:
         self._loop = loop
         self._reset = reset
         self._quit = quit_process
-        self._standing = RunState.PAUSED
+        self._state_while_paused = RunState.PAUSED
+        self._changes = 0
+        self._runs_of_steps = 0
 
     @property
     def state(self) -> RunState:
-        """The state now."""
-        return self._standing if self._loop.paused else RunState.PLAYING
+        """The present state."""
+        return self._state_while_paused if self._loop.paused else RunState.PLAYING
 
     def go_to(self, target: RunState) -> None:
         """Change the state.
 
         Raises:
-            RefusedError: it is in that state, or cannot come to it from here.
+            RequestError: it is already in that state, or the transition is not allowed.
         """
-        ends_steps = target is RunState.PAUSED and self._loop.stepping
+        stepping = self._loop.stepping or self._runs_of_steps > 0
+        ends_steps = target is RunState.PAUSED and stepping
         if target is self.state and not ends_steps:
-            raise RefusedError(Refusal.ALREADY_THERE, f"the simulation is {target.name} already")
+            raise RequestError(Refusal.ALREADY_THERE, f"the simulation is already {target.name}")
         if target is RunState.QUITTING:
             self._quit()
         elif target is RunState.NO_WORLD or self.state is RunState.NO_WORLD:
-            raise RefusedError(
+            raise RequestError(
                 Refusal.INCORRECT_TRANSITION,
-                f"from {self.state.name} to {target.name} leads no way but loading or unloading "
-                "a world",
+                f"only loading or unloading a world leads from {self.state.name} to {target.name}",
             )
         elif target is RunState.PLAYING:
+            self._changes += 1
             self._loop.resume().result()
         else:
-            self.stand(target)
+            self.pause_as(target)
             if target is RunState.STOPPED:
                 self._reset()
 
-    def stand(self, state: RunState) -> None:
-        """Let time stand still, and call it this state."""
+    def pause_as(self, state: RunState) -> None:
+        """Pause the simulation in this state."""
+        self._changes += 1
         self._loop.pause().result()
-        self._standing = state
+        self._state_while_paused = state
 
     @contextmanager
-    def to_stand(self, state: RunState) -> Iterator[None]:
-        """Let time stand still for what leads to this state; where refused, all is as before."""
-        standing, paused = self._standing, self._loop.paused
-        self.stand(state)
+    def paused_as(self, state: RunState) -> Iterator[None]:
+        """Pause in this state for the body of `with`; a RequestError in it restores the old one."""
+        before, paused = self._state_while_paused, self._loop.paused
+        self.pause_as(state)
         try:
             yield
-        except RefusedError:
-            self._standing = standing
+        except RequestError:
+            self._state_while_paused = before
             if not paused:
                 self._loop.resume().result()
             raise
@@ -89,14 +93,34 @@ class RunControl:
         """Advance a paused simulation by control periods; see `ControlLoop.step`.
 
         Raises:
-            RefusedError: time runs, there is no world, or the number is none.
+            RequestError: the simulation is not paused, has no world, or the number is below 1.
         """
+        self._check_step(count)
+        self._state_while_paused = RunState.PAUSED
+        return self._loop.step(count)
+
+    @contextmanager
+    def run_of_steps(self, count: int) -> Iterator[Callable[[], bool]]:
+        """Yield whether single steps may go on: until somebody changes the state.
+
+        Raises:
+            RequestError: as in `step`.
+        """
+        self._check_step(count)
+        changes = self._changes
+        self._runs_of_steps += 1
+        try:
+            yield lambda: self._changes == changes
+        finally:
+            self._runs_of_steps -= 1
+
+    def _check_step(self, count: int) -> None:
         if self.state not in (RunState.PAUSED, RunState.STOPPED):
-            raise RefusedError(
+            raise RequestError(
                 Refusal.INCORRECT_STATE,
-                f"steps are for a paused simulation; this one is {self.state.name}",
+                f"only a paused simulation can be stepped; this one is {self.state.name}",
             )
         if count < 1:
-            raise RefusedError(Refusal.FAILED, f"the number of steps is {count}; 1 is the least")
-        self._standing = RunState.PAUSED
-        return self._loop.step(count)
+            raise RequestError(
+                Refusal.FAILED, f"the number of steps is {count}; it must be at least 1"
+            )

@@ -1,4 +1,4 @@
-"""The shapes of a world as simple solids that any viewer can draw, robots left out."""
+"""The shapes of a world, without robots, as simple solids that any viewer can draw."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -8,23 +8,23 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.mesh_data import MeshData
+from arm_description.mesh.data import MeshData
 from arm_gazebo.mesh.simplification import simplified
 from arm_gazebo.rendering.surface_colours import flat_colours
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
 
 DRAWN_GROUPS = (0, 1, 2)
-"""Those that MuJoCo's viewers show, and the cameras."""
-ENDLESS_M = 20.0
-"""Side of what stands for a plane without an end."""
+"""The groups that MuJoCo's viewers and the cameras show."""
+INFINITE_PLANE_M = 20.0
+"""Side of the box that represents an infinite plane."""
 THICKNESS_M = 1e-3
-MOST_TRIANGLES = 2000
-"""Of one mesh: what is seen in a browser needs no more, and a message shall stay small."""
+MAX_TRIANGLES = 2000
+"""Limit on the triangles of one mesh: a browser needs no more, and messages must stay small."""
 GEOM = mujoco.mjtGeom
 
 
 class Solid(Enum):
-    """What kinds of solids there are."""
+    """The kinds of solids."""
 
     BOX = "box"
     BALL = "ball"
@@ -38,13 +38,13 @@ class WorldShape:
 
     Attributes:
         owner: the entity, or "world".
-        number: tells it from the others of its owner, in every model that both have.
-        solid: what it is.
-        size: full sides, m, shape (3,); of triangles 1 each.
+        number: number of the shape within its owner; the same in every model that has both.
+        solid: kind of solid.
+        size: full sides in m, shape (3,); 1 each for triangles.
         rgba: colour.
-        geom: whose pose it follows.
-        offset: of its middle in the frame of the geom, shape (3,).
-        corners: of triangles, three points each, shape (3 n, 3).
+        geom: index of the geom whose pose it follows.
+        offset: position of its centre in the frame of the geom, shape (3,).
+        corners: corners of triangles, three points each, shape (3 n, 3).
     """
 
     owner: str
@@ -58,16 +58,16 @@ class WorldShape:
 
     @property
     def key(self) -> tuple[str, int]:
-        """What identifies it."""
+        """The unique key of the shape."""
         return self.owner, self.number
 
 
 class WorldShapes:
-    """All shapes of one model that are not a robot's, and where they are.
+    """All shapes of one model except those of robots, and their poses.
 
     Args:
-        model: the model; is only read.
-        entities: of the model.
+        model: the model, which is not modified.
+        entities: the entities of the model.
     """
 
     def __init__(self, model: mujoco.MjModel, entities: Entities) -> None:
@@ -81,8 +81,8 @@ class WorldShapes:
         """Return positions and quaternions (x, y, z, w) of the shapes, shape (n, 7).
 
         Args:
-            positions: of all geoms, shape (ngeom, 3).
-            rotations: of all geoms, shape (ngeom, 9).
+            positions: positions of all geoms, shape (ngeom, 3).
+            rotations: rotations of all geoms, shape (ngeom, 9).
         """
         poses = np.empty((len(self.shapes), 7))
         turned = rotations[self._geoms].reshape(-1, 3, 3)
@@ -118,7 +118,7 @@ HERE = (0.0, 0.0, 0.0)
 
 
 def _solids(model: mujoco.MjModel, geom: int) -> Iterator[_Solid]:
-    """Yield what makes up a geom; kinds that worlds seldom have yield nothing."""
+    """Yield the solids that make up a geom; rare kinds of geoms yield nothing."""
     x, y, z = model.geom_size[geom].tolist()
     match GEOM(int(model.geom_type[geom])):
         case GEOM.mjGEOM_BOX:
@@ -134,7 +134,7 @@ def _solids(model: mujoco.MjModel, geom: int) -> Iterator[_Solid]:
             for end in (y, -y):
                 yield Solid.BALL, (2 * x, 2 * x, 2 * x), (0.0, 0.0, end), NO_CORNERS
         case GEOM.mjGEOM_PLANE:
-            sides = (2 * x or ENDLESS_M, 2 * y or ENDLESS_M, THICKNESS_M)
+            sides = (2 * x or INFINITE_PLANE_M, 2 * y or INFINITE_PLANE_M, THICKNESS_M)
             yield Solid.BOX, sides, (0.0, 0.0, -THICKNESS_M / 2), NO_CORNERS
         case GEOM.mjGEOM_MESH:
             corners = _corners(model, int(model.geom_dataid[geom]))
@@ -150,5 +150,5 @@ def _corners(model: mujoco.MjModel, mesh: int) -> NDArray[np.float64]:
     faces = model.mesh_face[first : first + count].astype(np.int32)
     if not len(faces):
         return NO_CORNERS
-    drawn = simplified(MeshData(vertices, faces, None), MOST_TRIANGLES)
+    drawn = simplified(MeshData(vertices, faces, None), MAX_TRIANGLES)
     return drawn.vertices[drawn.faces].reshape(-1, 3)

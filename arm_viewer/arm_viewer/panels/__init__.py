@@ -1,1 +1,1 @@
-"""The parts of the page, one in a file; `panel.Panel` says what each has."""
+"""The panels of the page, one in each file; `panel.Panel` is their interface."""

@@ -1,4 +1,4 @@
-"""The images of cameras, each with a switch; only those that are shown are subscribed to."""
+"""Camera images, each with a switch; the page subscribes only to images that are shown."""
 
 from collections.abc import Callable
 
@@ -6,27 +6,27 @@ import numpy as np
 from viser import GuiApi, GuiImageHandle
 
 from arm_viewer.errors import PictureError
-from arm_viewer.panels.note import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.picture_colours import colours
 from arm_viewer.requests import Send, ShowPictures
 from arm_viewer.snapshot import Picture, Snapshot
 
 NOTHING = np.zeros((3, 4, 3), dtype=np.uint8)
-NO_CAMERA = "Nobody publishes images."
+NO_CAMERA = "No image topic is published."
 
 
 class CameraPanel:
-    """A switch and an image for every image topic; the first to come is shown by itself."""
+    """A switch and an image for every image topic; the first topic is shown by default."""
 
     def __init__(self, send: Send, is_watched: Callable[[], bool]) -> None:
-        """Show images while `is_watched` says that somebody looks."""
+        """Show images while `is_watched` returns whether any browser is connected."""
         self._send = send
         self._is_watched = is_watched
         self._cameras: dict[str, _Camera] = {}
         self._wanted: frozenset[str] = frozenset()
 
     def build(self, gui: GuiApi) -> None:
-        """Make the place for the images."""
+        """Create the folder for the images."""
         self._gui = gui
         self._place = gui.add_folder(None)
         with self._place:
@@ -61,11 +61,11 @@ class _Camera:
 
     @property
     def is_shown(self) -> bool:
-        """Whether the user wants to see it, and there is something to see."""
+        """Whether the user has switched it on and the topic is published."""
         return self._switch.value and self._folder.visible
 
     def update(self, is_published: bool, picture: Picture | None) -> None:
-        """Show a picture; the last one stays where none has come."""
+        """Show a new image; without one the last image stays."""
         self._folder.visible = is_published
         if not self._switch.value:
             self._image.visible = self._problem.visible = False

@@ -1,4 +1,4 @@
-"""The simulation's time, and how it keeps up with the clock on the wall."""
+"""Simulation time, real-time factor and lag."""
 
 import math
 
@@ -7,23 +7,23 @@ from viser import GuiApi
 from arm_viewer.snapshot import SimulationTime, Snapshot
 
 PERIOD_S = 0.5
-NO_CLOCK = "no /clock: time is the wall's"
+NO_CLOCK = "no /clock: wall time is used"
 
 
 class ClockPanel:
-    """Three numbers."""
+    """Shows simulation time, real-time factor and lag."""
 
     def __init__(self) -> None:
         self._drawn_s = -math.inf
         self._shown = ""
 
     def build(self, gui: GuiApi) -> None:
-        """Make the text."""
+        """Create the text."""
         with gui.add_folder("Time"):
             self._text = gui.add_html("")
 
     def update(self, snapshot: Snapshot) -> None:
-        """Show the numbers, now and then."""
+        """Show the numbers twice a second."""
         if snapshot.made_s - self._drawn_s < PERIOD_S:
             return
         self._drawn_s = snapshot.made_s
@@ -46,7 +46,7 @@ def _html(time: SimulationTime | None) -> str:
 
 
 def _numbers(time: SimulationTime) -> dict[str, str]:
-    state = "stands still" if time.factor == 0.0 else f"{time.factor:.2f}"
+    state = "paused" if time.factor == 0.0 else f"{time.factor:.2f}"
     return {
         "Simulation": f"{time.time_s:.1f} s",
         "Real-time factor": state,

@@ -1,44 +1,44 @@
-"""The controllers of every manager, with a button each that brings it on, or to rest."""
+"""The controllers of every manager, each with a button that changes its state."""
 
 from html import escape
 
 from viser import GuiApi
 
-from arm_viewer.panels.note import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.requests import Configure, Request, Send, SwitchControllers
-from arm_viewer.snapshot import Controller, Snapshot
+from arm_viewer.snapshot import ListedController, Snapshot
 
 BUTTONS = {"active": "Deactivate", "inactive": "Activate", "unconfigured": "Configure"}
-"""By state; one that is finalized can be unloaded and no more."""
-COLOURS = {"active": "#69db7c", "inactive": "#ffa94d"}
-OTHER_COLOUR = "#adb5bd"
+"""The button's label by state; a finalized controller can only be unloaded."""
+COLOURS = {"active": "#2b8a3e", "inactive": "#d9480f"}
+OTHER_COLOUR = "#868e96"
 
 
 class ControllerPanel:
-    """A folder for each manager."""
+    """A folder of controllers for each manager."""
 
     def __init__(self, send: Send) -> None:
-        """Send there what is clicked."""
+        """Send a request for each click with `send`."""
         self._send = send
         self._managers: dict[str, _Manager] = {}
 
     def build(self, gui: GuiApi) -> None:
-        """Make what stands above the folders."""
+        """Create the elements above the folders."""
         self._gui = gui
         self._place = gui.add_folder("Controllers")
         with self._place:
-            self._nobody = gui.add_html(note("No controller manager is there."))
+            self._no_manager = gui.add_html(note("There is no controller manager."))
             self._refusal = gui.add_html("", visible=False)
         self._shown_refusal = ""
 
     def update(self, snapshot: Snapshot) -> None:
-        """Follow what the managers say."""
+        """Show the controllers that the managers list."""
         self._show_refusal(snapshot.refusal)
-        by_manager: dict[str, list[Controller]] = {}
+        by_manager: dict[str, list[ListedController]] = {}
         for controller in snapshot.controllers:
             by_manager.setdefault(controller.manager, []).append(controller)
-        if bool(by_manager) == self._nobody.visible:
-            self._nobody.visible = not by_manager
+        if bool(by_manager) == self._no_manager.visible:
+            self._no_manager.visible = not by_manager
         for name in self._managers.keys() - by_manager.keys():
             self._managers.pop(name).remove()
         for name, controllers in by_manager.items():
@@ -55,7 +55,7 @@ class ControllerPanel:
 
 
 class _Manager:
-    """The rows of one manager."""
+    """The controllers of one manager."""
 
     def __init__(self, gui: GuiApi, send: Send, name: str) -> None:
         self._gui = gui
@@ -63,7 +63,7 @@ class _Manager:
         self._folder = gui.add_folder(name)
         self._rows: dict[str, _Row] = {}
 
-    def update(self, controllers: list[Controller]) -> None:
+    def update(self, controllers: list[ListedController]) -> None:
         names = {controller.name for controller in controllers}
         for name in self._rows.keys() - names:
             self._rows.pop(name).remove()
@@ -78,16 +78,16 @@ class _Manager:
 
 
 class _Row:
-    """Name, state and type of a controller over its button."""
+    """Name, state and type of a controller above its button."""
 
-    def __init__(self, gui: GuiApi, send: Send, controller: Controller) -> None:
+    def __init__(self, gui: GuiApi, send: Send, controller: ListedController) -> None:
         self._send = send
-        self._shown: Controller | None = None
+        self._shown: ListedController | None = None
         self._text = gui.add_html("")
         self._button = gui.add_button("", hint=f"{controller.name} of {controller.manager}")
         self._button.on_click(lambda _: self._change())
 
-    def update(self, controller: Controller) -> None:
+    def update(self, controller: ListedController) -> None:
         if controller == self._shown:
             return
         self._shown = controller
@@ -105,8 +105,8 @@ class _Row:
             self._send(_next_step(self._shown))
 
 
-def _next_step(controller: Controller) -> Request:
-    """Return what the button asks for."""
+def _next_step(controller: ListedController) -> Request:
+    """Return the button's request."""
     manager, name = controller.manager, controller.name
     if controller.state == "active":
         return SwitchControllers(manager, deactivate=(name,))
@@ -115,9 +115,9 @@ def _next_step(controller: Controller) -> Request:
     return Configure(manager, name)
 
 
-def _describe(controller: Controller) -> str:
+def _describe(controller: ListedController) -> str:
     colour = COLOURS.get(controller.state, OTHER_COLOUR)
-    # A long type is broken where its parts meet.
+    # A long type may wrap after the slash.
     kind = escape(controller.type).replace("/", "/<wbr/>")
     claimed = f"<br/>{escape(', '.join(controller.claimed))}" if controller.claimed else ""
     return (

@@ -1,38 +1,164 @@
-"""Sliders that move the joints, and follow them."""
+"""Sliders that move the joints and follow them."""
 
+import math
 import random
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from html import escape
 from typing import Any
 
 from viser import GuiApi, GuiEvent
 
-from arm_viewer.joint_drive import joint_drives
-from arm_viewer.joint_follower import JointFollower
-from arm_viewer.joint_range import JointRange, joint_ranges
-from arm_viewer.panels.follower_table import FollowerTable
-from arm_viewer.panels.note import note
+from arm_description.publishers.joint_state_merge import position_range
+from arm_description.urdf.robot import Joint
+from arm_viewer.joint_move import joint_drives
+from arm_viewer.panels.panel import note
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
+from arm_viewer.typed_numbers import number_typed
 
+STEPS = 1000
+STILL_S = 0.5
+MAX_HOLD_S = 5.0
 NO_DRIVE = "No active controller takes positions: the sliders only show them."
+NUMBER_STYLE = "text-align:right;vertical-align:top;white-space:nowrap;padding-left:1em"
+
+
+@dataclass(frozen=True, slots=True)
+class JointRange:
+    """The joint's limits, including soft limits, in rad, or m for a prismatic joint."""
+
+    name: str
+    lower: float
+    upper: float
+
+    @property
+    def centre(self) -> float:
+        """0 if it is within the limits, else their middle, as in joint_state_publisher_gui."""
+        return 0.0 if self.lower <= 0.0 <= self.upper else 0.5 * (self.lower + self.upper)
+
+    @property
+    def step(self) -> float:
+        """The power of ten that divides the range into about a thousand steps."""
+        return 10.0**-self._digits
+
+    def nearest(self, position: float) -> float:
+        """Return the nearest position within the limits, rounded to whole steps."""
+        # Round to digits, not to multiples of the step, which would show as 0.7000000000000001.
+        whole = round(position, self._digits)
+        # Adding 0.0 turns -0.0 into 0.0, which is shown without a sign.
+        return min(max(whole, self.lower), self.upper) + 0.0
+
+    @property
+    def _digits(self) -> int:
+        """Number of decimals of a step; negative if a step is ten or more."""
+        return -math.floor(math.log10((self.upper - self.lower) / STEPS))
+
+
+def joint_ranges(joints: Iterable[Joint]) -> tuple[JointRange, ...]:
+    """Return the ranges of the joints that a slider can move.
+
+    These have one degree of freedom and room to move; a mimic joint follows its leader instead.
+    """
+    ranges = []
+    for joint in joints:
+        if joint.mimic is not None or not joint.type.is_scalar:
+            continue
+        lower, upper = position_range(joint)
+        if math.isfinite(upper - lower) and lower < upper:
+            ranges.append(JointRange(joint.name, lower, upper))
+    return tuple(ranges)
+
+
+class HeldSlider:
+    """Decides whether a slider shows the position of its joint. One thread at a time.
+
+    While the user drags the slider, and until the joint has stopped, the slider stays where the
+    user put it; otherwise it would jump back to the present position. Afterwards it shows the
+    position of the joint. After `MAX_HOLD_S` it does so even if the joint still moves.
+    """
+
+    def __init__(self, resolution: float) -> None:
+        """Ignore movements smaller than `resolution` (rad or m)."""
+        self._resolution = resolution
+        self._held_from_s = -math.inf
+        self._moved_s = -math.inf
+        self._position = math.nan
+
+    def hold(self, now_s: float) -> None:
+        """Record that the user has moved the slider."""
+        self._held_from_s = now_s
+
+    def shown(self, position: float, now_s: float) -> float | None:
+        """Return what the slider should show, or None to leave it as it is.
+
+        Args:
+            position: position of the joint, rad or m.
+            now_s: time on the same clock as in `hold`.
+        """
+        if not math.isfinite(position):
+            return None
+        if not abs(position - self._position) < self._resolution:
+            self._position = position
+            self._moved_s = now_s
+        return None if self.is_held(now_s) else self._position
+
+    def is_held(self, now_s: float) -> bool:
+        """Return whether the slider stays where the user put it."""
+        still_s = now_s - max(self._moved_s, self._held_from_s)
+        return now_s - self._held_from_s < MAX_HOLD_S and still_s < STILL_S
+
+
+class _MimicTable:
+    """A line for each mimic joint, which no slider moves: its leader and its position."""
+
+    def __init__(self, gui: GuiApi, joints: Iterable[Joint]) -> None:
+        """Create the table in the open container; it is hidden if there are no mimic joints."""
+        self._leaders = {j.name: j.mimic.joint for j in joints if j.mimic is not None}
+        self._table = gui.add_html("", visible=bool(self._leaders))
+        self._shown = ""
+
+    def update(self, readings: Mapping[str, JointReading]) -> None:
+        """Show the positions of the mimic joints."""
+        rows = "".join(
+            f'<tr><td>{escape(name)}<span style="opacity:0.6"> follows {escape(leader)}</span></td>'
+            f'<td style="{NUMBER_STYLE}">{_position(readings.get(name))}</td></tr>'
+            for name, leader in self._leaders.items()
+        )
+        text = (
+            '<table style="font-size:0.75rem;margin:0.5em 0.75em;width:calc(100% - 1.5em);'
+            f'overflow-wrap:anywhere;font-variant-numeric:tabular-nums">{rows}</table>'
+        )
+        if text != self._shown:
+            self._shown = text
+            self._table.content = text
+
+
+def _position(reading: JointReading | None) -> str:
+    if reading is None or not math.isfinite(reading.position):
+        return ""
+    # Adding 0.0 turns -0.0 into 0.0.
+    return f"{round(reading.position, 3) + 0.0:.3f}"
 
 
 class JointPanel:
     """A group of sliders for each robot."""
 
     def __init__(self, send: Send) -> None:
-        """Send movements there."""
+        """Send moves with `send`."""
         self._send = send
         self._groups: dict[str, _RobotSliders] = {}
 
     def build(self, gui: GuiApi) -> None:
-        """Make the place for the sliders; they come with the robots."""
+        """Create the folder for the sliders, which appear with the robots."""
         self._gui = gui
         self._place = gui.add_folder(None)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Follow the joints, and the robots that come."""
+        """Follow the joints, and add and remove robots."""
+        for topic in self._groups.keys() - snapshot.descriptions.keys():
+            self._groups.pop(topic).remove()
         for topic, description in snapshot.descriptions.items():
             group = self._groups.get(topic)
             if group is None or group.description is not description:
@@ -41,6 +167,19 @@ class JointPanel:
                 with self._place:
                     group = self._groups[topic] = _RobotSliders(self._gui, description, self._send)
             group.update(snapshot)
+
+    def take_typed(self, slider: str, text: str) -> str:
+        """Move a joint to the number typed beside its slider; return the problem, or "".
+
+        Args:
+            slider: identifier of the slider on the page.
+            text: the typed text.
+        """
+        for group in self._groups.values():
+            found = group.slider(slider)
+            if found is not None:
+                return found.take_typed(text)
+        return "this joint is no longer there"
 
 
 class _RobotSliders:
@@ -55,7 +194,7 @@ class _RobotSliders:
         self._folder = gui.add_folder(title, visible=bool(ranges))
         with self._folder:
             self._sliders = [_JointSlider(gui, joint, self._move) for joint in ranges]
-            self._followers = FollowerTable(gui, joints)
+            self._mimics = _MimicTable(gui, joints)
             self._buttons = gui.add_button_group("All", ("Center", "Randomize"), visible=False)
             self._hint = gui.add_html(note(NO_DRIVE), visible=False)
         self._buttons.on_click(self._move_all)
@@ -69,15 +208,18 @@ class _RobotSliders:
         readings: Mapping[str, JointReading] = {} if states is None else states.joints
         for slider in self._sliders:
             slider.update(readings, displays or slider.range.name in driven)
-        self._followers.update(readings)
+        self._mimics.update(readings)
         self._buttons.visible = displays
         self._hint.visible = not (displays or driven)
+
+    def slider(self, identifier: str) -> "_JointSlider | None":
+        return next((s for s in self._sliders if s.identifier == identifier), None)
 
     def remove(self) -> None:
         self._folder.remove()
 
     def _move(self) -> None:
-        # With those that are still on their way, lest they stop there.
+        # Includes joints that are still moving; without their targets they would stop.
         held = {slider.range.name: slider.value for slider in self._sliders if slider.is_held()}
         self._send(MoveJoints(self.description.namespace, held))
 
@@ -96,7 +238,7 @@ class _JointSlider:
     def __init__(self, gui: GuiApi, joint: JointRange, move: Callable[[], None]) -> None:
         self.range = joint
         self._move = move
-        self._follower = JointFollower(joint.step)
+        self._held = HeldSlider(joint.step)
         self._handle = gui.add_slider(
             joint.name,
             min=joint.lower,
@@ -109,26 +251,44 @@ class _JointSlider:
 
     @property
     def value(self) -> float:
-        """What the slider shows, rad or m."""
+        """The slider's value, rad or m."""
         return self._handle.value
 
+    @property
+    def identifier(self) -> str:
+        """The slider's identifier in the browser's document."""
+        return self._handle._impl.uuid  # pyright: ignore[reportPrivateUsage]
+
+    def take_typed(self, text: str) -> str:
+        """Move the joint to the position in a text; return the problem, or ""."""
+        if self._handle.disabled:
+            return f"no active controller takes positions of '{self.range.name}'"
+        try:
+            position = number_typed(text, self.range.name, self.range.lower, self.range.upper)
+        except ValueError as error:
+            return str(error)
+        self._held.hold(time.monotonic())
+        self._handle.value = position
+        self._move()
+        return ""
+
     def is_held(self) -> bool:
-        """Whether it stays where the user put it."""
-        return self._follower.is_held(time.monotonic())
+        """Return whether the slider stays where the user put it."""
+        return self._held.is_held(time.monotonic())
 
     def update(self, readings: Mapping[str, JointReading], driven: bool) -> None:
-        """Show where the joint is, and whether it can be moved."""
+        """Show the joint's position, and whether it can be moved."""
         if self._handle.disabled == driven:
             self._handle.disabled = not driven
         reading = readings.get(self.range.name)
         if reading is None:
             return
-        shown = self._follower.shown(reading.position, time.monotonic())
+        shown = self._held.shown(reading.position, time.monotonic())
         if shown is not None:
             self._handle.value = self.range.nearest(shown)
 
     def _moved(self, event: GuiEvent[Any]) -> None:
-        # Without a client it was `update`, which only follows: it must not move the joint.
+        # Without a client the change came from `update`, which must not move the joint.
         if event.client_id is not None:
-            self._follower.hold(time.monotonic())
+            self._held.hold(time.monotonic())
             self._move()

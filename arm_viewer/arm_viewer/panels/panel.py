@@ -1,23 +1,35 @@
-"""What every part of the page has."""
+"""The interface of every panel of the page."""
 
+from html import escape
 from typing import Protocol
 
 from viser import GuiApi
 
 from arm_viewer.snapshot import Snapshot
 
+PROBLEM_COLOUR = "#c92a2a"
+
+
+def note(text: str, colour: str = "inherit") -> str:
+    """Return a sentence as HTML; each line becomes a paragraph."""
+    lines = "".join(f"<div>{escape(line)}</div>" for line in text.splitlines())
+    return (
+        f'<div style="color:{colour};font-size:0.8rem;line-height:1.35;padding:0.25em 0.75em;'
+        f'overflow-wrap:anywhere">{lines}</div>'
+    )
+
 
 class Panel(Protocol):
-    """A part of the page, used in viser's event loop alone.
+    """A panel of the page; used only in viser's event loop.
 
-    Callbacks of its elements run in viser's threads: they do nothing but send a request, or note
-    a plain value that the next `update` looks at.
+    Callbacks of its elements run in viser's threads. They only send a request, or store a plain
+    value that the next `update` reads.
     """
 
     def build(self, gui: GuiApi) -> None:
-        """Make the elements, inside the container that is open; called once."""
+        """Create the elements inside the open container; called once."""
         ...
 
     def update(self, snapshot: Snapshot) -> None:
-        """Show what is new; called 30 times a second, so what has not changed is not sent."""
+        """Show the snapshot. Called 30 times a second, so it must send only what has changed."""
         ...

@@ -1,32 +1,126 @@
-"""The joints over the last seconds: position, velocity and effort, and the commands dashed."""
+"""Plots of the joints over the last seconds: position, velocity and effort, commands dashed."""
 
 import math
+from collections import deque
+from collections.abc import Mapping
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 from viser import GuiApi, GuiUplotHandle, uplot
 
-from arm_viewer.joint_history import JointHistory, Quantity
-from arm_viewer.snapshot import JointStates, Snapshot
+from arm_viewer.snapshot import JointReading, JointStates, Snapshot
+
+GAP_S = 0.5
+"""Readings farther apart than this are not joined by a line."""
+
+
+class Quantity(Enum):
+    """A measured quantity of a joint; the value is ros2_control's interface name."""
+
+    POSITION = "position"
+    VELOCITY = "velocity"
+    EFFORT = "effort"
+
+
+_QUANTITIES = tuple(Quantity)
+
+
+class JointHistory:
+    """Readings and commands of a set of joints; use it from one thread at a time.
+
+    Attributes:
+        joints: names of the joints, in the order of the rows of `table`.
+    """
+
+    def __init__(self, window_s: float) -> None:
+        """Keep readings up to `window_s` old."""
+        self.joints: tuple[str, ...] = ()
+        self._window_s = window_s
+        self._times: deque[float] = deque()
+        # Each entry has shape (2, 3, n): readings and commands, by quantity, by joint.
+        self._rows: deque[NDArray[np.float64]] = deque()
+
+    def add(
+        self, time_s: float, readings: Mapping[str, JointReading], commands: Mapping[str, float]
+    ) -> None:
+        """Add readings with a later time than all before; a new set of joints restarts the history.
+
+        Args:
+            time_s: time of reception.
+            readings: readings by joint.
+            commands: commands by command interface, such as "j0/position".
+        """
+        joints = tuple(readings)
+        if joints != self.joints:
+            self.clear()
+            self.joints = joints
+        if self._times and time_s - self._times[-1] > GAP_S:
+            self._append(self._times[-1], np.full((2, len(_QUANTITIES), len(joints)), math.nan))
+        self._append(time_s, _row(readings, commands))
+        while self._times[0] < time_s - self._window_s:
+            self._times.popleft()
+            self._rows.popleft()
+
+    def clear(self) -> None:
+        """Forget everything, including the joints."""
+        self.joints = ()
+        self._times.clear()
+        self._rows.clear()
+
+    def table(
+        self, quantity: Quantity, now_s: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return ages, readings and commands.
+
+        Returns:
+            Times relative to `now_s` in s, so negative, oldest first (m,); readings (n, m);
+            commands (n, m). Missing values are NaN.
+        """
+        ages = np.array(self._times) - now_s
+        if not self._rows:
+            empty = np.empty((len(self.joints), 0))
+            return ages, empty, empty
+        values = np.stack(self._rows, axis=-1)[:, _QUANTITIES.index(quantity)]
+        return ages, values[0], values[1]
+
+    def _append(self, time_s: float, row: NDArray[np.float64]) -> None:
+        self._times.append(time_s)
+        self._rows.append(row)
+
+
+def _row(
+    readings: Mapping[str, JointReading], commands: Mapping[str, float]
+) -> NDArray[np.float64]:
+    measured = [[getattr(r, q.value) for r in readings.values()] for q in _QUANTITIES]
+    commanded = [[commands.get(f"{j}/{q.value}", math.nan) for j in readings] for q in _QUANTITIES]
+    row = np.array([measured, commanded])
+    # A single infinity would leave the browser's chart without a scale.
+    row[np.isinf(row)] = math.nan
+    return row
+
 
 DEFAULT_TOPIC: str = "/joint_states"
 WINDOW_S = 10.0
 PERIOD_S = 0.1
-"""Between two pictures of the charts."""
+"""Time between two updates of the charts."""
 HEIGHT = 150
 UNITS = {
     Quantity.POSITION: "rad, m",
     Quantity.VELOCITY: "rad/s, m/s",
     Quantity.EFFORT: "N m, N",
 }
-LEAST_SPANS = {Quantity.POSITION: 0.1, Quantity.VELOCITY: 0.2, Quantity.EFFORT: 0.2}
-"""What a chart shows from bottom to top at least, in UNITS: less is noise of joints at rest."""
-COLOURS = ("#4dabf7", "#ffa94d", "#69db7c", "#ff8787", "#b197fc", "#f783ac", "#ffd43b", "#66d9e8")
-_TEXT, _GRID = "#adb5bd", "#373a40"
+MIN_SPANS = {Quantity.POSITION: 0.1, Quantity.VELOCITY: 0.2, Quantity.EFFORT: 0.2}
+"""Smallest vertical range of a chart, in UNITS; less would show the noise of joints at rest."""
+COLOURS = (
+    *("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f"),
+    *("#bcbd22", "#17becf", "#1a2a6c", "#f4b400", "#00695c", "#ff5fa2", "#5d4037", "#76d7c4"),
+)
+_TEXT, _GRID = "#495057", "#dee2e6"
 
 
 class PlotPanel:
-    """Charts of the joints of one topic, that of the first robot unless another is chosen."""
+    """Charts of the joints of one topic, by default the first robot's."""
 
     def __init__(self) -> None:
         self._history = JointHistory(WINDOW_S)
@@ -35,28 +129,29 @@ class PlotPanel:
         self._drawn_s = -math.inf
 
     def build(self, gui: GuiApi) -> None:
-        """Make the charts."""
+        """Create the charts."""
         self._topic = gui.add_dropdown("Joints of", (DEFAULT_TOPIC,), visible=False)
-        self._still = gui.add_checkbox(
-            "Hold still", False, hint="charts do not go on, to be looked at"
-        )
+        self._frozen = gui.add_checkbox("Freeze", False, hint="stop the charts to look at them")
         self._charts = tuple(_Chart(gui, quantity) for quantity in Quantity)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Note what is new; draw now and then."""
+        """Store new readings, and redraw the charts ten times a second."""
         self._offer(tuple(sorted(snapshot.joint_states)))
         states = snapshot.joint_states.get(self._topic.value)
-        if states is not None and states is not self._seen:
+        if states is None:
+            self._history.clear()
+        elif states is not self._seen:
             self._seen = states
-            told = snapshot.commands.get(self._topic.value.removesuffix(DEFAULT_TOPIC), {})
-            self._history.add(states.received_s, states.joints, told)
-        if snapshot.made_s - self._drawn_s >= PERIOD_S and not self._still.value:
+            commands = snapshot.commands.get(self._topic.value.removesuffix(DEFAULT_TOPIC), {})
+            self._history.add(states.received_s, states.joints, commands)
+        if snapshot.made_s - self._drawn_s >= PERIOD_S and not self._frozen.value:
             self._drawn_s = snapshot.made_s
             for chart in self._charts:
                 chart.draw(self._history, snapshot.made_s)
 
     def _offer(self, topics: tuple[str, ...]) -> None:
-        if topics and topics != self._topic.options:
+        topics = topics or (DEFAULT_TOPIC,)
+        if topics != self._topic.options:
             self._topic.options = topics
             self._topic.visible = len(topics) > 1
 
@@ -67,72 +162,76 @@ class _Chart:
     def __init__(self, gui: GuiApi, quantity: Quantity) -> None:
         self._quantity = quantity
         self._lines: tuple[tuple[str, bool], ...] = ()
-        nothing = np.empty(0)
+        empty = np.empty(0)
         self._plot: GuiUplotHandle = gui.add_uplot(
-            data=(nothing, nothing),
-            series=(uplot.Series(), _unseen()),
+            data=(empty, empty),
+            series=(uplot.Series(), _invisible()),
             title=f"{quantity.value} ({UNITS[quantity]})",
             scales={"x": uplot.Scale(time=False, auto=False, range=(-WINDOW_S, 0.0))},
             axes=(_axis(), _axis()),
-            # Live, it would say "--" of every line until the mouse is over the chart.
+            # A live legend shows "--" for every line until the mouse is over the chart.
             legend=uplot.Legend(live=False),
             height=HEIGHT,
         )
 
     def draw(self, history: JointHistory, now_s: float) -> None:
         ages, readings, commands = history.table(self._quantity, now_s)
-        read, told = (~np.isnan(values).all(axis=1) for values in (readings, commands))
-        lines = tuple((history.joints[index], False) for index in np.flatnonzero(read))
-        lines += tuple((history.joints[index], True) for index in np.flatnonzero(told))
+        measured, commanded = (~np.isnan(values).all(axis=1) for values in (readings, commands))
+        lines = tuple((history.joints[index], False) for index in np.flatnonzero(measured))
+        lines += tuple((history.joints[index], True) for index in np.flatnonzero(commanded))
         if not lines:
+            if self._lines:
+                self._lines = ()
+                self._plot.data = (np.empty(0), np.empty(0))
+                self._plot.series = (uplot.Series(), _invisible())
             return
         if lines != self._lines:
             self._lines = lines
             drawn = map(_series, lines, _colours(lines))
-            self._plot.series = (uplot.Series(label="s"), *drawn, _unseen())
-        # Until a joint is told something, its dashed line lies on what it did.
-        did = unbroken(ages, readings)
-        commands = unbroken(ages, np.where(np.isnan(commands), did, commands))
-        shown = np.concatenate([did[read], commands[told]])
-        self._plot.data = (ages, *shown, extent(shown, LEAST_SPANS[self._quantity]))
+            self._plot.series = (uplot.Series(label="s"), *drawn, _invisible())
+        # Before the first command, the dashed line follows the reading.
+        readings = interpolated(ages, readings)
+        commands = interpolated(ages, np.where(np.isnan(commands), readings, commands))
+        shown = np.concatenate([readings[measured], commands[commanded]])
+        self._plot.data = (ages, *shown, span_row(shown, MIN_SPANS[self._quantity]))
 
 
-def unbroken(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return rows whose NaN are on the straight line between their neighbours.
+def interpolated(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return rows with NaN interpolated linearly between their neighbours.
 
-    One NaN, and the browser's chart finds no scale and draws nothing at all.
+    A single NaN would leave the browser's chart without a scale, and it would draw nothing.
 
     Args:
         ages: ascending (m,).
-        rows: (n, m); those that are nothing but NaN stay so.
+        rows: (n, m); a row of NaN only is unchanged.
     """
     filled = rows.copy()
     for row in filled:
-        said = ~np.isnan(row)
-        if said.any():
-            row[~said] = np.interp(ages[~said], ages[said], row[said])
+        known = ~np.isnan(row)
+        if known.any():
+            row[~known] = np.interp(ages[~known], ages[known], row[known])
     return filled
 
 
-def extent(rows: NDArray[np.float64], least: float) -> NDArray[np.float64]:
-    """Return a row (m,) that goes to and fro, at least `least` high, around the middle of `rows`.
+def span_row(rows: NDArray[np.float64], min_span: float) -> NDArray[np.float64]:
+    """Return a row (m,) that alternates around the middle of `rows` and spans at least `min_span`.
 
-    A scale of the browser's chart is as high as what it draws, and has no least height of its own.
+    The browser's chart scales to its data and has no minimum range, so this invisible row sets one.
 
     Args:
-        rows: what is drawn (n, m), n and m at least 1, without NaN.
-        least: in the rows' unit.
+        rows: the visible rows (n, m), n and m at least 1, without NaN.
+        min_span: smallest range in the rows' unit.
     """
     low, high = rows.min(), rows.max()
-    reach = max(high - low, least) / 2.0
+    reach = max(high - low, min_span) / 2.0
     row = np.full(rows.shape[1], (low + high) / 2.0 - reach)
     row[1::2] += 2.0 * reach
     return row
 
 
-def _unseen() -> uplot.Series:
-    """Return what draws nothing, but counts for the scale."""
-    # Without a word of its own the legend would say "Value".
+def _invisible() -> uplot.Series:
+    """Return an invisible series that still counts for the scale."""
+    # Without a label the legend would say "Value".
     return uplot.Series(
         label="\N{NO-BREAK SPACE}", stroke="transparent", width=0, points={"show": False}
     )
@@ -148,7 +247,7 @@ def _axis() -> uplot.Axis:
 
 
 def _colours(lines: tuple[tuple[str, bool], ...]) -> list[str]:
-    """Return a colour for each line, the same for what a joint does and what it is told."""
+    """Return a colour for each line, the same for the reading and the command of a joint."""
     joints = list(dict.fromkeys(joint for joint, _ in lines))
     return [COLOURS[joints.index(joint) % len(COLOURS)] for joint, _ in lines]
 

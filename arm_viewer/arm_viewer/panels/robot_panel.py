@@ -1,53 +1,66 @@
-"""What of the robots is shown: the switches, and the robots themselves in the 3D view."""
+"""The robots in the 3D view, and the switches for their layers."""
 
 from collections.abc import Collection, Container, Mapping
 from dataclasses import dataclass
 
-from viser import GuiApi, SceneApi
+from viser import GuiApi, GuiCheckboxHandle, SceneApi
 
-from arm_description.names import listing
-from arm_description.robot import Robot
-from arm_viewer.frame_name import frame_name
-from arm_viewer.panels.note import PROBLEM_COLOUR, note
+from arm_description.urdf.robot import Robot
+from arm_node.names import listing
+from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.scene.cameras import Cameras
-from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.first_view import Contents, FirstView
+from arm_viewer.scene.frame_poses import assumed_transforms, unknown_joints
+from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.scene.markers import Markers
-from arm_viewer.scene.node_name import node_name
 from arm_viewer.scene.robot_model import COLLISION, INERTIA, MASS, VISUAL, RobotModel
-from arm_viewer.snapshot import Description, Snapshot
+from arm_viewer.snapshot import Description, Snapshot, Transform, frame_name
 
 SWITCHES = {
-    VISUAL: ("Visual", "what the links look like"),
-    COLLISION: ("Collision", "what the links are touched by"),
-    MASS: ("Centre of mass", "balls of lead of the links' masses"),
-    INERTIA: ("Inertia", "solid ellipsoids of the links' masses and inertias"),
+    VISUAL: ("Visual", "visuals of the links"),
+    COLLISION: ("Collision", "collision shapes of the links"),
+    MASS: ("Centre of mass", "balls of lead with the links' masses"),
+    INERTIA: ("Inertia", "solid ellipsoids with the links' masses and inertias"),
 }
 
-LISTED_AT_MOST = 8
+MAX_LISTED = 8
+STARTUP_WAIT_S = 1.5
+"""How long the page waits for a robot's joint states and transforms before it reports a problem."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Shown:
-    """A robot in the view, what it was made of, and where its links were taken to be."""
+    """A robot in the view, its description, and the frames of its links."""
 
     description: Description
     places: Mapping[str, str]
     model: RobotModel
+    since_s: float
+
+
+_Known = tuple[
+    Mapping[str, Transform], Mapping[str, Mapping[str, float]], set[str], dict[str, _Shown]
+]
+"""Published transforms, hardware positions, the robots that have waited for both, all robots."""
 
 
 class RobotPanel:
-    """Keeps the robots of the 3D view as they are described, where /tf says they are."""
+    """Draws the robots of the 3D view as described, at their poses in /tf."""
 
-    def __init__(self, scene: SceneApi, frames: Frames) -> None:
-        """Draw into this scene, below these frames."""
+    def __init__(self, scene: SceneApi, frames: Frames, view: FirstView) -> None:
+        """Draw into this scene, below these frames, and fit this view."""
         self._scene = scene
+        self._view = view
+        self._fit_for: set[int] = set()
         self._frames = frames
         self._markers = Markers(scene, frames)
         self._cameras = Cameras(scene, frames)
         self._robots: dict[str, _Shown] = {}
+        self._completed_for: _Known | None = None
+        self._completed: Mapping[str, Transform] = {}
 
     def build(self, gui: GuiApi) -> None:
-        """Make the switches."""
+        """Create the switches."""
         with gui.add_folder("Show"):
             self._layers = {
                 layer: gui.add_checkbox(label, layer == VISUAL, hint=hint)
@@ -56,30 +69,86 @@ class RobotPanel:
             self._axes = gui.add_checkbox("Frames", False, hint="axes: x red, y green, z blue")
             self._names = gui.add_checkbox("Frame names", False)
             self._views = gui.add_checkbox(
-                "Cameras", True, hint="what they see, from where; by CameraInfo and /tf"
+                "Cameras", True, hint="frustums of the cameras, from CameraInfo and /tf"
             )
-            self._world = gui.add_checkbox("World", True, hint="what stands around the robots")
+            self._world = gui.add_checkbox("World", True, hint="objects around the robots")
+            fit = gui.add_button("Fit view", color="gray", hint="all robots and nearby objects")
+        fit.on_click(lambda event: self._fit_for.add(event.client_id or 0))
         self._shown_problem = ""
         self._problem = gui.add_html("", visible=False)
 
+    @property
+    def switches(self) -> Mapping[str, GuiCheckboxHandle]:
+        """The switches that an RViz configuration knows, by their keys there."""
+        others = {"frames": self._axes, "frame names": self._names, "world": self._world}
+        return {**self._layers, **others}
+
     def update(self, snapshot: Snapshot) -> None:
-        """Show what the switches say, where the transforms say."""
-        self._frames.update(snapshot.transforms)
+        """Show the selected layers at the present transforms."""
+        transforms = snapshot.transforms
+        self._frames.update(self._with_assumed(snapshot))
         self._frames.show_axes(self._axes.value)
         self._frames.show_names(self._names.value)
         self._markers.update(snapshot.markers)
         self._markers.show(self._world.value)
         self._cameras.update(snapshot.cameras, self._views.value)
+        for topic in self._robots.keys() - snapshot.descriptions.keys():
+            self._robots.pop(topic).model.remove()
         for topic, description in snapshot.descriptions.items():
-            self._renew(topic, description)
+            self._renew(topic, description, snapshot)
         layers = {layer for layer, switch in self._layers.items() if switch.value}
         inside = self._axes.value or bool(layers & {MASS, INERTIA})
         for shown in self._robots.values():
-            shown.model.show(layers, seen_through=inside)
-        self._say(_problem(snapshot, self._robots.values(), self._frames.known))
+            grey = bool(_reason_for_grey(snapshot, shown))
+            # Wait for all transforms, because a hand without some of them would appear in the foot.
+            drawn = layers if _is_placed(snapshot, shown) else set[str]()
+            shown.model.show(drawn, transparent=inside, grey=grey)
+        frames = {*transforms, *(step.parent for step in transforms.values())}
+        self._show_problem(_problem(snapshot, self._robots.values(), frames))
+        self._update_view(snapshot)
 
-    def _renew(self, topic: str, description: Description) -> None:
-        """Make a robot anew where its description is another one, or its links' frames are."""
+    def _update_view(self, snapshot: Snapshot) -> None:
+        """Fit the view to the present contents."""
+        placed = {t for t, shown in self._robots.items() if _is_placed(snapshot, shown)}
+        key = (frozenset((t, id(self._robots[t])) for t in placed), frozenset(snapshot.markers))
+        while self._fit_for:
+            self._view.fit_again(self._fit_for.pop())
+        if self._view.is_due(key, snapshot.made_s):
+            robots = [b for topic in placed for b in self._robots[topic].model.bodies()]
+            self._view.set_contents(Contents(robots, *self._markers.bodies()))
+        self._view.update()
+
+    def _with_assumed(self, snapshot: Snapshot) -> Mapping[str, Transform]:
+        """Return the transforms, with those of joints that are not published.
+
+        These joints are where the hardware has them, or else where the description starts them.
+
+        It is the same object as long as nothing has changed.
+        """
+        waited = {topic for topic, shown in self._robots.items() if _has_waited(snapshot, shown)}
+        key = (
+            snapshot.transforms,
+            snapshot.hardware_positions,
+            waited,
+            dict(self._robots),
+        )
+        if self._completed_for is None or not _same(self._completed_for, key):
+            self._completed_for = key
+            assumed: dict[str, Transform] = {}
+            for topic in waited:
+                shown = self._robots[topic]
+                if shown.description.robot is not None:
+                    assumed |= assumed_transforms(
+                        shown.description.robot,
+                        shown.places,
+                        {**shown.description.initial, **_hardware_positions(snapshot, shown)},
+                        snapshot.transforms,
+                    )
+            self._completed = {**assumed, **snapshot.transforms} if assumed else snapshot.transforms
+        return self._completed
+
+    def _renew(self, topic: str, description: Description, snapshot: Snapshot) -> None:
+        """Recreate a robot if its description or its links' frames have changed."""
         shown = self._robots.get(topic)
         robot = description.robot
         places = (
@@ -91,9 +160,10 @@ class RobotPanel:
             self._robots.pop(topic).model.remove()
         if robot is not None:
             model = RobotModel(self._scene, self._frames, node_name(topic), robot, places)
-            self._robots[topic] = _Shown(description, places, model)
+            since_s = shown.since_s if shown is not None else snapshot.made_s
+            self._robots[topic] = _Shown(description, places, model, since_s)
 
-    def _say(self, problem: str) -> None:
+    def _show_problem(self, problem: str) -> None:
         if self._shown_problem != problem:
             self._shown_problem = problem
             self._problem.content = note(problem, PROBLEM_COLOUR)
@@ -101,11 +171,11 @@ class RobotPanel:
 
 
 def link_frames(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, str]:
-    """Return the frame of each link: that below the robot's namespace, or its own name.
+    """Return the frame of each link: prefixed with the robot's namespace, or the link's own name.
 
-    The first is what a state publisher's frame_prefix is used for, where robots of one kind are
-    told apart by namespaces only. It goes first: the bare name may be another robot's, of the root
-    namespace.
+    A state publisher's frame_prefix adds the prefix if robots of one kind differ only in their
+    namespaces. The prefixed frame takes precedence, because the bare name may belong to another
+    robot in the root namespace.
     """
     prefix = f"{namespace.strip('/')}/"
     return {
@@ -114,13 +184,61 @@ def link_frames(robot: Robot, namespace: str, frames: Container[str]) -> dict[st
     }
 
 
+def _same(first: _Known, second: _Known) -> bool:
+    return first[0] is second[0] and first[1] is second[1] and first[2:] == second[2:]
+
+
+def _hardware_positions(snapshot: Snapshot, shown: _Shown) -> Mapping[str, float]:
+    return snapshot.hardware_positions.get(shown.description.namespace, {})
+
+
+def _has_waited(snapshot: Snapshot, shown: _Shown) -> bool:
+    """Return whether joint states and /tf have had enough time to arrive."""
+    return snapshot.made_s - shown.since_s > STARTUP_WAIT_S
+
+
+def _is_placed(snapshot: Snapshot, shown: _Shown) -> bool:
+    robot = shown.description.robot
+    return _has_waited(snapshot, shown) or (
+        robot is not None and not unknown_joints(robot, shown.places, snapshot.transforms)
+    )
+
+
+def _reason_for_grey(snapshot: Snapshot, shown: _Shown) -> str:
+    """Return why a robot is drawn in grey, in a sentence; empty if it is not."""
+    robot, namespace = shown.description.robot, shown.description.namespace
+    if robot is None or not _has_waited(snapshot, shown):
+        return ""
+    states = f"{namespace}/joint_states"
+    measured = _hardware_positions(snapshot, shown)
+    mimics = {joint.name for joint in robot.joints if joint.mimic is not None}
+    unknown = [
+        joint
+        for joint in unknown_joints(robot, shown.places, snapshot.transforms)
+        if joint not in measured and not (measured and joint in mimics)
+    ]
+    if unknown:
+        reason = f"No position for {listing(unknown)} of {shown.description.topic}"
+        if states not in snapshot.joint_states:
+            reason += f" (nothing on {states})"
+        return f"{reason}: drawn in grey at the initial pose"
+    if states in snapshot.lost and robot.movable_joints:
+        return (
+            f"{states} is no longer published: {shown.description.topic} is drawn in grey at its "
+            "last pose"
+        )
+    return ""
+
+
 def _problem(snapshot: Snapshot, robots: Collection[_Shown], frames: Container[str]) -> str:
     lines = [description.problem for description in snapshot.descriptions.values()]
-    lines += [
-        f"No transform on /tf for {listing(missing)} of {shown.description.topic}"
-        for shown in robots
-        if (missing := [frame for frame in shown.places.values() if frame not in frames])
-    ]
+    for shown in robots:
+        reason = _reason_for_grey(snapshot, shown)
+        is_drawn = bool(reason or _hardware_positions(snapshot, shown))
+        missing = [] if is_drawn else [f for f in shown.places.values() if f not in frames]
+        if missing and _has_waited(snapshot, shown):
+            reason = f"No transform on /tf for {listing(missing)} of {shown.description.topic}"
+        lines.append(reason)
     lines += [
         f"No transform on /tf for {view.frame}, the frame of {topic}"
         for topic, view in snapshot.cameras.items()
@@ -132,9 +250,9 @@ def _problem(snapshot: Snapshot, robots: Collection[_Shown], frames: Container[s
 
 
 def _missing(topic: str, problems: list[str]) -> list[str]:
-    """Return what to say of a robot that is not whole."""
+    """Return the lines about a robot that is drawn incompletely."""
     if not problems:
         return []
-    more = len(problems) - LISTED_AT_MOST
+    more = len(problems) - MAX_LISTED
     rest = [f"and {more} more, which the page's log lists"] if more > 0 else []
-    return [f"Not all of {topic} can be drawn:", *problems[:LISTED_AT_MOST], *rest]
+    return [f"Not all of {topic} can be drawn:", *problems[:MAX_LISTED], *rest]

@@ -1,4 +1,4 @@
-"""The line above everything, where something is wrong, and the button for a picture."""
+"""The banner that reports problems, and the screenshot button."""
 
 import html
 from typing import Any
@@ -8,37 +8,57 @@ import numpy as np
 from viser import GuiApi, GuiEvent, Icon
 
 from arm_viewer.page_look import BACKGROUND
-from arm_viewer.simulation_watch import complaint
 from arm_viewer.snapshot import Snapshot
+
+SILENT_S = 2.0
+WAITING = "Waiting for a robot on /robot_description"
+GONE = "The simulation has ended; the page continues when it restarts"
+LOST = "{topic} is no longer published; the page continues when it is"
+SILENT = "Nothing on {topic} for {silence:.0f} s: the simulation is paused or hangs"
+
+
+def status_message(snapshot: Snapshot) -> str:
+    """Return the problem to report to the user, empty if there is none."""
+    if not snapshot.descriptions:
+        return GONE if snapshot.lost else WAITING
+    for topic in sorted(snapshot.lost - snapshot.descriptions.keys()):
+        if f"{topic.rpartition('/')[0]}/robot_description" in snapshot.descriptions:
+            return LOST.format(topic=topic)
+    for topic, states in sorted(snapshot.joint_states.items()):
+        silence_s = snapshot.made_s - states.received_s
+        if silence_s > SILENT_S:
+            return SILENT.format(topic=topic, silence=silence_s)
+    return ""
+
 
 BANNER = (
     '<div role="alert" style="margin: 0.6em 0.8em; padding: 0.5em 0.8em; border-radius: 4px; '
-    'background: #5c3a10; color: #ffd8a8; font-size: 0.85em">{text}</div>'
+    'background: #fff3bf; color: #7a4100; font-size: 0.85em">{text}</div>'
 )
-LONGEST_WAIT_S = 60.0
+MAX_WAIT_S = 60.0
 PICTURE_NAME = "arm.png"
 
 
 class StatusPanel:
-    """Says that the simulation went away, until it returns."""
+    """Shows a banner while something is wrong, and the screenshot button."""
 
     def build(self, gui: GuiApi) -> None:
-        """Make the line and the button."""
-        self._said = ""
+        """Create the banner and the button."""
+        self._shown = ""
         self._banner = gui.add_html("", visible=False)
-        gui.add_button("Screenshot", icon=Icon.CAMERA, color="gray").on_click(_give_picture)
+        gui.add_button("Screenshot", icon=Icon.CAMERA, color="gray").on_click(_take_screenshot)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Say what is wrong by now."""
-        said = complaint(snapshot)
-        if said != self._said:
-            self._said = said
-            self._banner.content = BANNER.format(text=html.escape(said))
-            self._banner.visible = bool(said)
+        """Show the present problem."""
+        message = status_message(snapshot)
+        if message != self._shown:
+            self._shown = message
+            self._banner.content = BANNER.format(text=html.escape(message))
+            self._banner.visible = bool(message)
 
 
-def _give_picture(event: GuiEvent[Any]) -> None:
-    """Have the browser that asked draw the 3D view as it sees it, and download it there."""
+def _take_screenshot(event: GuiEvent[Any]) -> None:
+    """Let the user's browser render its 3D view and download the image."""
     client = event.client
     if client is None:
         return
@@ -47,13 +67,13 @@ def _give_picture(event: GuiEvent[Any]) -> None:
             height=client.camera.image_height,
             width=client.camera.image_width,
             transport_format="png",
-            timeout=LONGEST_WAIT_S,
+            timeout=MAX_WAIT_S,
         )
     except TimeoutError:
-        client.add_notification("No screenshot", f"Not drawn within {LONGEST_WAIT_S:.0f} s.")
+        client.add_notification("No screenshot", f"Not drawn within {MAX_WAIT_S:.0f} s.")
         return
     except RuntimeError:
-        # The browser has gone meanwhile.
+        # The browser has disconnected in the meantime.
         return
     covered = drawn[:, :, 3:] / 255.0
     picture = drawn[:, :, :3] * covered + np.array(BACKGROUND) * (1.0 - covered)

@@ -1,1 +1,1 @@
-"""The ROS half: topics and services in, snapshots out; requests in, messages out."""
+"""The ROS interface: observes topics and services for snapshots, and serves the page's requests."""

@@ -1,34 +1,35 @@
-"""What cameras see, from the topics of their intrinsics."""
+"""Observe the cameras' intrinsics, and the images that the page shows."""
 
 import math
 from types import MappingProxyType
 
+import numpy as np
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import CameraInfo
+from sensor_msgs.msg import CameraInfo, Image
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.frame_name import frame_name
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.requests import ShowPictures
+from arm_viewer.ros.observer import TopicTypes, topics_of, type_name, used_types
 from arm_viewer.ros.topic_reader import TopicReader
-from arm_viewer.ros.topic_types import topics_of
-from arm_viewer.snapshot import CameraView
+from arm_viewer.snapshot import CameraView, Picture, frame_name
 
+_IMAGE_TYPE = type_name(Image)
 _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class CameraObserver:
-    """Keeps the newest view of every camera that somebody publishes, without its images."""
+    """Keeps the latest intrinsics of every published camera, without its images."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
-        """Start to look."""
+        """Start without cameras."""
         self._node = node
         self._polled = polled
         self._readers: dict[str, TopicReader[CameraInfo]] = {}
         self.views: MappingProxyType[str, CameraView] = MappingProxyType({})
 
     def discover(self, topics: TopicTypes) -> None:
-        """Subscribe to new cameras, and forget those that are gone."""
+        """Subscribe to new cameras, and forget cameras that are no longer published."""
         named = topics_of(CameraInfo, topics, self._node)
         found = {topic for topic in named if self._node.count_publishers(topic)}
         for topic in self._readers.keys() - found:
@@ -45,7 +46,7 @@ class CameraObserver:
             message = reader.take_newest()
             if message is None:
                 continue
-            view = _read(message)
+            view = _view(message)
             if view is None:
                 views.pop(topic, None)
             else:
@@ -57,11 +58,61 @@ class CameraObserver:
         self.views = MappingProxyType(views)
 
 
-def _read(message: CameraInfo) -> CameraView | None:
-    """Return the view; None of a camera that does not say how it sees, by zeros or otherwise."""
+def _view(message: CameraInfo) -> CameraView | None:
+    """Return the view, or None if the intrinsics are zero or not finite."""
     fx, _, cx, _, fy, cy = (float(value) for value in message.k[:6])
     frame = frame_name(message.header.frame_id)
     sizes = (message.width, message.height, fx, fy)
     if not frame or min(sizes) <= 0.0 or not all(map(math.isfinite, (*sizes, cx, cy))):
         return None
     return CameraView(frame, message.width, message.height, (fx, fy), (cx, cy))
+
+
+class ImageObserver:
+    """Lists all image topics, and keeps the latest image of the requested ones."""
+
+    def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
+        """Start without requested images."""
+        self._node = node
+        self._polled = polled
+        self._readers: dict[str, TopicReader[Image]] = {}
+        self.topics: tuple[str, ...] = ()
+        self.pictures: MappingProxyType[str, Picture] = MappingProxyType({})
+
+    def serve(self, request: ShowPictures) -> None:
+        """Subscribe to the requested topics, and end the other subscriptions."""
+        for topic in self._readers.keys() - request.topics:
+            self._readers.pop(topic).close()
+        used = used_types(self._node)
+        for topic in request.topics - self._readers.keys():
+            # This node may use the topic with another type by now.
+            if used.get(topic, _IMAGE_TYPE) == _IMAGE_TYPE:
+                self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, _QOS)
+        kept = {t: picture for t, picture in self.pictures.items() if t in request.topics}
+        self.pictures = MappingProxyType(kept)
+
+    def discover(self, topics: TopicTypes) -> None:
+        """List the published topics."""
+        named = topics_of(Image, topics, self._node)
+        self.topics = tuple(sorted(t for t in named if self._node.count_publishers(t)))
+
+    def collect(self, now_s: float) -> None:
+        """Take what has arrived."""
+        new = {}
+        for topic, reader in self._readers.items():
+            message = reader.take_newest()
+            if message is not None:
+                new[topic] = _picture(message)
+        if new:
+            self.pictures = MappingProxyType({**self.pictures, **new})
+
+
+def _picture(message: Image) -> Picture:
+    return Picture(
+        encoding=message.encoding,
+        width=message.width,
+        height=message.height,
+        step=message.step,
+        is_bigendian=bool(message.is_bigendian),
+        data=np.frombuffer(message.data, dtype=np.uint8),
+    )

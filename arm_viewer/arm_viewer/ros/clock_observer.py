@@ -1,4 +1,4 @@
-"""How /clock goes beside the clock on the wall."""
+"""Observe /clock and compare it with wall time."""
 
 import time
 
@@ -13,13 +13,13 @@ from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.snapshot import SimulationTime
 
 TOPIC = "/clock"
-STANDS_STILL_S = 0.5
-"""After so long without a message the simulation's time is taken to stand still."""
+PAUSED_AFTER_S = 0.5
+"""After this time without a message the simulation counts as paused."""
 _QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class ClockObserver:
-    """Keeps how the simulation's time goes, while somebody publishes it."""
+    """Keeps the progress of simulation time while /clock is published."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
         """Subscribe."""
@@ -31,7 +31,7 @@ class ClockObserver:
         self.time: SimulationTime | None = None
 
     def discover(self, topics: TopicTypes) -> None:
-        """Forget the clock that nobody publishes any more."""
+        """Forget a clock that is no longer published."""
         if not self._node.count_publishers(TOPIC):
             self._comparison.clear()
             self.time = None
@@ -40,10 +40,10 @@ class ClockObserver:
         """Take what has arrived."""
         for data, information in self._polled.take(self._subscription, 1):
             clock = deserialize_message(data, Clock).clock  # pyright: ignore[reportAttributeAccessIssue]
-            # Up to a collection's period ago, which would show in the factor.
+            # It arrived up to one collection period ago, which would be visible in the factor.
             self._arrived_s = now_s - 1e-9 * (time.time_ns() - information["received_timestamp"])
             self._comparison.add(self._arrived_s, clock.sec + 1e-9 * clock.nanosec)
             self.time = self._comparison.result()
-        if self.time is not None and now_s - self._arrived_s > STANDS_STILL_S:
+        if self.time is not None and now_s - self._arrived_s > PAUSED_AFTER_S:
             self._comparison.add(now_s, self.time.time_s)
             self.time = self._comparison.result()

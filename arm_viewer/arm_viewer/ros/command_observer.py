@@ -1,4 +1,4 @@
-"""What active controllers are told, from the topics that say so."""
+"""Observe the commands to active controllers."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -10,27 +10,26 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64MultiArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import TopicTypes, topics_of
 from arm_viewer.ros.topic_reader import TopicReader
-from arm_viewer.ros.topic_types import topics_of
-from arm_viewer.snapshot import Controller
+from arm_viewer.snapshot import ListedController
 
 _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class CommandObserver:
-    """Keeps the newest command of every interface that an active controller claims.
+    """Keeps the latest command of every interface that an active controller claims.
 
-    By namespace: robots of one kind have joints of the same names.
+    Commands are kept by namespace, because robots of one kind have the same joint names.
     """
 
     def __init__(
         self,
         node: Node,
         polled: PolledSubscriptions,
-        controllers: Callable[[], tuple[Controller, ...]],
+        controllers: Callable[[], tuple[ListedController, ...]],
     ) -> None:
-        """Start to look at the controllers of that list."""
+        """Observe the controllers that `controllers` returns."""
         self._node = node
         self._polled = polled
         self._controllers = controllers
@@ -39,7 +38,7 @@ class CommandObserver:
         self.commands: Mapping[str, Mapping[str, float]] = MappingProxyType({})
 
     def discover(self, topics: TopicTypes) -> None:
-        """Follow the topics of active controllers; forget what others were told."""
+        """Follow the topics of active controllers; forget commands to other controllers."""
         active = [c for c in self._controllers() if c.state == "active"]
         self._forget_all_but({(c.namespace, name) for c in active for name in c.claimed})
         prefixes = [_prefix(controller) for controller in active]
@@ -58,34 +57,34 @@ class CommandObserver:
     def collect(self, now_s: float) -> None:
         """Take what has arrived."""
         for controller in self._controllers():
-            new = {**self._told_by_array(controller), **self._told_by_trajectory(controller)}
+            new = {**self._array_commands(controller), **self._trajectory_commands(controller)}
             if new:
                 namespace = controller.namespace
-                told = MappingProxyType({**self.commands.get(namespace, {}), **new})
-                self.commands = MappingProxyType({**self.commands, namespace: told})
+                commands = MappingProxyType({**self.commands.get(namespace, {}), **new})
+                self.commands = MappingProxyType({**self.commands, namespace: commands})
 
     def _forget_all_but(self, claimed: set[tuple[str, str]]) -> None:
         kept = {
-            namespace: {name: told[name] for name in told if (namespace, name) in claimed}
-            for namespace, told in self.commands.items()
+            namespace: {name: commands[name] for name in commands if (namespace, name) in claimed}
+            for namespace, commands in self.commands.items()
         }
         self.commands = MappingProxyType(kept)
 
-    def _told_by_array(self, controller: Controller) -> dict[str, float]:
+    def _array_commands(self, controller: ListedController) -> dict[str, float]:
         reader = self._arrays.get(f"{_prefix(controller)}/commands")
         message = reader.take_newest() if reader else None
-        # One of another length is refused by the controller.
+        # The controller refuses a message of another length.
         if message is None or len(message.data) != len(controller.claimed):
             return {}
         return dict(zip(controller.claimed, message.data, strict=True))
 
-    def _told_by_trajectory(self, controller: Controller) -> dict[str, float]:
+    def _trajectory_commands(self, controller: ListedController) -> dict[str, float]:
         reader = self._trajectories.get(f"{_prefix(controller)}/controller_state")
         message = reader.take_newest() if reader else None
         if message is None:
             return {}
         point = message.reference
-        told: dict[str, float] = {}
+        commands: dict[str, float] = {}
         for quantity, values in (
             ("position", point.positions),
             ("velocity", point.velocities),
@@ -93,14 +92,14 @@ class CommandObserver:
         ):
             # A controller that does not command a quantity leaves it empty.
             names = (f"{joint}/{quantity}" for joint in message.joint_names)
-            told.update(zip(names, values, strict=False))
-        return {name: value for name, value in told.items() if name in controller.claimed}
+            commands.update(zip(names, values, strict=False))
+        return {name: value for name, value in commands.items() if name in controller.claimed}
 
     def _reader(self, message_class: type, topic: str) -> TopicReader[Any]:
         return TopicReader(self._node, self._polled, message_class, topic, _QOS)
 
 
-def _prefix(controller: Controller) -> str:
+def _prefix(controller: ListedController) -> str:
     return f"{controller.namespace}/{controller.name}"
 
 

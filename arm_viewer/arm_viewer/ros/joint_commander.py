@@ -1,59 +1,149 @@
-"""Moves joints by whatever controllers are active on them."""
+"""Move joints through their active controllers."""
 
+import uuid
 from collections.abc import Callable
+from typing import Any
 
+from builtin_interfaces.msg import Duration
+from control_msgs.action import GripperCommand, ParallelGripperCommand
 from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64, Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from unique_identifier_msgs.msg import UUID
 
-from arm_viewer.joint_drive import DriveKind, JointDrive, joint_drives
-from arm_viewer.joint_move import plan_moves
+from arm_viewer.joint_move import DriveKind, JointDrive, JointMove, joint_drives, plan_moves
 from arm_viewer.requests import MoveJoints
-from arm_viewer.ros.command_topic import MESSAGES, CommandTopic
-from arm_viewer.ros.gripper_goals import ACTIONS, GripperGoals
-from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.topic_types import type_name, used_types
+from arm_viewer.ros.observer import TopicTypes, type_name, used_types
+from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.snapshot import Snapshot
+
+MESSAGES = {
+    DriveKind.POSITIONS: Float64MultiArray,
+    DriveKind.POSITION: Float64,
+    DriveKind.TRAJECTORY: JointTrajectory,
+}
+ACTIONS = {
+    DriveKind.GRIPPER: GripperCommand,
+    DriveKind.PARALLEL_GRIPPER: ParallelGripperCommand,
+}
+_QUEUE = 10
+
+
+class _PositionPublisher:
+    """Publishes moves; use it only in the executor's thread."""
+
+    def __init__(self, node: Node, drive: JointDrive) -> None:
+        """Create the publisher."""
+        self._node = node
+        self._publisher = node.create_publisher(MESSAGES[drive.kind], drive.name, _QUEUE)
+
+    def send(self, move: JointMove) -> None:
+        """Publish a move."""
+        self._publisher.publish(_message(move))
+
+    def close(self) -> None:
+        """Destroy the publisher."""
+        self._node.destroy_publisher(self._publisher)
+
+
+def _message(move: JointMove) -> Any:
+    positions = list(move.positions)
+    if move.drive.kind is DriveKind.POSITIONS:
+        return Float64MultiArray(data=positions)
+    if move.drive.kind is DriveKind.POSITION:
+        return Float64(data=positions[0])
+    seconds = int(move.duration_s)
+    nanoseconds = int((move.duration_s - seconds) * 1e9)
+    point = JointTrajectoryPoint(
+        positions=positions, time_from_start=Duration(sec=seconds, nanosec=nanoseconds)
+    )
+    return JointTrajectory(joint_names=list(move.drive.joints), points=[point])
+
+
+class _GripperGoals:
+    """Sends moves as goals; use it only in the executor's thread.
+
+    A slider sends more moves than the action can take, so only the latest move is kept while a goal
+    is unanswered. A goal is a call to one of the action's services. Its result is not needed,
+    because /joint_states shows the motion.
+    """
+
+    def __init__(self, node: Node, drive: JointDrive) -> None:
+        """Create the client."""
+        self._service_class: Any = ACTIONS[drive.kind].Impl.SendGoalService
+        self._service = ServiceCaller(node, self._service_class, f"{drive.name}/_action/send_goal")
+        self._waiting: JointMove | None = None
+
+    def send(self, move: JointMove) -> None:
+        """Send a move as soon as the previous one is answered."""
+        self._waiting = move
+        self._ask()
+
+    def close(self) -> None:
+        """Destroy the client."""
+        self._service.close()
+
+    def _ask(self) -> None:
+        if self._waiting is None:
+            return
+        request = self._service_class.Request(
+            goal_id=UUID(uuid=list(uuid.uuid4().bytes)), goal=_goal(self._waiting)
+        )
+        if self._service.ask(request, lambda _: self._ask()):
+            self._waiting = None
+
+
+def _goal(move: JointMove) -> Any:
+    (joint,), (position,) = move.drive.joints, move.positions
+    if move.drive.kind is DriveKind.PARALLEL_GRIPPER:
+        command = JointState(name=[joint], position=[position])
+        return ParallelGripperCommand.Goal(command=command)
+    goal = GripperCommand.Goal()
+    goal.command.position = position
+    return goal
 
 
 class JointCommander:
-    """Sends to the active controllers; used by the executor's thread alone.
+    """Sends moves to the active controllers; use it only in the executor's thread.
 
-    The ways there are made when a controller is seen to be active, before the first movement:
-    what is sent in the moment of the match may be lost.
+    Publishers and clients are created as soon as a controller is active, before the first move,
+    because a message sent at the moment of discovery may be lost.
     """
 
     def __init__(self, node: Node, latest: Callable[[], Snapshot]) -> None:
-        """Move what that snapshot shows."""
+        """Move the robots of the latest snapshot."""
         self._node = node
         self._latest = latest
-        self._ways: dict[tuple[str, DriveKind], CommandTopic | GripperGoals] = {}
+        self._senders: dict[tuple[str, DriveKind], _PositionPublisher | _GripperGoals] = {}
 
     def discover(self, topics: TopicTypes) -> None:
-        """Follow the controllers that are active."""
+        """Create and destroy senders as controllers become active and inactive."""
         snapshot = self._latest()
-        # The order of a controller's joints may be heard of later: no reason to begin anew.
+        # The order of a controller's joints may become known later; its sender stays.
         drives = {
             (drive.name, drive.kind): drive
             for namespace in {d.namespace for d in snapshot.descriptions.values()}
             for drive in joint_drives(snapshot.controllers, namespace)
         }
-        for key in self._ways.keys() - drives.keys():
-            self._ways.pop(key).close()
+        for key in self._senders.keys() - drives.keys():
+            self._senders.pop(key).close()
         used = used_types(self._node)
-        for key in drives.keys() - self._ways.keys():
+        for key in drives.keys() - self._senders.keys():
             name, kind = key
             if kind in ACTIONS or used.get(name) in (None, type_name(MESSAGES[kind])):
-                self._ways[key] = _way(self._node, drives[key])
+                self._senders[key] = _sender(self._node, drives[key])
 
     def collect(self, now_s: float) -> None:
-        """Take nothing: this one only sends."""
+        """Do nothing: this observer only sends."""
 
     def move(self, request: MoveJoints) -> None:
         """Send the positions to the controllers of their joints."""
         for move in plan_moves(self._latest(), request):
-            way = self._ways.get((move.drive.name, move.drive.kind))
-            if way is not None:
-                way.send(move)
+            sender = self._senders.get((move.drive.name, move.drive.kind))
+            if sender is not None:
+                sender.send(move)
 
 
-def _way(node: Node, drive: JointDrive) -> CommandTopic | GripperGoals:
-    return (GripperGoals if drive.kind in ACTIONS else CommandTopic)(node, drive)
+def _sender(node: Node, drive: JointDrive) -> _PositionPublisher | _GripperGoals:
+    return (_GripperGoals if drive.kind in ACTIONS else _PositionPublisher)(node, drive)

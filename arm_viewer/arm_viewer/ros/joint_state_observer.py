@@ -1,4 +1,4 @@
-"""The newest joint states of every topic whose last word is joint_states."""
+"""Observe joint states on all topics called joint_states, in any namespace."""
 
 import math
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.topic_family import TopicFamily
+from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import JointReading, JointStates
 
 WORD = "joint_states"
@@ -18,28 +18,52 @@ _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class JointStateObserver:
-    """Keeps the newest reading of every joint."""
+    """Keeps the latest reading of every published joint.
+
+    Attributes:
+        joint_states: joint states by topic.
+        lost: topics that no longer have joint states.
+    """
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
-        """Start to look."""
-        self._topics = TopicFamily(node, polled, JointState, WORD, _QOS)
+        """Subscribe in the root namespace."""
+        self._topics = TopicGroup(node, polled, JointState, WORD, _QOS)
+        self._received_s: dict[str, dict[str, float]] = {}
         self.joint_states: MappingProxyType[str, JointStates] = MappingProxyType({})
+        self.lost: frozenset[str] = frozenset()
 
     def discover(self, topics: TopicTypes) -> None:
         """Subscribe to new topics."""
         self._topics.discover(topics)
 
     def collect(self, now_s: float) -> None:
-        """Take what has arrived."""
+        """Take what has arrived, and forget what is outdated."""
         for reader in self._topics.readers():
             joints: dict[str, JointReading] = {}
             for message in reader.take_all():
                 joints.update(_read(message))
-            if joints:
-                known = self.joint_states.get(reader.topic)
-                before = {} if known is None else known.joints
-                states = JointStates(MappingProxyType({**before, **joints}), now_s)
-                self.joint_states = MappingProxyType({**self.joint_states, reader.topic: states})
+            received_s = self._received_s.setdefault(reader.topic, {})
+            received_s.update(dict.fromkeys(joints, now_s))
+            outdated_s = reader.outdated_before(now_s)
+            outdated = {name for name, at_s in received_s.items() if at_s < outdated_s}
+            if joints or outdated:
+                self._keep(reader.topic, joints, outdated, now_s)
+
+    def _keep(
+        self, topic: str, joints: dict[str, JointReading], outdated: set[str], now_s: float
+    ) -> None:
+        known = self.joint_states.get(topic)
+        before = {} if known is None else known.joints
+        kept = {name: r for name, r in {**before, **joints}.items() if name not in outdated}
+        received_s = now_s if joints or known is None else known.received_s
+        states = JointStates(MappingProxyType(kept), received_s)
+        by_topic = {**self.joint_states, topic: states}
+        if not kept:
+            del by_topic[topic]
+        for name in outdated:
+            del self._received_s[topic][name]
+        self.lost = (self.lost | self.joint_states.keys()) - by_topic.keys()
+        self.joint_states = MappingProxyType(by_topic)
 
 
 def _read(message: JointState) -> dict[str, JointReading]:

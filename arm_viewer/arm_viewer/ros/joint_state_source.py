@@ -1,12 +1,12 @@
-"""Publishes joint states of a robot that is not there, as the page's sliders say."""
+"""Publish joint states from the page's sliders, for a robot that is not running."""
 
 from collections.abc import Callable
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from arm_description.joint_publisher_settings import JointPublisherSettings
-from arm_description.joint_state_merge import JointStateMerge
+from arm_description.publishers.joint_publisher_settings import JointPublisherSettings
+from arm_description.publishers.joint_state_merge import JointStateMerge
 from arm_viewer.requests import MoveJoints
 from arm_viewer.snapshot import Description, Snapshot
 
@@ -15,14 +15,14 @@ _QUEUE = 10
 
 
 class JointStateSource:
-    """The page in the place of joint_state_publisher_gui, in its node's namespace.
+    """Replaces joint_state_publisher_gui in its node's namespace.
 
-    Publishes ten times a second, and at once where a slider moves. Used by the executor's thread
-    alone.
+    It publishes ten times a second, and immediately when a slider moves. Use it only in the
+    executor's thread.
     """
 
     def __init__(self, node: Node, latest: Callable[[], Snapshot]) -> None:
-        """Publish for the robot that the snapshot has in the node's namespace."""
+        """Publish for the snapshot's robot in the node's namespace."""
         self.namespace = node.get_namespace().rstrip("/")
         self._node = node
         self._latest = latest
@@ -55,4 +55,4 @@ class JointStateSource:
         self._described = described
         self._merge = None
         if described is not None and described.robot is not None:
-            self._merge = JointStateMerge(described.robot, JointPublisherSettings())
+            self._merge = JointStateMerge(described.robot.joints, JointPublisherSettings())

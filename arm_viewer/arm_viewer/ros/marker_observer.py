@@ -1,4 +1,4 @@
-"""The world's shapes, from topics whose last word is world_markers."""
+"""Observe the world's shapes on all topics called world_markers, in any namespace."""
 
 import math
 from types import MappingProxyType
@@ -10,13 +10,13 @@ from visualization_msgs.msg import Marker as MarkerMessage
 from visualization_msgs.msg import MarkerArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.frame_name import frame_name
+from arm_node.rigid_transform import RigidTransform
 from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.topic_family import TopicFamily
-from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
+from arm_viewer.ros.topic_reader import TopicGroup
+from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape, frame_name
 
 WORD = "world_markers"
-_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_QOS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _SHAPES = {
     MarkerMessage.CUBE: MarkerShape.BOX,
     MarkerMessage.SPHERE: MarkerShape.BALL,
@@ -27,11 +27,12 @@ _SHAPES = {
 
 
 class MarkerObserver:
-    """Keeps the newest marker of each name; other kinds of markers are passed over."""
+    """Keeps the latest marker of each name; unsupported types are left out."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
-        """Start to look."""
-        self._topics = TopicFamily(node, polled, MarkerArray, WORD, _QOS)
+        """Subscribe in the root namespace."""
+        self._topics = TopicGroup(node, polled, MarkerArray, WORD, _QOS)
+        self._received_s: dict[str, float] = {}
         self.markers: MappingProxyType[str, Marker] = MappingProxyType({})
 
     def discover(self, topics: TopicTypes) -> None:
@@ -39,17 +40,25 @@ class MarkerObserver:
         self._topics.discover(topics)
 
     def collect(self, now_s: float) -> None:
-        """Take what has arrived."""
+        """Take what has arrived, and forget what is outdated."""
         for reader in self._topics.readers():
-            message = reader.take_newest()
-            if message is not None:
-                markers = dict(self.markers)
-                for marker in message.markers:
-                    _take(markers, reader.topic, marker)
-                self.markers = MappingProxyType(markers)
+            received = [marker for message in reader.take_all() for marker in message.markers]
+            outdated_s = reader.outdated_before(now_s)
+            if not received and outdated_s < 0.0:
+                continue
+            markers = dict(self.markers)
+            for marker in received:
+                name = _take(markers, reader.topic, marker)
+                self._received_s[name] = now_s
+            for name in [name for name in markers if name.startswith(f"{reader.topic}/")]:
+                if self._received_s[name] < outdated_s:
+                    del markers[name]
+            self._received_s = {name: self._received_s[name] for name in markers}
+            self.markers = MappingProxyType(markers)
 
 
-def _take(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> None:
+def _take(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> str:
+    """Apply a marker message, and return the name of its marker."""
     name = f"{topic}/{message.ns}/{message.id}"
     if message.action == MarkerMessage.DELETEALL:
         for known in [known for known in markers if known.startswith(f"{topic}/")]:
@@ -60,6 +69,7 @@ def _take(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> Non
         marker = _read(message)
         if marker is not None:
             markers[name] = marker
+    return name
 
 
 def _read(message: MarkerMessage) -> Marker | None:
@@ -73,4 +83,4 @@ def _read(message: MarkerMessage) -> Marker | None:
     points = np.array([(p.x, p.y, p.z) for p in message.points], dtype=np.float32)
     look = MarkerLook(_SHAPES[message.type], scale, rgba, message.mesh_resource, points.tobytes())
     x, y, z, w = (component / length for component in rotation)
-    return Marker(look, frame_name(message.header.frame_id), position, (x, y, z, w))
+    return Marker(look, frame_name(message.header.frame_id), RigidTransform(position, (x, y, z, w)))

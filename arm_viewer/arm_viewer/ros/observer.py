@@ -1,23 +1,51 @@
-"""What everything has that looks at topics or services for the page."""
+"""The interface of every observer of topics or services, and shared look-ups of topic types."""
 
-from collections.abc import Mapping, Sequence
-from typing import Protocol
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Protocol
+
+from rclpy.node import Node
+from rclpy.subscription import Subscription
 
 TopicTypes = Mapping[str, Sequence[str]]
-"""The types of every topic that anybody knows, by name."""
+"""The types of every topic in the graph, by name."""
+
+_OF_RCL = {"/rosout": "rcl_interfaces/msg/Log"}
+"""Endpoints that rcl makes for every node, which rclpy does not list."""
 
 
 class Observer(Protocol):
-    """Watches one kind of thing; used by the executor's thread alone.
+    """Observes one aspect of the graph; used only in the executor's thread.
 
-    What it has seen it offers as frozen data under a name of its own; the node puts these together
-    to a snapshot.
+    Each observer offers its findings as frozen data in an attribute. The node combines them in a
+    snapshot.
     """
 
     def discover(self, topics: TopicTypes) -> None:
-        """Look for what has come or gone; called once a second."""
+        """Look for new and disappeared topics or services; called once a second."""
         ...
 
     def collect(self, now_s: float) -> None:
-        """Take what has arrived since the last time; called 30 times a second."""
+        """Take the messages that have arrived since the last call; called 30 times a second."""
         ...
+
+
+def type_name(message_class: type) -> str:
+    """Return the type name of a message class in the graph, such as "std_msgs/msg/String"."""
+    package, kind = message_class.__module__.split(".")[:2]
+    return f"{package}/{kind}/{message_class.__name__}"
+
+
+def used_types(node: Node, excluded: Collection[Subscription] = ()) -> dict[str, str]:
+    """Return the types of the topics on which a node has endpoints, without excluded ones."""
+    ends: list[Any] = [*node.publishers, *(s for s in node.subscriptions if s not in excluded)]
+    return _OF_RCL | {end.topic_name: type_name(end.msg_type) for end in ends}
+
+
+def topics_of(message_class: type, topics: TopicTypes, node: Node) -> set[str]:
+    """Return the topics that have this type and that the node does not use with another type."""
+    wanted, used = type_name(message_class), used_types(node)
+    return {
+        topic
+        for topic, types in topics.items()
+        if wanted in types and used.get(topic, wanted) == wanted
+    }

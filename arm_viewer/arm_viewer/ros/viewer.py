@@ -1,16 +1,17 @@
-"""The node arm_viewer: looks at topics and services for the page, and does what it asks."""
+"""The node arm_viewer: observes topics and services for the page, and serves its requests."""
 
 import logging
 import time
 from queue import Empty, SimpleQueue
-from typing import Any
 
-from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.context import Context
 from rclpy.node import Node
 
-from arm_description.names import listing
+from arm_node.names import listing
+from arm_node.parameter_values import read_flag, read_text, read_whole
+from arm_node.parameters import declare
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.printable import printable
 from arm_viewer.requests import (
     Configure,
     MeasureRates,
@@ -19,22 +20,20 @@ from arm_viewer.requests import (
     ShowPictures,
     SwitchControllers,
 )
-from arm_viewer.ros.camera_observer import CameraObserver
+from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
-from arm_viewer.ros.controller_observer import ControllerObserver
+from arm_viewer.ros.controller_observer import ControllerObserver, ManagerCaller
 from arm_viewer.ros.description_observer import DescriptionObserver
-from arm_viewer.ros.image_observer import ImageObserver
+from arm_viewer.ros.graph_observer import NodeObserver, TopicObserver
+from arm_viewer.ros.hardware_observer import HardwareObserver
 from arm_viewer.ros.joint_commander import JointCommander
 from arm_viewer.ros.joint_state_observer import JointStateObserver
 from arm_viewer.ros.joint_state_source import JointStateSource
-from arm_viewer.ros.manager_caller import ManagerCaller
 from arm_viewer.ros.marker_observer import MarkerObserver
-from arm_viewer.ros.node_observer import NodeObserver
 from arm_viewer.ros.observer import Observer
-from arm_viewer.ros.topic_observer import TopicObserver
 from arm_viewer.ros.transform_observer import TransformObserver
-from arm_viewer.snapshot import Controller, Snapshot
+from arm_viewer.snapshot import ListedController, Snapshot
 
 TICK_S = 1.0 / 30.0
 DISCOVERY_PERIOD_S = 1.0
@@ -42,18 +41,26 @@ DEFAULT_PORT = 8080
 
 
 class Viewer(Node):
-    """Everything of ROS happens in the executor's thread; `latest` and `send` suit any thread."""
+    """All ROS work happens in the executor's thread; any thread may call `latest` and `send`."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("arm_viewer", context=context)
-        self.port: int = self._parameter("port", DEFAULT_PORT, "of the page, on 127.0.0.1")
-        displays: bool = self._parameter(
-            "publish_joint_states", False, "by the sliders, for a robot that is not there"
+        self.port = declare(self, "port", DEFAULT_PORT, read_whole, "page's port on 127.0.0.1")
+        self.display_config = declare(
+            self, "display_config", "", read_text, "RViz configuration that the page shows first"
+        )
+        displays = declare(
+            self,
+            "publish_joint_states",
+            False,
+            read_flag,
+            "publish joint states from the sliders, for a robot that is not running",
         )
         polled = PolledSubscriptions(self)
         self._descriptions = DescriptionObserver(self, polled)
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
+        self._hardware = HardwareObserver(self, polled)
         self._images = ImageObserver(self, polled)
         self._cameras = CameraObserver(self, polled)
         self._markers = MarkerObserver(self, polled)
@@ -69,6 +76,7 @@ class Viewer(Node):
             self._descriptions,
             self._transforms,
             self._joint_states,
+            self._hardware,
             self._images,
             self._cameras,
             self._markers,
@@ -80,7 +88,7 @@ class Viewer(Node):
             self._topics,
             self._nodes,
         )
-        self._said: set[str] = set()
+        self._logged: set[str] = set()
         self._latest = Snapshot()
         self._requests: SimpleQueue[Request] = SimpleQueue()
         self._request_waits = self.create_guard_condition(self._serve)
@@ -88,18 +96,13 @@ class Viewer(Node):
         self.create_timer(DISCOVERY_PERIOD_S, self._discover)
 
     def latest(self) -> Snapshot:
-        """Return what is known by now; from any thread."""
+        """Return the latest snapshot; from any thread."""
         return self._latest
 
     def send(self, request: Request) -> None:
-        """Have a request served at once; from any thread."""
+        """Serve a request as soon as possible; from any thread."""
         self._requests.put(request)
         self._request_waits.trigger()
-
-    def _parameter(self, name: str, default: Any, description: str) -> Any:
-        return self.declare_parameter(
-            name, default, ParameterDescriptor(description=description)
-        ).value
 
     def _discover(self) -> None:
         topics = dict(self.get_topic_names_and_types())
@@ -107,30 +110,36 @@ class Viewer(Node):
             try:
                 observer.discover(topics)
             except Exception as error:
-                # The discovery's last frame: one observer that fails must not stop the others.
+                # The discovery's top-level handler: a failing observer must not stop the others.
                 failed = f"{type(observer).__name__} failed: {error}"
                 if self._is_new(failed):
                     logging.getLogger(__name__).exception(failed)
         for topic, types in topics.items():
-            clash = f"{topic} has several types ({listing(types)}): the page takes one at most"
+            clash = f"{topic} has several types ({listing(types)}): the page uses at most one"
             if len(types) > 1 and self._is_new(clash):
-                self.get_logger().warning(clash)
+                self.get_logger().warning(printable(clash))
 
     def _is_new(self, message: str) -> bool:
-        """Return whether a message has not been said yet; from now on it has."""
-        is_new = message not in self._said
-        self._said.add(message)
+        """Return whether a message is new, and record it."""
+        is_new = message not in self._logged
+        self._logged.add(message)
         return is_new
 
     def _collect(self) -> None:
         now_s = time.monotonic()
+        described = self._descriptions.descriptions
         for observer in self._observers:
             observer.collect(now_s)
+        if self._descriptions.descriptions is not described:
+            # Frames of the previous description's links may remain.
+            self._transforms.expect_again(now_s)
         self._latest = Snapshot(
             made_s=now_s,
             descriptions=self._descriptions.descriptions,
             transforms=self._transforms.transforms,
             joint_states=self._joint_states.joint_states,
+            hardware_positions=self._hardware.positions,
+            lost=self._descriptions.lost | self._joint_states.lost,
             image_topics=self._images.topics,
             pictures=self._images.pictures,
             cameras=self._cameras.views,
@@ -162,5 +171,5 @@ class Viewer(Node):
                 case MeasureRates():
                     self._topics.measure(request.wanted)
 
-    def _listed(self) -> tuple[Controller, ...]:
+    def _listed(self) -> tuple[ListedController, ...]:
         return self._controllers.controllers

@@ -1,1 +1,1 @@
-"""What stands in the 3D view."""
+"""The 3D view: robots, frames, cameras, the world, and the first view."""

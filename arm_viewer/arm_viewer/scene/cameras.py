@@ -1,4 +1,4 @@
-"""The cameras in the 3D view: what each of them sees, as the edges of a pyramid."""
+"""The cameras in the 3D view, drawn as frustums."""
 
 from collections.abc import Mapping
 
@@ -6,20 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import LineSegmentsHandle, SceneApi
 
-from arm_viewer.scene.frames import Frames
-from arm_viewer.scene.node_name import node_name
+from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.snapshot import CameraView
 
 DEPTH_M = 0.12
-"""From the camera to the rectangle that stands for its picture."""
+"""Distance from the camera to the rectangle that represents its image."""
 MARK = 0.12
-"""Height of the triangle on the picture's upper edge, as a share of the picture's height."""
+"""Height of the triangle on the image's upper edge, as a fraction of the image's height."""
 COLOUR = (150, 165, 185)
 LINE_M = 0.001
 
 
 class Cameras:
-    """Keeps a pyramid below every camera's optical frame; use it in viser's event loop."""
+    """Draws a frustum in every camera's optical frame; use it in viser's event loop."""
 
     def __init__(self, scene: SceneApi, frames: Frames) -> None:
         """Draw into this scene, below these frames."""
@@ -28,11 +27,11 @@ class Cameras:
         self._handles: dict[CameraView, LineSegmentsHandle] = {}
 
     def update(self, views: Mapping[str, CameraView], shown: bool) -> None:
-        """Draw what is new, remove what is gone, and show or hide all.
+        """Draw new cameras, remove old ones, and show or hide all.
 
         Args:
-            views: by topic; one that several topics tell of is drawn once.
-            shown: whether they are to be seen.
+            views: the cameras by topic; a camera with several topics is drawn once.
+            shown: whether cameras are visible.
         """
         wanted = {view: topic for topic, view in views.items()} if shown else {}
         for view in self._handles.keys() - wanted:
@@ -47,21 +46,21 @@ class Cameras:
 
 
 def frustum(view: CameraView) -> NDArray[np.float32]:
-    """Return the lines (n, 2, 3) from a camera to its picture's corners, around it, and what is up.
+    """Return the lines (n, 2, 3) of a camera's frustum, with a triangle on its upper edge.
 
-    In m in the optical frame, of which z looks forward and y down (REP 103).
+    In m in the optical frame, whose z axis points forward and y axis down (REP 103).
     """
     width, height = view.width, view.height
     corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
     roof = [(0.4 * width, 0.0), (0.5 * width, -MARK * height), (0.6 * width, 0.0)]
-    around = [_seen_at(view, *pixel) for pixel in corners]
-    lines = [((0.0, 0.0, 0.0), corner) for corner in around]
-    lines += zip(around, [*around[1:], around[0]], strict=True)
-    left, top, right = (_seen_at(view, *pixel) for pixel in roof)
+    rim = [_point_at(view, *pixel) for pixel in corners]
+    lines = [((0.0, 0.0, 0.0), corner) for corner in rim]
+    lines += zip(rim, [*rim[1:], rim[0]], strict=True)
+    left, top, right = (_point_at(view, *pixel) for pixel in roof)
     return np.array([*lines, (left, top), (top, right)], dtype=np.float32)
 
 
-def _seen_at(view: CameraView, u: float, v: float) -> tuple[float, float, float]:
-    """Return the point that is seen at a pixel, DEPTH_M in front of the camera."""
+def _point_at(view: CameraView, u: float, v: float) -> tuple[float, float, float]:
+    """Return the point at a pixel, DEPTH_M in front of the camera."""
     (fx, fy), (cx, cy) = view.focal_lengths, view.centre
     return DEPTH_M * (u - cx) / fx, DEPTH_M * (v - cy) / fy, DEPTH_M

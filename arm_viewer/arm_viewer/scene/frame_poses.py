@@ -1,31 +1,21 @@
-"""Where frames are in the root of their tree, from where each is in its parent."""
+"""Poses of frames in the root of their tree, from /tf or assumed while /tf lacks them."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Container, Mapping
 
+import numpy as np
+
+from arm_description.kinematics.forward import forward_kinematics, resolve_mimics
+from arm_description.transforms import quaternion_from_rpy, rpy_from_rotation
+from arm_description.urdf.joint_type import JointType
+from arm_description.urdf.robot import Joint, Robot
+from arm_node.rigid_transform import RigidTransform
 from arm_viewer.snapshot import Transform
 
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
 
-
-@dataclass(frozen=True, slots=True)
-class FramePose:
-    """Position in m and the unit quaternion (x, y, z, w) of a frame in its root."""
-
-    position: Vector = (0.0, 0.0, 0.0)
-    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
-
-    def then(self, step: Transform) -> "FramePose":
-        """Return the pose of a frame that `step` puts into this one."""
-        x, y, z = rotated(self.rotation, step.position)
-        px, py, pz = self.position
-        return FramePose((px + x, py + y, pz + z), product(self.rotation, step.rotation))
-
-
-def frame_poses(transforms: Mapping[str, Transform]) -> dict[str, FramePose]:
-    """Return the pose of every frame, roots included; frames in a circle have none."""
-    poses: dict[str, FramePose] = {}
+def frame_poses(transforms: Mapping[str, Transform]) -> dict[str, RigidTransform]:
+    """Return the pose of every frame, including roots; frames in a loop have no pose."""
+    poses: dict[str, RigidTransform] = {}
     for frame in transforms:
         chain: dict[str, Transform] = {}
         while frame not in poses and frame in transforms and frame not in chain:
@@ -33,32 +23,54 @@ def frame_poses(transforms: Mapping[str, Transform]) -> dict[str, FramePose]:
             frame = transforms[frame].parent
         if frame in chain:
             continue
-        pose = poses.setdefault(frame, FramePose())
+        pose = poses.setdefault(frame, RigidTransform())
         for child, step in reversed(chain.items()):
-            pose = poses[child] = pose.then(step)
+            pose = poses[child] = pose.then(step.pose)
     return poses
 
 
-def product(first: Quaternion, second: Quaternion) -> Quaternion:
-    """Return the quaternion that turns by `second`, then by `first`."""
-    x, y, z, w = first
-    a, b, c, d = second
-    return (
-        w * a + x * d + y * c - z * b,
-        w * b - x * c + y * d + z * a,
-        w * c + x * b - y * a + z * d,
-        w * d - x * a - y * b - z * c,
-    )
+def assumed_transforms(
+    robot: Robot,
+    places: Mapping[str, str],
+    initial: Mapping[str, float],
+    known: Container[str],
+) -> dict[str, Transform]:
+    """Return the transforms that /tf lacks, by child frame, with joints at their initial positions.
+
+    Args:
+        robot: the robot.
+        places: the frame of each link.
+        initial: initial joint positions, rad or m; other joints are at 0, or at the nearest limit
+            if 0 is outside their limits.
+        known: the frames that have a transform to their parent.
+    """
+    missing = [joint for joint in robot.joints if places[joint.child] not in known]
+    if not missing:
+        return {}
+    free = {j.name: _start(j, initial) for j in robot.joints if j.mimic is None}
+    poses = forward_kinematics(robot, resolve_mimics(robot, free))
+    transforms: dict[str, Transform] = {}
+    for joint in missing:
+        step = np.linalg.inv(poses[joint.parent]) @ poses[joint.child]
+        x, y, z = step[:3, 3].tolist()
+        qx, qy, qz, qw = quaternion_from_rpy(rpy_from_rotation(step[:3, :3])).tolist()
+        parent = places[joint.parent]
+        pose = RigidTransform((x, y, z), (qx, qy, qz, qw))
+        transforms[places[joint.child]] = Transform(parent, pose)
+    return transforms
 
 
-def rotated(rotation: Quaternion, vector: Vector) -> Vector:
-    """Return a vector turned by a unit quaternion."""
-    x, y, z, w = rotation
-    a, b, c = vector
-    # v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part.
-    p, q, r = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
-    return (
-        a + w * p + y * r - z * q,
-        b + w * q + z * p - x * r,
-        c + w * r + x * q - y * p,
-    )
+def unknown_joints(robot: Robot, places: Mapping[str, str], known: Container[str]) -> list[str]:
+    """Return the moving joints that /tf has no transform for."""
+    return [
+        joint.name
+        for joint in robot.joints
+        if joint.type is not JointType.FIXED and places[joint.child] not in known
+    ]
+
+
+def _start(joint: Joint, initial: Mapping[str, float]) -> float:
+    position = initial.get(joint.name, 0.0)
+    if joint.limit is not None and joint.type.needs_limit:
+        position = min(max(position, joint.limit.lower), joint.limit.upper)
+    return position if math.isfinite(position) else 0.0

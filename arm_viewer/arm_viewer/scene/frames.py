@@ -1,42 +1,48 @@
-"""The frames of /tf in the 3D view; what belongs to a frame hangs below it."""
+"""The frames of /tf in the 3D view; shapes are children of their frames."""
 
 from collections.abc import Mapping
 
 from viser import FrameHandle, LabelHandle, SceneApi
 
-from arm_viewer.scene.frame_poses import FramePose, frame_poses
-from arm_viewer.scene.node_name import node_name
+from arm_node.rigid_transform import RigidTransform
+from arm_viewer.scene.frame_poses import frame_poses
 from arm_viewer.snapshot import Transform
+
+
+def node_name(name: str) -> str:
+    """Return a name for a single scene node; a slash would create nested nodes."""
+    return name.replace("/", "\N{DIVISION SLASH}")
+
 
 AXES_LENGTH, AXES_RADIUS = 0.06, 0.0018
 NO_MOTION = 1e-6
-"""m, or of a quaternion's component: less than this is not sent."""
+"""A smaller change, in m or of a quaternion's component, is not sent."""
 
 
 class Frames:
-    """Keeps every frame where the transforms say; use it in viser's event loop.
+    """Draws every frame at its transform; use it in viser's event loop.
 
-    The frames stand beside each other, not below their parents: a parent that comes late or changes
-    leaves what hangs below a frame alone. A frame without a transform is not shown.
+    The scene nodes of frames are siblings and not nested like the frames, so that a parent that
+    arrives late or changes does not affect them. A frame without a transform is hidden.
     """
 
     def __init__(self, scene: SceneApi) -> None:
         """Start without frames."""
         self._scene = scene
         self._seen: Mapping[str, Transform] = {}
-        self._poses: dict[str, FramePose] = {}
+        self._poses: dict[str, RigidTransform] = {}
         self._handles: dict[str, FrameHandle] = {}
         self._names: dict[str, LabelHandle] = {}
         self._axes_shown = False
         self._names_shown = False
 
     @property
-    def known(self) -> Mapping[str, FramePose]:
-        """The frames that have a place."""
+    def known(self) -> Mapping[str, RigidTransform]:
+        """The frames that have a pose."""
         return self._poses
 
     def path(self, frame: str) -> str:
-        """Return the scene's name of a frame, under which shapes may be hung."""
+        """Return the scene path of a frame, below which shapes can be added."""
         if frame not in self._handles:
             self._handles[frame] = self._scene.add_frame(
                 _path(frame),
@@ -49,7 +55,7 @@ class Frames:
         return _path(frame)
 
     def update(self, transforms: Mapping[str, Transform]) -> None:
-        """Move the frames to where they are."""
+        """Move the frames to their transforms."""
         if transforms is self._seen:
             return
         self._seen = transforms
@@ -97,7 +103,7 @@ def _path(frame: str) -> str:
     return f"/frames/{node_name(frame)}"
 
 
-def _differ(first: FramePose, second: FramePose) -> bool:
+def _differ(first: RigidTransform, second: RigidTransform) -> bool:
     return any(
         abs(a - b) > NO_MOTION
         for a, b in zip(

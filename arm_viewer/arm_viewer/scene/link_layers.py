@@ -1,17 +1,17 @@
-"""What can be shown of a link, each drawn below the link's frame."""
+"""The drawable layers of a link: visuals, collisions, mass and inertia."""
 
 import logging
 import math
 from collections.abc import Callable, Iterator
 
+import numpy as np
 from viser import SceneApi, SceneNodeHandle
 
 from arm_description.errors import DescriptionError
-from arm_description.mesh_data import Color, MeshData
-from arm_description.robot import Collision, Link, Pose, Visual
+from arm_description.mesh.data import Color, MeshData
 from arm_description.transforms import quaternion_from_rpy
-from arm_viewer.scene.frame_poses import product
-from arm_viewer.scene.inertia_ellipsoid import inertia_ellipsoid
+from arm_description.urdf.robot import Collision, Inertial, Link, Pose, Visual
+from arm_node.rigid_transform import Quaternion, Vector, quaternion_product
 from arm_viewer.scene.triangles import edges, problem_of, smooth, triangles
 
 VISUAL_COLOR: Color = (0.62, 0.65, 0.69, 1.0)
@@ -21,19 +21,62 @@ MASS_COLOR = (255, 120, 90)
 INERTIA_COLOR = (90, 190, 255)
 INERTIA_OPACITY = 0.45
 LEAD_DENSITY = 11340.0
-"""kg/m^3: a mass is shown as a ball of lead, as in RViz."""
+"""Density in kg/m^3 for drawing a mass as a ball of lead, as in RViz."""
 
-Complain = Callable[[str], None]
-"""Takes a line about what of a link cannot be drawn."""
-Quaternion = tuple[float, float, float, float]
+ReportProblem = Callable[[str], None]
+"""Takes a line about a part of a link that cannot be drawn."""
+
+
+def inertia_ellipsoid(inertial: Inertial) -> tuple[Vector, Quaternion] | None:
+    """Return the ellipsoid's semi-axes in m, and their rotation in the frame of the inertial.
+
+    A solid ellipsoid with the semi-axes a, b, c has Ixx = m (b^2 + c^2) / 5 and so on, hence
+    a^2 = 5 (Iyy + Izz - Ixx) / 2 m. The rotation is a unit quaternion (x, y, z, w).
+
+    Returns:
+        None if the inertia is impossible: no mass, or a moment above the sum of the others.
+    """
+    ixx, ixy, ixz, iyy, iyz, izz = inertial.inertia
+    values = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+    if not (inertial.mass > 0.0 and np.isfinite(values).all()):
+        return None
+    moments, axes = np.linalg.eigh(values)
+    squares = 2.5 * (moments.sum() - 2.0 * moments) / inertial.mass
+    # A rod or a plate is the limiting case, and rounding may make it slightly impossible.
+    if squares.min() < -1e-9 * max(squares.max(), 0.0) or squares.max() <= 0.0:
+        return None
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 2] = -axes[:, 2]
+    a, b, c = np.sqrt(np.maximum(squares, 0.0)).tolist()
+    return (a, b, c), _quaternion(axes)
+
+
+def _quaternion(rotation: np.ndarray) -> Quaternion:
+    """Return the quaternion of a rotation matrix by Shepperd's method."""
+    trace = float(np.trace(rotation))
+    diagonal = [float(rotation[i, i]) for i in range(3)]
+    i = int(np.argmax([*diagonal, trace]))
+    q = [0.0, 0.0, 0.0, 0.0]
+    if i == 3:
+        q[3] = 1.0 + trace
+        for k in range(3):
+            q[k] = float(rotation[(k + 2) % 3, (k + 1) % 3] - rotation[(k + 1) % 3, (k + 2) % 3])
+    else:
+        j, k = (i + 1) % 3, (i + 2) % 3
+        q[i] = 1.0 - trace + 2.0 * diagonal[i]
+        q[j] = float(rotation[j, i] + rotation[i, j])
+        q[k] = float(rotation[k, i] + rotation[i, k])
+        q[3] = float(rotation[k, j] - rotation[j, k])
+    x, y, z, w = (component / math.hypot(*q) for component in q)
+    return x, y, z, w
 
 
 def draw_visuals(
-    scene: SceneApi, path: str, link: Link, complain: Complain
+    scene: SceneApi, path: str, link: Link, report_problem: ReportProblem
 ) -> Iterator[SceneNodeHandle]:
-    """Draw what the link looks like; each handle has an opacity, None where it is solid."""
+    """Draw the link's visuals; each handle has an opacity, None if it is solid."""
     for i, visual in enumerate(link.visuals):
-        for k, mesh in enumerate(_parts(link, visual, complain)):
+        for k, mesh in enumerate(_parts(link, visual, report_problem)):
             red, green, blue, alpha = _color(visual) or mesh.rgba or VISUAL_COLOR
             drawn = smooth(mesh)
             yield scene.add_mesh_simple(
@@ -43,17 +86,19 @@ def draw_visuals(
                 color=(red, green, blue),
                 opacity=None if alpha >= 1.0 else alpha,
                 side="double",
+                # The shadow map is too coarse for small objects and would draw stripes on them.
+                receive_shadow=False,
                 position=visual.origin.xyz,
                 wxyz=_wxyz(visual.origin),
             )
 
 
 def draw_collisions(
-    scene: SceneApi, path: str, link: Link, complain: Complain
+    scene: SceneApi, path: str, link: Link, report_problem: ReportProblem
 ) -> Iterator[SceneNodeHandle]:
-    """Draw the edges of what the link is touched by."""
+    """Draw the edges of the link's collision shapes."""
     for i, collision in enumerate(link.collisions):
-        for k, mesh in enumerate(_parts(link, collision, complain)):
+        for k, mesh in enumerate(_parts(link, collision, report_problem)):
             yield scene.add_line_segments(
                 f"{path}/collision_{i}_{k}",
                 edges(mesh),
@@ -65,7 +110,7 @@ def draw_collisions(
 
 
 def draw_mass(
-    scene: SceneApi, path: str, link: Link, complain: Complain
+    scene: SceneApi, path: str, link: Link, report_problem: ReportProblem
 ) -> Iterator[SceneNodeHandle]:
     """Draw a ball at the link's centre of mass."""
     if link.inertial is not None and link.inertial.mass > 0.0:
@@ -79,14 +124,14 @@ def draw_mass(
 
 
 def draw_inertia(
-    scene: SceneApi, path: str, link: Link, complain: Complain
+    scene: SceneApi, path: str, link: Link, report_problem: ReportProblem
 ) -> Iterator[SceneNodeHandle]:
     """Draw the solid ellipsoid of the link's mass and inertia."""
     ellipsoid = None if link.inertial is None else inertia_ellipsoid(link.inertial)
     if link.inertial is not None and ellipsoid is not None:
-        axes, turned = ellipsoid
-        a, b, c, d = quaternion_from_rpy(link.inertial.origin.rpy).tolist()
-        x, y, z, w = product((a, b, c, d), turned)
+        axes, rotation = ellipsoid
+        turned = quaternion_from_rpy(link.inertial.origin.rpy).tolist()
+        x, y, z, w = quaternion_product(turned, rotation)
         yield scene.add_icosphere(
             f"{path}/inertia",
             radius=1.0,
@@ -98,12 +143,14 @@ def draw_inertia(
         )
 
 
-def _parts(link: Link, shape: Visual | Collision, complain: Complain) -> tuple[MeshData, ...]:
+def _parts(
+    link: Link, shape: Visual | Collision, report_problem: ReportProblem
+) -> tuple[MeshData, ...]:
     try:
         return triangles(shape.geometry)
     except DescriptionError as error:
-        logging.getLogger(__name__).warning("link '%s' is not whole: %s", link.name, error)
-        complain(f"link '{link.name}': {problem_of(error)}")
+        logging.getLogger(__name__).warning("link '%s' is incomplete: %s", link.name, error)
+        report_problem(f"link '{link.name}': {problem_of(error)}")
         return ()
 
 

@@ -4,21 +4,26 @@ import logging
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 from viser import FrameHandle, SceneApi
 
 from arm_description.errors import DescriptionError
-from arm_description.mesh_data import MeshData, merged
-from arm_description.robot import Box, Cylinder, Mesh, Sphere
-from arm_viewer.scene.frame_poses import FramePose
-from arm_viewer.scene.frames import Frames
-from arm_viewer.scene.node_name import node_name
+from arm_description.mesh.data import MeshData, merged
+from arm_description.urdf.robot import Box, Cylinder, Mesh, Sphere
+from arm_description.view_fitting import Body, body_of
+from arm_node.rigid_transform import RigidTransform, rotated
+from arm_viewer.scene.frames import Frames, node_name
+from arm_viewer.scene.obstacles import Obstacles
 from arm_viewer.scene.triangles import smooth, triangles
-from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape, Transform
+from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
 
 ROOT = "/world"
-ORIGIN = FramePose()
+ORIGIN = RigidTransform()
 GROUND_M, GROUND_THICKNESS_M = 5.0, 0.05
-"""A box so long and wide, and so thin, is taken for the ground."""
+"""A box at least this long and wide, and thinner than this, counts as ground."""
+OPAQUE = 0.9
+AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+Matrix = NDArray[np.float64]
 _SOLIDS = {
     MarkerShape.BOX: Box((1.0, 1.0, 1.0)),
     MarkerShape.BALL: Sphere(0.5),
@@ -27,39 +32,58 @@ _SOLIDS = {
 
 
 class Markers:
-    """Keeps the markers where they are said to be; use it in viser's event loop."""
+    """Draws the markers at their poses; use it in viser's event loop."""
 
     def __init__(self, scene: SceneApi, frames: Frames) -> None:
         """Draw into this scene, in these frames."""
         self._scene = scene
         self._frames = frames
         self._seen: Mapping[str, Marker] = {}
-        self._origins: dict[str, FramePose] = {}
+        self._origins: dict[str, RigidTransform] = {}
         self._handles: dict[str, FrameHandle] = {}
         self._root = scene.add_frame(ROOT, show_axes=False)
 
     def show(self, shown: bool) -> None:
-        """Show or hide them all."""
+        """Show or hide all markers."""
         self._root.visible = shown
 
     def update(self, markers: Mapping[str, Marker]) -> None:
-        """Draw what is new, move what has moved, remove what is gone."""
+        """Draw new markers, move changed ones and remove old ones."""
         for name in self._handles.keys() - markers.keys():
             self._handles.pop(name).remove()
         for name, marker in markers.items():
             before = self._seen.get(name)
-            # A frame without a transform is taken for the root, which the world's frame is.
+            # A frame without a transform counts as the root, because the world frame is the root.
             origin = self._frames.known.get(marker.frame, ORIGIN)
             if before is marker and self._origins[name] is origin:
                 continue
             if before is None or before.look != marker.look:
                 self._draw(name, marker.look)
             self._origins[name] = origin
-            pose = origin.then(Transform(marker.frame, marker.position, marker.rotation))
+            pose = origin.then(marker.pose)
             x, y, z, w = pose.rotation
             self._handles[name].position = pose.position
             self._handles[name].wxyz = (w, x, y, z)
         self._seen = markers
+
+    def bodies(self) -> tuple[list[Body], Obstacles]:
+        """Return the bodies of the markers, without the ground, and the obstacles to the view."""
+        bodies: list[Body] = []
+        boxes: list[tuple[Matrix, Matrix, Matrix, Matrix]] = []
+        for name, marker in self._seen.items():
+            turn, move = _matrix(self._origins[name].then(marker.pose))
+            for part in _parts(name, marker.look):
+                points = part.vertices * marker.look.scale
+                low, high = points.min(axis=0), points.max(axis=0)
+                is_mesh = marker.look.shape in (MarkerShape.MESH, MarkerShape.TRIANGLES)
+                placed = points @ turn.T + move
+                faces = placed[part.faces] if is_mesh else np.empty((0, 3, 3))
+                bodies.append(body_of(placed))
+                # Transparent shapes hide nothing.
+                if marker.look.rgba[3] >= OPAQUE:
+                    boxes.append((turn, turn @ (low + high) / 2 + move, (high - low) / 2, faces))
+        turns, centres, halves = (np.array([box[i] for box in boxes]) for i in range(3))
+        return bodies, Obstacles(turns, centres, halves, [box[3] for box in boxes])
 
     def _draw(self, name: str, look: MarkerLook) -> None:
         if name in self._handles:
@@ -76,11 +100,19 @@ class Markers:
                 color=(red, green, blue),
                 opacity=None if alpha >= 1.0 else alpha,
                 side="double",
+                # The shadow map is too coarse for small objects and would draw stripes on them.
+                receive_shadow=False,
             )
 
 
+def _matrix(pose: RigidTransform) -> tuple[Matrix, Matrix]:
+    """Return the rotation (3, 3) and the position (3,) of a pose."""
+    axes = [rotated(pose.rotation, axis) for axis in AXES]
+    return np.array(axes).T, np.array(pose.position)
+
+
 def _is_ground(look: MarkerLook) -> bool:
-    """Return whether it is the ground, for which the page has its grid."""
+    """Return whether it is the ground, which the page draws as a grid."""
     length, width, height = look.scale
     is_wide = min(length, width) >= GROUND_M
     return look.shape is MarkerShape.BOX and is_wide and height < GROUND_THICKNESS_M
@@ -91,7 +123,7 @@ def _parts(name: str, look: MarkerLook) -> tuple[MeshData, ...]:
         return ()
     try:
         if look.shape is MarkerShape.TRIANGLES:
-            # Cut to whole triangles: what is left over draws nothing.
+            # Drop an incomplete triangle at the end.
             points = np.frombuffer(look.points, dtype=np.float32)
             return (merged(points[: len(points) // 9 * 9].reshape(-1, 3)),)
         if look.shape is MarkerShape.MESH:

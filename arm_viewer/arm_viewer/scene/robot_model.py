@@ -2,9 +2,14 @@
 
 from collections.abc import Collection, Mapping
 
+import numpy as np
 from viser import MeshHandle, SceneApi, SceneNodeHandle
 
-from arm_description.robot import Link, Robot
+from arm_description.errors import DescriptionError
+from arm_description.mesh.data import MeshData
+from arm_description.urdf.robot import Geometry, Link, Robot
+from arm_description.view_fitting import Body, body_of
+from arm_node.rigid_transform import rotated
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.link_layers import (
     draw_collisions,
@@ -12,6 +17,7 @@ from arm_viewer.scene.link_layers import (
     draw_mass,
     draw_visuals,
 )
+from arm_viewer.scene.triangles import triangles
 
 VISUAL, COLLISION, MASS, INERTIA = "visual", "collision", "mass", "inertia"
 LAYERS = {
@@ -20,23 +26,25 @@ LAYERS = {
     MASS: draw_mass,
     INERTIA: draw_inertia,
 }
-SEEN_THROUGH = 0.4
-"""The most that a link covers of what lies inside it."""
+TRANSPARENT_OPACITY = 0.4
+"""Opacity of links while something inside them is shown."""
+GREY = (172, 176, 180)
+"""Colour of a robot with unknown joint positions."""
 
 
 class RobotModel:
-    """Draws a robot layer by layer, each when it is first asked for, in viser's event loop."""
+    """Draws a robot's layers, each when it is first shown; use it in viser's event loop."""
 
     def __init__(
         self, scene: SceneApi, frames: Frames, name: str, robot: Robot, places: Mapping[str, str]
     ) -> None:
-        """Prepare a robot; nothing is drawn yet.
+        """Prepare a robot without drawing it.
 
         Args:
-            scene: where.
-            frames: of this scene.
-            name: tells this robot from others, in the names of the scene's nodes.
-            robot: what to draw.
+            scene: the scene to draw into.
+            frames: the frames of this scene.
+            name: unique name of the robot for its scene nodes.
+            robot: the robot to draw.
             places: the frame of each link.
         """
         self._scene = scene
@@ -47,31 +55,54 @@ class RobotModel:
         self._problems: dict[str, None] = {}
         self._drawn: dict[str, list[SceneNodeHandle]] = {}
         self._opacities: list[tuple[MeshHandle, float | None]] = []
-        self._seen_through = False
+        self._transparent = False
+        self._colours: list[tuple[MeshHandle, tuple[int, int, int]]] = []
+        self._grey = False
 
     @property
     def problems(self) -> Collection[str]:
-        """What of the links could not be drawn so far, in lines."""
+        """One line for each part of a link that could not be drawn."""
         return self._problems.keys()
 
-    def show(self, layers: Collection[str], seen_through: bool) -> None:
+    def show(self, layers: Collection[str], transparent: bool, grey: bool = False) -> None:
         """Show these layers and hide the others.
 
         Args:
-            layers: of LAYERS.
-            seen_through: whether what lies inside the links is to be seen.
+            layers: keys of LAYERS.
+            transparent: whether links are transparent, so that what is inside them is visible.
+            grey: whether links are drawn in grey instead of their own colours.
         """
         for layer in LAYERS:
             if layer in layers and layer not in self._drawn:
                 self._draw(layer)
             for handle in self._drawn.get(layer, ()):
                 handle.visible = layer in layers
-        if seen_through != self._seen_through:
-            self._seen_through = seen_through
+        if transparent != self._transparent:
+            self._transparent = transparent
             self._set_opacities()
+        if grey != self._grey:
+            self._grey = grey
+            self._set_colours()
+
+    def bodies(self) -> list[Body]:
+        """Return the bodies of the links at the present poses of their frames."""
+        bodies: list[Body] = []
+        for link in self._robot.links:
+            pose = self._frames.known.get(self._places[link.name])
+            if pose is None:
+                continue
+            for visual in link.visuals or link.collisions:
+                for part in _parts(visual.geometry):
+                    origin = visual.origin.matrix()
+                    points = part.vertices @ origin[:3, :3].T + origin[:3, 3]
+                    low, high = points.min(axis=0), points.max(axis=0)
+                    corners = body_of(np.array([low, high])).corners.tolist()
+                    placed = [rotated(pose.rotation, (x, y, z)) for x, y, z in corners]
+                    bodies.append(body_of(np.array(placed) + pose.position))
+        return bodies
 
     def remove(self) -> None:
-        """Take the robot out of the scene; its frames stay."""
+        """Remove the robot from the scene, but not its frames."""
         for handles in self._drawn.values():
             for handle in handles:
                 handle.remove()
@@ -80,23 +111,39 @@ class RobotModel:
         handles = [
             handle
             for link in self._robot.links
-            for handle in LAYERS[layer](self._scene, self._path(link), link, self._complain)
+            for handle in LAYERS[layer](self._scene, self._path(link), link, self._report_problem)
         ]
         self._drawn[layer] = handles
         if layer == VISUAL:
             meshes = [handle for handle in handles if isinstance(handle, MeshHandle)]
             self._opacities = [(mesh, mesh.opacity) for mesh in meshes]
             self._set_opacities()
+            self._colours = [(mesh, mesh.color) for mesh in meshes]
+            self._set_colours()
 
     def _path(self, link: Link) -> str:
         return f"{self._frames.path(self._places[link.name])}/{self._name}"
 
-    def _complain(self, problem: str) -> None:
-        # Once for a mesh that is both seen and touched.
+    def _report_problem(self, problem: str) -> None:
+        # A dict key, so that a mesh used for both visual and collision is reported once.
         self._problems[problem] = None
+
+    def _set_colours(self) -> None:
+        for mesh, own in self._colours:
+            colour = GREY if self._grey else own
+            if mesh.color != colour:
+                mesh.color = colour
 
     def _set_opacities(self) -> None:
         for mesh, own in self._opacities:
-            opacity = min(own or 1.0, SEEN_THROUGH) if self._seen_through else own
+            opacity = min(own or 1.0, TRANSPARENT_OPACITY) if self._transparent else own
             if mesh.opacity != opacity:
                 mesh.opacity = opacity
+
+
+def _parts(geometry: Geometry) -> tuple[MeshData, ...]:
+    try:
+        return triangles(geometry)
+    except DescriptionError:
+        # `link_layers` reports meshes that cannot be drawn.
+        return ()

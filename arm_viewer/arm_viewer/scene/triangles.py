@@ -1,4 +1,4 @@
-"""The shapes of descriptions as triangles."""
+"""Convert the shapes of descriptions to triangles."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -8,18 +8,20 @@ import trimesh
 from numpy.typing import NDArray
 
 from arm_description.errors import DescriptionError, MeshFileError
-from arm_description.mesh_data import MeshData
-from arm_description.mesh_file import check_mesh_file, read_mesh_file
+from arm_description.mesh.data import MeshData
+from arm_description.mesh.file import check_mesh_file, read_mesh_file
 from arm_description.resources import resolve_uri
-from arm_description.robot import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
+from arm_description.urdf.robot import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
 
 ROUND_SECTIONS = 40
 SPHERE_SUBDIVISIONS = 3
 SHARP_RAD = 0.6
-"""Faces that meet at less make one smooth surface."""
+"""Faces that meet at a smaller angle form one smooth surface."""
 FLAT_RAD = 0.02
-"""Faces that meet at less have no edge between them."""
-MOST_FILES = 64
+"""Faces that meet at a smaller angle have no visible edge between them."""
+LARGE_SHARE = 0.1
+"""A flat area of at least this fraction of the surface is shaded flat up to its rim."""
+MAX_CACHED_FILES = 64
 
 
 def triangles(geometry: Geometry) -> tuple[MeshData, ...]:
@@ -35,20 +37,31 @@ def triangles(geometry: Geometry) -> tuple[MeshData, ...]:
 
 
 def problem_of(error: DescriptionError) -> str:
-    """Return in one line why `triangles` failed; where a file was looked for is for the log."""
+    """Return why `triangles` failed in one line, without the searched paths, which are logged."""
     return str(error).partition("\n")[0].removesuffix("; tried:")
 
 
 def smooth(mesh: MeshData) -> MeshData:
-    """Return the mesh with vertices of their own on both sides of sharp edges.
+    """Return the mesh with separate vertices on both sides of sharp edges.
 
-    A browser shades over a vertex that several faces share.
+    A browser shades smoothly across vertices that faces share. trimesh can do this with SciPy,
+    which would double the installed size of this package.
     """
-    return _data(trimesh.graph.smooth_shade(_mesh(mesh), angle=SHARP_RAD), mesh)
+    solid = _mesh(mesh)
+    angles, pairs, count = solid.face_adjacency_angles, solid.face_adjacency, len(mesh.faces)
+    flat = _patches(count, pairs[angles < FLAT_RAD])
+    area = np.bincount(flat, weights=solid.area_faces, minlength=count)
+    is_large = (area > LARGE_SHARE * solid.area)[flat]
+    joins = (angles < SHARP_RAD) & ~is_large[pairs].any(axis=1)
+    patch = np.where(is_large, flat, _patches(count, pairs[joins]))
+    corners = patch[:, None] * len(mesh.vertices) + mesh.faces
+    kept, faces = np.unique(corners, return_inverse=True)
+    vertices = mesh.vertices[kept % len(mesh.vertices)]
+    return MeshData(vertices, faces.reshape(-1, 3).astype(np.int32), mesh.rgba)
 
 
 def edges(mesh: MeshData) -> NDArray[np.float32]:
-    """Return the lines (n, 2, 3) where faces meet at an angle, and those with one face only."""
+    """Return the edges (n, 2, 3) between faces that meet at an angle, and boundary edges."""
     solid = _mesh(mesh)
     solid.merge_vertices()
     bent = solid.face_adjacency_edges[solid.face_adjacency_angles > FLAT_RAD]
@@ -56,7 +69,7 @@ def edges(mesh: MeshData) -> NDArray[np.float32]:
     return solid.vertices[np.concatenate([bent, alone])].astype(np.float32)
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=MAX_CACHED_FILES)
 def _read(path: Path) -> tuple[MeshData, ...]:
     try:
         check_mesh_file(path)
@@ -86,5 +99,15 @@ def _mesh(data: MeshData) -> trimesh.Trimesh:
     return trimesh.Trimesh(data.vertices, data.faces, process=False)
 
 
-def _data(mesh: trimesh.Trimesh, like: MeshData) -> MeshData:
-    return MeshData(np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int32), like.rgba)
+def _patches(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the lowest index among the faces connected to each face by pairs, shape (count,)."""
+    lowest = np.arange(count)
+    while True:
+        joined = lowest.copy()
+        of_pairs = lowest[pairs]
+        np.minimum.at(joined, of_pairs, of_pairs.min(axis=1, keepdims=True))
+        while not np.array_equal(joined, further := joined[joined]):
+            joined = further
+        if np.array_equal(joined, lowest):
+            return lowest
+        lowest = joined

@@ -1,11 +1,11 @@
-"""The fake servos, a controller manager that drives them, and its controllers."""
+"""Starts fake servos, a controller manager that drives them, and its controllers."""
 
 from launch_py import (
     DeclareLaunchArgument,
+    Finished,
     LaunchDescription,
     LogLine,
     Notified,
-    ProcessExited,
     SetLaunchConfiguration,
 )
 from launch_py.ros import FindPackageShare, Node, ParameterValue
@@ -13,14 +13,14 @@ from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitut
 
 
 def describe(model: str, device: str, timeout: str) -> str:
-    """Return the URDF with the servos' port in it, and how long an answer may take."""
+    """Return the URDF with the servos' port and the time-out of an answer."""
     from arm_description import expand_xacro
 
     return expand_xacro(model, {"device": device, "timeout": timeout})
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return everything, started when what it needs is ready."""
+    """Return the processes; each starts when those that it depends on are ready."""
     share = FindPackageShare("servo_arm")
     device = LaunchConfiguration("device")
     description = ParameterValue(LaunchConfiguration("robot_description"), value_type=str)
@@ -41,12 +41,12 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             DeclareLaunchArgument(
-                "device", default_value="/tmp/servo_arm", description="name of the servos' port"
+                "device", default_value="/tmp/servo_arm", description="path of the servos' port"
             ),
             DeclareLaunchArgument(
                 "timeout",
                 default_value="0.2",
-                description="the longest that an answer of the servos may take, in seconds",
+                description="time-out of an answer of the servos, in seconds",
             ),
             SetLaunchConfiguration(
                 "robot_description",
@@ -69,7 +69,7 @@ def generate_launch_description() -> LaunchDescription:
                 package="arm_control",
                 executable="spawner",
                 arguments=["joint_state_broadcaster", "pd_controller"],
-                ready=ProcessExited(),
+                ready=Finished(),
                 depends_on=manager,
             ),
         ]

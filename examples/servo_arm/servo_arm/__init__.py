@@ -1,1 +1,1 @@
-"""A controller and a hardware component of your own, as an example."""
+"""An example of your own controller and hardware component."""

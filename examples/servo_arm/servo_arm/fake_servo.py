@@ -1,4 +1,4 @@
-"""The executable `fake_servo`: a pseudo-terminal with simulated motors behind it."""
+"""The executable `fake_servo`: simulates motors behind a pseudo-terminal."""
 
 import argparse
 import contextlib
@@ -13,7 +13,7 @@ INERTIA = 0.02
 FRICTION = 0.1
 STEP_S = 0.002
 WATCHDOG_S = 0.5
-"""Without a command for so long the motors let go, so that a dead program moves nothing."""
+"""Without a command for this long the motors switch off, in case the program has crashed."""
 
 
 class Motors:
@@ -27,7 +27,7 @@ class Motors:
         self._time_s = self._commanded_s = now_s
 
     def answer(self, request: str, now_s: float) -> str:
-        """Obey a line of the protocol and return the answer."""
+        """Execute a line of the protocol and return the answer."""
         self._advance(now_s)
         match request.split():
             case ["get"]:
@@ -37,7 +37,7 @@ class Motors:
                 try:
                     self._efforts = [float(word) for word in words]
                 except ValueError:
-                    return f"error: no numbers: {request}"
+                    return f"error: not numbers: {request}"
                 self._commanded_s = now_s
                 return "ok"
             case ["on" | "off" as word]:
@@ -60,7 +60,7 @@ class Motors:
 
 
 def serve(port: int, joints: int) -> None:
-    """Answer every line that comes in at a port, for ever."""
+    """Answer every line that arrives at a port, for ever."""
     motors = Motors(joints, time.monotonic())
     received = b""
     while True:
@@ -73,24 +73,26 @@ def serve(port: int, joints: int) -> None:
 
 @contextlib.contextmanager
 def pseudo_terminal(link: Path) -> Iterator[int]:
-    """Open a pseudo-terminal, show its far end at `link`, and yield its near end."""
-    near, far = os.openpty()
-    # The far end stays open here too: else the near one fails while no client has opened it.
-    tty.setraw(far)
+    """Open a pseudo-terminal, link its slave end at `link`, and yield its master end."""
+    master, slave = os.openpty()
+    # Keep the slave end open here as well; otherwise the master fails while it has no client.
+    tty.setraw(slave)
     link.unlink(missing_ok=True)
-    link.symlink_to(os.ttyname(far))
+    link.symlink_to(os.ttyname(slave))
     try:
-        yield near
+        yield master
     finally:
         link.unlink(missing_ok=True)
-        os.close(far)
-        os.close(near)
+        os.close(slave)
+        os.close(master)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run until a signal."""
     parser = argparse.ArgumentParser(description="Simulated servos on a pseudo-terminal.")
-    parser.add_argument("--link", type=Path, default=Path("/tmp/servo_arm"), help="port's name")
+    parser.add_argument(
+        "--link", type=Path, default=Path("/tmp/servo_arm"), help="path of the port"
+    )
     parser.add_argument("--joints", type=int, default=2, help="number of servos")
     options = parser.parse_args(argv)
     with pseudo_terminal(options.link) as port, contextlib.suppress(KeyboardInterrupt):

@@ -1,4 +1,4 @@
-"""servo_arm/PdController: holds joints at a target with efforts."""
+"""servo_arm/PdController: holds joints at a target by commanding efforts."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from arm_control import Controller, InterfaceConfiguration, ReturnType, paramete
 
 @dataclass(frozen=True, slots=True)
 class PdParameters:
-    """Declared on the controller's node; `ros2 param set` changes those not read-only at once."""
+    """Declared on the controller's node; `ros2 param set` changes them immediately."""
 
     joints: tuple[str, ...] = parameter((), "Joints to hold", read_only=True)
     target: float = parameter(0.0, "Where to hold them, in rad")
@@ -36,7 +36,7 @@ class PdController(Controller[PdParameters]):
         return ReturnType.OK
 
     def on_deactivate(self) -> None:
-        """Let go of the joints."""
+        """Command zero effort."""
         self.commands.write(0.0)
 
     def _interfaces(self, *kinds: str) -> InterfaceConfiguration:

@@ -1,4 +1,4 @@
-"""One question, one answer, over a serial port."""
+"""Requests and answers over a serial port."""
 
 import os
 import select
@@ -8,21 +8,21 @@ import tty
 
 
 class SerialLineError(Exception):
-    """The port cannot be opened, is gone, or did not answer in time; the message says which."""
+    """The port cannot be opened, was disconnected, or did not answer in time."""
 
 
 class SerialLine:
-    """An open serial port that speaks in lines. One thread at a time."""
+    """An open serial port with a line protocol. One thread at a time."""
 
     def __init__(self, device: str, timeout_s: float) -> None:
         """Open a port.
 
         Args:
-            device: such as /dev/ttyUSB0.
-            timeout_s: the longest that an answer may take.
+            device: path of the device, such as /dev/ttyUSB0.
+            timeout_s: time-out of an answer.
 
         Raises:
-            SerialLineError: it cannot be opened, or is no serial port.
+            SerialLineError: it cannot be opened, or is not a serial port.
         """
         self._device = device
         self._timeout_s = timeout_s
@@ -34,37 +34,37 @@ class SerialLine:
             tty.setraw(self._port)
         except termios.error as error:
             os.close(self._port)
-            raise SerialLineError(f"{device} is no serial port") from error
+            raise SerialLineError(f"{device} is not a serial port") from error
 
-    def ask(self, question: str) -> str:
-        """Send a line and return the line that comes back.
+    def request(self, line: str) -> str:
+        """Send a line and return the answer.
 
         Raises:
-            SerialLineError: none came in time, or the port is gone.
+            SerialLineError: no answer came in time, or the port was disconnected.
         """
         try:
-            # An answer that came too late last time is not the answer to this question.
+            # Discard a late answer to an earlier request.
             termios.tcflush(self._port, termios.TCIFLUSH)
-            os.write(self._port, f"{question}\n".encode())
-            return self._read_line(question)
+            os.write(self._port, f"{line}\n".encode())
+            return self._read_line(line)
         except (OSError, termios.error) as error:
-            raise SerialLineError(f"{self._device} is gone: {error.args[-1]}") from error
+            raise SerialLineError(f"{self._device} is disconnected: {error.args[-1]}") from error
 
     def close(self) -> None:
         """Close the port."""
         os.close(self._port)
 
-    def _read_line(self, question: str) -> str:
+    def _read_line(self, line: str) -> str:
         deadline_s = time.monotonic() + self._timeout_s
         received = b""
         while not received.endswith(b"\n"):
             left_s = deadline_s - time.monotonic()
             if left_s <= 0.0 or not select.select([self._port], [], [], left_s)[0]:
                 raise SerialLineError(
-                    f"{self._device} did not answer '{question}' within {self._timeout_s:g} s"
+                    f"{self._device} did not answer '{line}' within {self._timeout_s:g} s"
                 )
             chunk = os.read(self._port, 1024)
             if not chunk:
-                raise SerialLineError(f"{self._device} is gone: the other end was closed")
+                raise SerialLineError(f"{self._device} is disconnected: the other end was closed")
             received += chunk
         return received.decode(errors="replace").strip()

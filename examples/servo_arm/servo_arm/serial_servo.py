@@ -1,4 +1,4 @@
-"""servo_arm/SerialServo: joints of servos on a serial port, see the README for what they speak."""
+"""servo_arm/SerialServo: a driver for servos on a serial port; the README has the protocol."""
 
 import math
 
@@ -9,8 +9,7 @@ from servo_arm.serial_line import SerialLine, SerialLineError
 class SerialServo(SystemInterface):
     """Reads position and velocity of each joint, and writes its effort.
 
-    `<param>`s of `<hardware>`: `device`, the port, and `timeout`, the longest that an answer may
-    take [s].
+    `<param>`s of `<hardware>`: `device`, the port, and `timeout`, the time-out of an answer [s].
     """
 
     def __init__(self, info: HardwareInfo) -> None:
@@ -33,11 +32,11 @@ class SerialServo(SystemInterface):
 
     def on_activate(self) -> bool:
         """Switch the motors on."""
-        return self._ask("on") == "ok"
+        return self._request("on") == "ok"
 
     def on_deactivate(self) -> bool:
         """Switch the motors off."""
-        return self._line is None or self._ask("off") == "ok"
+        return self._line is None or self._request("off") == "ok"
 
     def on_cleanup(self) -> bool:
         """Close the port."""
@@ -47,8 +46,8 @@ class SerialServo(SystemInterface):
         return True
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Ask for positions and velocities."""
-        answer = self._ask("get")
+        """Read positions and velocities."""
+        answer = self._request("get")
         if answer is None:
             return HardwareReturn.ERROR
         try:
@@ -62,17 +61,17 @@ class SerialServo(SystemInterface):
         return HardwareReturn.OK
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
-        """Send the efforts; none where nobody commands them."""
+        """Send the efforts; 0 for joints that are not commanded."""
         efforts = [0.0 if math.isnan(effort) else effort for effort in self.commands.tolist()]
-        answer = self._ask("set " + " ".join(f"{effort:.6f}" for effort in efforts))
+        answer = self._request("set " + " ".join(f"{effort:.6f}" for effort in efforts))
         return HardwareReturn.OK if answer == "ok" else HardwareReturn.ERROR
 
-    def _ask(self, question: str) -> str | None:
-        """Return the answer; None where there is none, and the log says why."""
+    def _request(self, line: str) -> str | None:
+        """Return the answer; log the reason and return None if there is none."""
         if self._line is None:
             return None
         try:
-            return self._line.ask(question)
+            return self._line.request(line)
         except SerialLineError as error:
             self.logger.error("%s", error)
             return None

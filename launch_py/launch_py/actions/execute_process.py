@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+import shlex
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypedDict
+from typing import Any, TypedDict
 
-from launch_py.actions.action import Action, check_actions
-from launch_py.errors import LaunchError, LaunchFileError
+from launch_py.action import Action, check_actions
+from launch_py.conditions import Condition
+from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
 from launch_py.event_handlers import OnProcessExit, Reaction
-from launch_py.plan import (
+from launch_py.launch_context import LaunchContext
+from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.near_names import describe_known
+from launch_py.plan.readiness import Readiness
+from launch_py.plan.restart_policy import RestartPolicy
+from launch_py.plan.steps import (
     SIGKILL_TIMEOUT_S,
     SIGTERM_TIMEOUT_S,
     GeneratedFile,
@@ -20,24 +27,35 @@ from launch_py.plan import (
     Trigger,
     TriggerKind,
 )
-from launch_py.programs import find_program
-from launch_py.readiness import Readiness
-from launch_py.restart_policy import RestartPolicy
-from launch_py.seconds import perform_seconds
-from launch_py.shown_streams import Output, perform_shown_streams
 from launch_py.substitution import Text, perform_text
-from launch_py.truth import perform_truth
+from launch_py.system.packages import Packages
+from launch_py.system.programs import find_program
+from launch_py.typed_values import perform_boolean, perform_seconds
 
-if TYPE_CHECKING:
-    from launch_py.conditions import Condition
-    from launch_py.launch_context import LaunchContext
-    from launch_py.survey import Survey
+BOTH = frozenset({"stdout", "stderr"})
+
+SHOWN_BY_WORD = {
+    "screen": BOTH,
+    "both": BOTH,
+    "full": BOTH,
+    "log": frozenset({"stderr"}),
+    "own_log": frozenset({"stderr"}),
+}
+"""ROS's words. Those that name the log still show stderr on the screen."""
+
+STREAMS_BY_KEY = {
+    "stdout": frozenset({"stdout"}),
+    "stderr": frozenset({"stderr"}),
+    "both": BOTH,
+}
+
+Output = Text | Mapping[Any, Any]
 
 Variables = Mapping[Text, Text]
 
 
 class ProcessOptions(TypedDict, total=False):
-    """What every process takes besides what it runs; `ExecuteProcess` says what it means."""
+    """The options that every process takes besides its command; see `ExecuteProcess`."""
 
     ready: Readiness | Iterable[Readiness]
     depends_on: Action | str | Iterable[Action | str]
@@ -60,30 +78,32 @@ class ProcessOptions(TypedDict, total=False):
 
 
 class ExecuteProcess(Action):
-    """A command line, started when what it depends on is ready.
+    """A command line that starts when the processes it depends on are ready.
 
     Args:
         cmd: the words of the command, each a text.
-        name: what to call it in output, log files and `depends_on`; default the program's name.
-        ready: one `Readiness` or several that must all hold; none means ready once started.
-        depends_on: actions or process names that must be ready before this one starts.
+        name: its name in output, log files and `depends_on`; default the program's name.
+        ready: one `Readiness` or several that must all hold; by default a process is ready once
+            started.
+        depends_on: actions or process names that must be ready before this process starts.
         restart: the restart policy; `respawn`, `respawn_delay` and `respawn_max_retries` are
-            ROS's way to say `RestartPolicy("always", ...)`.
-        on_exit: actions, or a function of event and context, for when it has ended for good;
-            `on_exit=Shutdown()` makes it a required process.
+            ROS's notation for `RestartPolicy("always", ...)`.
+        on_exit: actions, or a function of event and context, to run when it exits and is not
+            restarted; `on_exit=Shutdown()` makes it a required process.
         shell: run the words, joined by spaces, as one line of /bin/sh.
         prefix: words put before the command, as in "gdb -ex run --args".
-        output: "screen" (default), or "log" for the log file only, where stderr still shows; or a
-            dict as {"stdout": "log", "stderr": "screen"}, of which only "screen" is shown.
-        emulate_tty: give it a terminal to write to, for programs that colour or buffer otherwise.
-        cwd: the folder to run it in.
+        output: "screen" (default), or "log" to show stderr only and log everything; or a dict such
+            as {"stdout": "log", "stderr": "screen"}, which shows the streams marked "screen".
+        emulate_tty: run it on a pseudo terminal, because some programs colour or buffer their
+            output differently there.
+        cwd: its working folder.
         env: the whole environment, instead of the inherited one.
         additional_env: variables added to the inherited environment.
-        sigterm_timeout: seconds from SIGINT to SIGTERM when it is stopped.
+        sigterm_timeout: seconds from SIGINT to SIGTERM during the shutdown.
         sigkill_timeout: seconds from SIGTERM to SIGKILL.
-        log_cmd: taken as in ROS, and does nothing: `--print` shows all commands.
-        cached_output: taken as in ROS, and does nothing: the output is in the log folder.
-        condition: whether it is started.
+        log_cmd: accepted as in ROS, without effect: `--print` shows all commands.
+        cached_output: accepted as in ROS, without effect: the log folder keeps the output.
+        condition: whether to start it.
     """
 
     def __init__(
@@ -139,10 +159,10 @@ class ExecuteProcess(Action):
         self.sigkill_timeout = sigkill_timeout
 
     def expand(self, context: LaunchContext) -> None:
-        """Add the process, and what follows its end, to the plan.
+        """Add the process, and the actions that follow its exit, to the plan.
 
         Raises:
-            LaunchError: its program does not exist, or something given does not make sense.
+            LaunchError: its program does not exist, or an argument is invalid.
         """
         namespace = self.resolve_namespace(context)
         command = self._with_prefix(context, self.command_words(context))
@@ -152,13 +172,14 @@ class ExecuteProcess(Action):
                 after=(*context.after, *(Trigger(TriggerKind.READY, t) for t in self.depends_on)),
                 delay_s=context.delay_s,
                 action=self,
+                node_names=self.node_names(context),
                 name=name,
                 command=command,
                 cwd=None if self.cwd is None else perform_text(context, self.cwd),
                 environment=self._environment(context),
                 replace_environment=self.env is not None,
                 shown=perform_shown_streams(context, self.output, name),
-                emulate_tty=perform_truth(context, self.emulate_tty, f"emulate_tty of {name}"),
+                emulate_tty=perform_boolean(context, self.emulate_tty, f"emulate_tty of {name}"),
                 ready=tuple(
                     condition.resolve(context.perform_substitution, namespace)
                     for condition in self.ready
@@ -173,8 +194,8 @@ class ExecuteProcess(Action):
         if self.on_exit is not None:
             OnProcessExit(target_action=self, on_exit=self.on_exit).expand(context)
 
-    def survey(self, survey: Survey, context: LaunchContext) -> None:
-        """Note the process's name where it is known, and the actions that follow its end."""
+    def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
+        """Record the process's name, if it is known, and the actions that follow its exit."""
         super().survey(survey, context)
         with suppress(LaunchError):
             survey.process_names.add(self.process_name(context))
@@ -183,28 +204,41 @@ class ExecuteProcess(Action):
                 action.survey(survey, context)
 
     def process_name(self, context: LaunchContext) -> str:
-        """Return what to call the process."""
+        """Return the process's name."""
         if self.name is not None:
             return perform_text(context, self.name)
         words = perform_text(context, self.cmd[0]).split() if self.cmd else []
         return os.path.basename(words[0]) if words else "process"
 
     def resolve_namespace(self, context: LaunchContext) -> str:
-        """Return the namespace in which relative names of its readiness are meant."""
+        """Return the namespace of relative names in its readiness conditions."""
         return context.namespace
 
+    def node_names(self, context: LaunchContext) -> Callable[[], Sequence[str]]:
+        """Return a function that finds the full names of its ROS nodes; here they are unknown."""
+        return tuple
+
     def command_words(self, context: LaunchContext) -> tuple[str | GeneratedFile, ...]:
-        """Return the command line, its program found."""
+        """Return the command line with the path of its program."""
         words = [perform_text(context, word) for word in self.cmd]
         if not words or not words[0]:
             raise LaunchFileError("ExecuteProcess needs cmd=[program, argument, ...]")
         if self.shell:
-            return ("/bin/sh", "-c", " ".join(words))
-        return (self.find(context, words[0]), *words[1:])
+            return ("/bin/sh", "-c", self._shell_line(context, " ".join(words)))
+        return (*self.find(context, words[0]), *words[1:])
 
     def describe(self) -> str:
-        """Return what to call it in a message."""
+        """Return what messages call it."""
         return f"an ExecuteProcess of {self.name or self.cmd}"
+
+    def _shell_line(self, context: LaunchContext, line: str) -> str:
+        """Return a shell line, with its first word replaced if the program has a stand-in."""
+        first = line.split(maxsplit=1)[0] if line.strip() else ""
+        with suppress(NotFoundError):
+            found = self.find(context, first)
+            if os.path.basename(found[0]) != os.path.basename(first):
+                return shlex.join(found) + line.lstrip().removeprefix(first)
+        return line  # The first word may be a builtin of the shell.
 
     def _with_prefix(
         self, context: LaunchContext, command: tuple[str | GeneratedFile, ...]
@@ -212,18 +246,26 @@ class ExecuteProcess(Action):
         text = perform_text(context, self.prefix)
         if not text.strip():
             return command
-        import shlex
-
         words = shlex.split(text)
-        return (self.find(context, words[0]), *words[1:], *command)
+        return (*self.find(context, words[0]), *words[1:], *command)
 
-    def find(self, context: LaunchContext, program: str) -> str:
-        """Return the path of a program; see `find_program`."""
+    def find(self, context: LaunchContext, program: str) -> tuple[str, ...]:
+        """Return the path of a program, or the command line of its stand-in.
+
+        Raises:
+            NotFoundError: neither exists; see `find_program`.
+        """
         path = context.environment_variable("PATH") or ""
         if os.sep in program and self.cwd is not None:
-            # Absolute: the process looks for it when it is in that folder already.
+            # Absolute, because the process resolves it after changing to that folder.
             program = os.path.join(os.path.abspath(perform_text(context, self.cwd)), program)
-        return find_program(program, path)
+        try:
+            return (find_program(program, path),)
+        except NotFoundError:
+            stand_in = Packages(context.base_environment).stand_in(program)
+            if stand_in is None:
+                raise
+            return stand_in
 
     def _environment(self, context: LaunchContext) -> dict[str, str | None]:
         variables: dict[str, str | None] = {} if self.env is not None else dict(context.environment)
@@ -234,12 +276,50 @@ class ExecuteProcess(Action):
     def _restart_policy(self, context: LaunchContext) -> RestartPolicy:
         if self.restart is not None:
             return self.restart
-        if not perform_truth(context, self.respawn, f"respawn of {self.process_name(context)}"):
+        if not perform_boolean(context, self.respawn, f"respawn of {self.process_name(context)}"):
             return RestartPolicy()
         policy = RestartPolicy("always", first_delay_s=self.respawn_delay, factor=1.0)
         retries = self.respawn_max_retries
         if retries < 0:
             return policy
-        # Whoever counts the retries wants them all.
-        patience = max(policy.give_up_after, retries + 1)
-        return replace(policy, max_restarts=retries, give_up_after=patience)
+        # The policy must not give up before the requested retries are used up.
+        give_up_after = max(policy.give_up_after, retries + 1)
+        return replace(policy, max_restarts=retries, give_up_after=give_up_after)
+
+
+def perform_shown_streams(context: LaunchContext, output: Output, process: str) -> frozenset[str]:
+    """Return the streams that are shown.
+
+    Args:
+        context: the scope.
+        output: a word, or a dict of a word or several for "stdout", "stderr" or "both"; a stream
+            that the dict does not put on the screen is in the log file only.
+        process: the process's name, for the error message.
+
+    Raises:
+        LaunchFileError: a key or a word is unknown.
+    """
+    if not isinstance(output, Mapping):
+        return SHOWN_BY_WORD[_known(context, output, SHOWN_BY_WORD, f"output={{!r}} of {process}")]
+    shown: frozenset[str] = frozenset()
+    for key, value in output.items():
+        stream = _known(context, key, STREAMS_BY_KEY, f"the key {{!r}} in output= of {process}")
+        many = isinstance(value, Iterable) and not isinstance(value, str | Mapping)
+        for item in value if many else (value,):
+            where = f"{stream}: {{!r}} in output= of {process}"
+            if "stdout" in SHOWN_BY_WORD[_known(context, item, SHOWN_BY_WORD, where)]:
+                shown |= STREAMS_BY_KEY[stream]
+    return shown
+
+
+def _known(context: LaunchContext, value: Any, known: Iterable[str], where: str) -> str:
+    """Return the word that `value` stands for; `where` describes it, with {!r} for the word."""
+    known = sorted(known)
+    if isinstance(value, Mapping):
+        raise LaunchFileError(f"{where.format(value)}: a word is needed, not a dict")
+    word = perform_text(context, value)
+    if word not in known:
+        raise LaunchFileError(
+            f"{where.format(word)}; {describe_known(word, known, 'the choices are')}"
+        )
+    return word

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from launch_py.actions.action import Action
+from launch_py.action import Action
+from launch_py.conditions import Condition
 from launch_py.errors import LaunchError, LaunchFileError, UsageError
+from launch_py.launch_context import LaunchContext
 from launch_py.launch_description import LaunchDescription
+from launch_py.launch_description_entity import LaunchSurvey
 from launch_py.launch_description_sources import (
     LaunchDescriptionSource,
     PythonLaunchDescriptionSource,
@@ -16,14 +18,9 @@ from launch_py.launch_description_sources import (
 )
 from launch_py.near_names import describe_known
 from launch_py.substitution import Pairs, Text, keep_pairs, perform_pairs
-from launch_py.survey import Survey
-
-if TYPE_CHECKING:
-    from launch_py.conditions import Condition
-    from launch_py.launch_context import LaunchContext
 
 MAX_DEPTH = 20
-"""Launch files nested deeper than this include each other in a circle."""
+"""Launch files that are nested deeper than this are taken for a cycle of includes."""
 
 Source = LaunchDescriptionSource | LaunchDescription | Text
 
@@ -31,9 +28,9 @@ Source = LaunchDescriptionSource | LaunchDescription | Text
 class IncludeLaunchDescription(Action):
     """The actions of another launch file, in a scope of their own.
 
-    The included file sees the arguments of the one that includes it, overridden by
-    `launch_arguments`. Unlike in ROS, nothing that it sets leaks back, and an argument that it
-    does not declare is refused.
+    The included file sees the arguments of the including file, overridden by `launch_arguments`.
+    Unlike in ROS, its settings do not leak back, and an argument that it does not declare is an
+    error.
     """
 
     def __init__(
@@ -54,19 +51,19 @@ class IncludeLaunchDescription(Action):
         """Expand the included actions.
 
         Raises:
-            UsageError: it passes an argument that the file does not declare.
+            UsageError: `launch_arguments` holds an argument that the file does not declare.
         """
         arguments = dict(perform_pairs(context, self.launch_arguments, "launch_arguments="))
         path, description = self._load(context)
         inner = context.included(path, arguments)
         if len(inner.included_files) > MAX_DEPTH:
-            raise LaunchFileError(f"launch files include each other without end: {path}")
+            raise LaunchFileError(f"launch files include each other in a cycle: {path}")
         if arguments:
             self._refuse_unknown(arguments, path, description, inner)
         description.visit(inner)
 
-    def survey(self, survey: Survey, context: LaunchContext) -> None:
-        """Survey the included actions, as far as the file can be found without expanding."""
+    def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
+        """Survey the included actions if the file can be found without expanding anything."""
         super().survey(survey, context)
         try:
             path, description = self._load(context)
@@ -80,8 +77,8 @@ class IncludeLaunchDescription(Action):
         if isinstance(self.source, LaunchDescription):
             return context.launch_file, self.source
         path = self.source.path(context)
-        # Once for the survey and the expansion, which must see the same actions. Not once for the
-        # source: two includes of one file are two robots.
+        # The survey and the expansion must see the same actions, so the file is read once. It is
+        # kept here and not in the source: two includes of one file are two robots.
         if self._read is None or self._read[0] != path:
             self._read = (path, read_launch_file(path))
         return self._read
@@ -95,7 +92,7 @@ class IncludeLaunchDescription(Action):
     ) -> None:
         scope = inner.scoped()
         scope.fixed_arguments = frozenset()
-        survey = Survey()
+        survey = LaunchSurvey()
         description.survey(survey, scope)
         for name in arguments:
             if name not in survey.arguments:
@@ -106,7 +103,7 @@ class IncludeLaunchDescription(Action):
                 )
 
     def describe(self) -> str:
-        """Return what to call it in a message."""
+        """Return what messages call it."""
         if isinstance(self.source, LaunchDescription):
             return "an included launch description"
         return f"the include of {self.source.describe()}"

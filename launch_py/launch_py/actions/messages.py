@@ -1,22 +1,16 @@
-"""Actions that say something or end everything."""
+"""Actions that print messages for the user."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from launch_py import events
-from launch_py.actions.action import Action
-from launch_py.errors import LaunchFileError
-from launch_py.plan import MessageStep, ShutdownStep
-from launch_py.substitution import Text, perform_text
-
-if TYPE_CHECKING:
-    from launch_py.conditions import Condition
-    from launch_py.launch_context import LaunchContext
+from launch_py.action import Action
+from launch_py.conditions import Condition
+from launch_py.launch_context import LaunchContext
+from launch_py.plan.steps import MessageStep, PanelEntry
+from launch_py.substitution import Pairs, Text, perform_pairs, perform_text
 
 
 class LogInfo(Action):
-    """Prints a message when the launch begins, or when the event happens that it handles."""
+    """Prints a message when the launch begins, or in an event handler when the event happens."""
 
     def __init__(self, *, msg: Text, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -31,37 +25,43 @@ class LogInfo(Action):
         )
 
 
-class Shutdown(Action):
-    """Stops everything, in order.
+class ReadyPanel(Action):
+    """Topics, commands to paste and notes, shown when every process is ready.
 
-    As `on_exit=Shutdown()` of a process it makes that process a required one: the launch ends
-    with its exit code.
+    Several panels, for example of included files, are merged under the first title. The supervisor
+    adds the log folder, the domain id and how to stop.
+
+    Args:
+        title: the name of the system that was launched.
+        topics: pairs of topic and meaning.
+        commands: pairs of purpose and command line.
+        notes: pairs of heading and text.
+        condition: whether to show the panel.
     """
 
-    def __init__(self, *, reason: Text = "", condition: Condition | None = None) -> None:
+    def __init__(
+        self,
+        *,
+        title: Text | None = None,
+        topics: Pairs = (),
+        commands: Pairs = (),
+        notes: Pairs = (),
+        condition: Condition | None = None,
+    ) -> None:
         super().__init__(condition=condition)
-        self.reason = reason
+        self.title = title
+        self.topics = topics
+        self.commands = commands
+        self.notes = notes
 
     def expand(self, context: LaunchContext) -> None:
-        """Add the shutdown to the plan."""
-        context.plan.add(
-            ShutdownStep(
-                after=context.after,
-                delay_s=context.delay_s,
-                reason=perform_text(context, self.reason),
+        """Add the panel to the plan."""
+        title = None if self.title is None else perform_text(context, self.title)
+        context.plan.add_panel(
+            PanelEntry(
+                title=title,
+                topics=perform_pairs(context, self.topics, "topics="),
+                commands=perform_pairs(context, self.commands, "commands="),
+                notes=perform_pairs(context, self.notes, "notes="),
             )
         )
-
-
-class EmitEvent(Action):
-    """Emits an event; `events.Shutdown` is the one there is."""
-
-    def __init__(self, *, event: events.Shutdown, condition: Condition | None = None) -> None:
-        super().__init__(condition=condition)
-        if not isinstance(event, events.Shutdown):
-            raise LaunchFileError(f"EmitEvent takes events.Shutdown(...), not {event!r}")
-        self.event = event
-
-    def expand(self, context: LaunchContext) -> None:
-        """Add the shutdown to the plan."""
-        Shutdown(reason=self.event.reason).expand(context)

@@ -1,24 +1,25 @@
-"""Actions about nodes, named as in ROS 2's `launch_ros.actions`."""
+"""Actions for nodes, named as in ROS 2's `launch_ros.actions`."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Unpack
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Unpack
 
-from launch_py.actions.action import Action
+from launch_py.action import Action
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
-from launch_py.errors import ParameterError
+from launch_py.conditions import Condition
+from launch_py.errors import NodeParameterError
+from launch_py.launch_context import LaunchContext
 from launch_py.names import join_names
-from launch_py.packages import Packages
-from launch_py.parameters import (
+from launch_py.plan.steps import GeneratedFile
+from launch_py.ros.parameter_descriptions import ParameterFile
+from launch_py.ros.parameters import (
     ParameterValue,
     evaluate_parameters,
     parameter_file_text,
     parameters_by_node,
 )
-from launch_py.plan import GeneratedFile
-from launch_py.ros.parameter_file import ParameterFile
 from launch_py.substitution import (
     Pairs,
     Text,
@@ -27,36 +28,33 @@ from launch_py.substitution import (
     perform_pairs,
     perform_text,
 )
-
-if TYPE_CHECKING:
-    from launch_py.conditions import Condition
-    from launch_py.launch_context import LaunchContext
+from launch_py.system.packages import Packages
 
 Parameters = Mapping[Any, Any] | ParameterFile | Text
 
 
 class Node(ExecuteProcess):
-    """A process of a package that holds a node, or several.
+    """A process with one or more nodes, from an executable of a package.
 
-    All that is not named here is as in `ExecuteProcess`.
+    The other options are those of `ExecuteProcess`.
 
     Args:
-        package: the package; a Python distribution's script whose module lies in it is taken
-            first, else a program in <prefix>/lib/<package>.
+        package: the package. A script of a Python distribution whose module is in the package
+            takes precedence over a program in <prefix>/lib/<package>.
         executable: the name of the script or program; without a package its path, or its name on
             PATH.
         name: the node's name. It renames *every* node of the process, so leave it out for a
-            process with several nodes; `exec_name` says what to call the process.
-        namespace: the namespace, inside the one of `PushRosNamespace`.
-        exec_name: what to call the process; default the node's name, else the executable's.
+            process with several nodes; use `exec_name` to name the process.
+        namespace: the namespace, inside that of `PushRosNamespace`.
+        exec_name: the name of the process; default the node's name, else the executable's.
         parameters: parameter files, each a path or a `ParameterFile`, and dicts; later ones win. A
-            dict holds parameters of `name`, or of every node of the process without one; in a
-            process with several nodes it may have the form of a file,
-            {node: {"ros__parameters": {...}}}, whose nodes are in the namespace of this one unless
-            they begin with a slash.
-        remappings: pairs of a name and what it becomes, or a dict.
-        arguments: words for the program itself.
-        ros_arguments: words after --ros-args.
+            dict holds the parameters of the node `name`, or without a name those of every node of
+            the process. For a process with several nodes it may have the form of a file,
+            {node: {"ros__parameters": {...}}}. Its node names are relative to this namespace unless
+            they start with a slash.
+        remappings: pairs of an old and a new name, or a dict.
+        arguments: arguments of the program itself.
+        ros_arguments: arguments after --ros-args.
     """
 
     def __init__(
@@ -90,14 +88,18 @@ class Node(ExecuteProcess):
 
         Raises:
             NotFoundError: there is no such package or executable.
-            ParameterError: a parameter cannot be passed on.
+            NodeParameterError: a parameter cannot be passed on.
         """
         executable = perform_text(context, self.executable)
         if self.package is None:
-            program = (self.find(context, executable),)
+            program = self.find(context, executable)
         else:
             package = perform_text(context, self.package)
-            program = Packages(context.base_environment).executable(package, executable)
+            packages = Packages(context.base_environment)
+            program = packages.executable(package, executable)
+            found = packages.stand_in_of(package, executable)
+            if found is not None and found.remark:
+                context.warnings.append(found.remark)
         ros: list[str | GeneratedFile] = []
         name = "" if self.node_name is None else perform_text(context, self.node_name)
         namespace = self.resolve_namespace(context)
@@ -114,8 +116,20 @@ class Node(ExecuteProcess):
         words = [perform_text(context, word) for word in self.arguments]
         return (*program, *words, *(["--ros-args", *ros] if ros else []))
 
+    def node_names(self, context: LaunchContext) -> Callable[[], Sequence[str]]:
+        """Return a function that finds its nodes' names: the given name, else the program's."""
+        namespace = self.resolve_namespace(context)
+        if self.node_name is not None:
+            name = perform_text(context, self.node_name)
+            return lambda: (join_names(namespace, name),) if name else ()
+        if self.package is None:
+            return tuple
+        executable = perform_text(context, self.executable)
+        packages = Packages(context.base_environment)
+        return lambda: [join_names(namespace, n) for n in packages.node_names(executable)]
+
     def process_name(self, context: LaunchContext) -> str:
-        """Return what to call the process."""
+        """Return the process's name."""
         name = super().process_name(context)
         return os.path.basename(name) if self.name is self.executable else name
 
@@ -125,7 +139,7 @@ class Node(ExecuteProcess):
         return join_names(context.namespace, own)
 
     def describe(self) -> str:
-        """Return what to call it in a message."""
+        """Return what messages call it."""
         return f"a Node of executable {describe_text(self.executable)!r}"
 
     def _parameter_files(
@@ -139,8 +153,8 @@ class Node(ExecuteProcess):
                     file = parameters.evaluate(context)
                 else:
                     file = ParameterFile(parameters).evaluate(context)
-            except ParameterError as error:
-                raise ParameterError(f"{self.process_name(context)}: {error}") from None
+            except NodeParameterError as error:
+                raise NodeParameterError(f"{self.process_name(context)}: {error}") from None
             if file is not None:
                 yield file
 
@@ -150,7 +164,7 @@ def _generated_file(
 ) -> GeneratedFile | None:
     texts = [
         parameter_file_text(
-            _whole_name(namespace, node) if node else "/**", evaluate_parameters(context, values)
+            _full_name(namespace, node) if node else "/**", evaluate_parameters(context, values)
         )
         for node, values in parameters_by_node(parameters, name).items()
         if values
@@ -158,7 +172,7 @@ def _generated_file(
     return GeneratedFile(".yaml", "".join(texts)) if texts else None
 
 
-def _whole_name(namespace: str, node: str) -> str:
+def _full_name(namespace: str, node: str) -> str:
     return node if node.startswith("/") else f"{namespace}/{node}"
 
 
@@ -179,7 +193,7 @@ PushROSNamespace = PushRosNamespace
 
 
 class SetParameter(Action):
-    """Gives a parameter to all nodes that follow in this scope; their own values win."""
+    """Sets a parameter of all nodes that follow in this scope; their own values win."""
 
     def __init__(self, name: Text, value: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -193,15 +207,15 @@ class SetParameter(Action):
 
 
 class SetUseSimTime(SetParameter):
-    """Tells all nodes that follow in this scope whether time comes from /clock."""
+    """Sets whether all nodes that follow in this scope take their time from /clock."""
 
     def __init__(self, value: bool | Text, *, condition: Condition | None = None) -> None:
-        truth = ParameterValue(value, value_type=bool)
-        super().__init__("use_sim_time", truth, condition=condition)
+        use_sim_time = ParameterValue(value, value_type=bool)
+        super().__init__("use_sim_time", use_sim_time, condition=condition)
 
 
 class SetParametersFromFile(Action):
-    """Gives a parameter file to all nodes that follow in this scope; their own values win."""
+    """Passes a parameter file to all nodes that follow in this scope; their own values win."""
 
     def __init__(self, filename: Text, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)

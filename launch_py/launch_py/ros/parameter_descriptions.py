@@ -1,6 +1,120 @@
-"""Named as in ROS 2's `launch_ros.parameter_descriptions`."""
+"""Parameter files, named as in ROS 2's `launch_ros.parameter_descriptions`."""
 
-from launch_py.parameters import ParameterValue
-from launch_py.ros.parameter_file import ParameterFile
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from launch_py.errors import LaunchError, NodeParameterError
+from launch_py.near_names import describe_missing_file
+from launch_py.plan.steps import GeneratedFile
+from launch_py.ros.parameters import ParameterValue, check_depth
+from launch_py.ros.substitution_parser import parse_substitutions
+from launch_py.substitution import LaunchScope, Text, perform_text
+
+if TYPE_CHECKING:
+    import yaml
+
 
 __all__ = ["ParameterFile", "ParameterValue"]
+
+MAX_CHARACTERS = 20_000_000
+
+
+class ParameterFile:
+    """A parameter file for a node's `parameters`.
+
+    Args:
+        param_file: its path.
+        allow_substs: whether substitutions such as $(var name) are performed in its keys and
+            values. A text with a substitution is then read as YAML, with or without quotes around
+            it: `rate: "$(var rate)"` is a number if the argument is a number.
+    """
+
+    def __init__(self, param_file: Text, *, allow_substs: bool | Text = False) -> None:
+        self.param_file = param_file
+        self.allow_substs = allow_substs
+
+    def evaluate(self, context: LaunchScope) -> str | GeneratedFile:
+        """Return the path of the file, or a generated file with its substitutions performed.
+
+        Raises:
+            NodeParameterError: there is no such file, it is not YAML, or a substitution in it is
+                malformed or has no value.
+        """
+        path = perform_text(context, self.param_file)
+        if not os.path.isfile(path):
+            folder = os.path.dirname(os.path.abspath(path))
+            known = os.listdir(folder) if os.path.isdir(folder) else []
+            holds = f"{folder} holds"
+            raise NodeParameterError(describe_missing_file("parameter file", path, known, holds))
+        if not ParameterValue(self.allow_substs, value_type=bool).evaluate(context):
+            return path
+        return GeneratedFile(".yaml", _performed(context, path))
+
+
+def _performed(context: LaunchScope, path: str) -> str:
+    """Return the text of a parameter file with its substitutions performed.
+
+    It changes the nodes of the YAML document that hold substitutions; all others stay as written.
+    """
+    import yaml  # Imported late, because the import takes as long as starting a process.
+
+    try:
+        with open(path, encoding="utf-8") as file:
+            text = file.read(MAX_CHARACTERS + 1)
+        if len(text) > MAX_CHARACTERS:
+            raise NodeParameterError(
+                f"parameter file {path} has more than {MAX_CHARACTERS} characters"
+            )
+        check_depth(text)
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+    except (OSError, UnicodeError, yaml.YAMLError) as error:
+        reason = str(error).replace("\n", " ")
+        raise NodeParameterError(f"parameter file {path} cannot be read: {reason}") from error
+    if root is None:
+        return ""
+    try:
+        root = _node(context, root, {})
+    except LaunchError as error:
+        raise NodeParameterError(f"parameter file {path}: {error}") from error
+    return yaml.serialize(root, Dumper=yaml.SafeDumper, width=float("inf"), allow_unicode=True)
+
+
+def _node(context: LaunchScope, node: yaml.Node, done: dict[int, yaml.Node]) -> yaml.Node:
+    """Return a node of a YAML document with the substitutions in it performed.
+
+    Args:
+        context: the scope of the launch.
+        node: the node, which is modified.
+        done: the nodes visited before, by identity: aliases refer to one node many times.
+    """
+    import yaml
+
+    if id(node) in done:
+        return done[id(node)]
+    done[id(node)] = node
+    match node:
+        case yaml.MappingNode():
+            node.value = [
+                (_node(context, key, done), _node(context, v, done)) for key, v in node.value
+            ]
+        case yaml.SequenceNode():
+            node.value = [_node(context, item, done) for item in node.value]
+        case yaml.ScalarNode() if "$(" in node.value:
+            done[id(node)] = _read(perform_text(context, parse_substitutions(node.value)))
+    return done[id(node)]
+
+
+def _read(text: str) -> yaml.Node:
+    """Return the YAML node of a text: a list or a dict in brackets, else one value."""
+    import yaml
+
+    if text.strip()[:1] in ("[", "{"):
+        try:
+            return yaml.compose(text, Loader=yaml.SafeLoader)
+        except yaml.YAMLError as error:
+            reason = str(error).splitlines()[0]
+            raise NodeParameterError(f"{text!r} is not YAML: {reason}") from error
+    tag = yaml.SafeLoader("").resolve(yaml.ScalarNode, text, (True, False))
+    return yaml.ScalarNode(tag, text)

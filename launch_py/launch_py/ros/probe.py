@@ -1,24 +1,23 @@
-"""The probe process: watches topics, services, actions and web pages for the supervisor.
+"""The probe process: watches topics, services, actions, nodes and web pages for the supervisor.
 
-Reads one JSON object a line from standard input: an id, the kind of the condition (the class name
-in `launch_py.readiness`) and its fields, or "Forget". Writes {"id": n} when condition n is met,
-{"id": n, "error": text} when it can never be. Ends with its standard input.
+It reads one JSON object per line from standard input: an id, the kind of the condition (the class
+name in `launch_py.plan.readiness`) and its fields. It writes {"id": n} when condition n is met, and
+{"id": n, "error": text} when it can never be met. Kind "Forget" removes a condition. Kind "Nodes"
+is never met: the probe writes {"id": n, "seen": nodes} whenever the nodes on the graph change; see
+`find_nodes`. The probe exits at the end of its standard input.
 """
 
 from __future__ import annotations
 
-import importlib
 import json
 import queue
 import sys
 import threading
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from launch_py.library_output import library_output_on_stderr
-
-if TYPE_CHECKING:
-    from rclpy.node import Node
+from launch_py.ros.graph import ProbeError, RosGraph
+from launch_py.standard_streams import library_output_on_stderr
 
 POLL_S = 0.02
 HTTP_POLL_S = 0.1
@@ -27,76 +26,8 @@ HTTP_TIMEOUT_S = 2.0
 Check = Callable[[], bool]
 
 
-class ProbeError(Exception):
-    """A condition that cannot be watched."""
-
-
-class RosGraph:
-    """What the ROS graph looks like from one node; belongs to the main thread."""
-
-    def __init__(self) -> None:
-        import rclpy
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.signals import SignalHandlerOptions
-
-        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-        self._node: Node = rclpy.create_node(
-            "launch_probe",
-            use_global_arguments=False,
-            enable_rosout=False,
-            start_parameter_services=False,
-        )
-        self._executor = SingleThreadedExecutor()
-        self._executor.add_node(self._node)
-        self._received: set[str] = set()
-        self._subscribed: set[str] = set()
-
-    def spin(self, timeout_s: float) -> None:
-        """Take what has come in."""
-        self._executor.spin_once(timeout_sec=timeout_s)
-
-    def close(self) -> None:
-        """Leave the graph."""
-        from rclpy.utilities import try_shutdown
-
-        self._executor.shutdown()
-        self._node.destroy_node()
-        try_shutdown()
-
-    def has_topic(self, topic: str, type_name: str | None, first_message: bool) -> bool:
-        """Return whether the topic has a publisher, or has brought a message."""
-        publishers = self._node.get_publishers_info_by_topic(topic)
-        offered = [p for p in publishers if type_name in (None, p.topic_type)]
-        if not offered or not first_message:
-            return bool(offered)
-        if topic not in self._subscribed:
-            self._subscribe(topic, offered[0].topic_type, offered[0].qos_profile)
-        return topic in self._received
-
-    def has_service(self, name: str) -> bool:
-        """Return whether the service has a server."""
-        return self._node.count_services(name) > 0
-
-    def _subscribe(self, topic: str, type_name: str, offered: Any) -> None:
-        from rclpy.qos import QoSProfile
-
-        package, _, name = type_name.partition("/msg/")
-        try:
-            message_type = getattr(importlib.import_module(f"{package}.msg"), name)
-        except (ImportError, AttributeError) as error:
-            raise ProbeError(f"message type {type_name} of {topic} is not installed") from error
-        # What the publisher offers always matches, and brings a latched message, too.
-        profile = QoSProfile(
-            depth=1, reliability=offered.reliability, durability=offered.durability
-        )
-        self._node.create_subscription(
-            message_type, topic, lambda _: self._received.add(topic), profile, raw=True
-        )
-        self._subscribed.add(topic)
-
-
 class Probe:
-    """Holds the open conditions; `run` is the whole life of the process."""
+    """Checks the conditions that are not met yet; `run` is the main loop of the process."""
 
     def __init__(self, answer: Callable[[Mapping[str, Any]], None]) -> None:
         self._answer = answer
@@ -104,7 +35,7 @@ class Probe:
         self._graph: RosGraph | None = None
 
     def run(self, messages: queue.SimpleQueue[dict[str, Any] | None]) -> None:
-        """Watch conditions as they come until None comes."""
+        """Watch the conditions in `messages` until a None arrives."""
         try:
             while True:
                 message = self._next_message(messages)
@@ -120,7 +51,7 @@ class Probe:
     def _next_message(
         self, messages: queue.SimpleQueue[dict[str, Any] | None]
     ) -> dict[str, Any] | None:
-        """Return the next message, {} where none has come in time; block while there is nothing."""
+        """Return the next message, or {} after a short wait; block if nothing is being watched."""
         if self._graph is not None and self._checks:
             self._graph.spin(POLL_S)
         try:
@@ -136,13 +67,13 @@ class Probe:
             self._checks.pop(number, None)
             return
         try:
-            self._checks[number] = self._make_check(kind, message)
+            self._checks[number] = self._make_check(number, kind, message)
         except (ImportError, ProbeError) as error:
             self._answer({"id": number, "error": f"cannot watch a {kind} condition: {error}"})
 
-    def _make_check(self, kind: str, message: dict[str, Any]) -> Check:
+    def _make_check(self, number: int, kind: str, message: dict[str, Any]) -> Check:
         if kind == "HttpOk":
-            return HttpCheck(message["url"])
+            return _HttpCheck(message["url"])
         if self._graph is None:
             self._graph = RosGraph()
         graph = self._graph
@@ -155,6 +86,8 @@ class Probe:
                 return lambda: graph.has_service(message["service"])
             case "ActionAvailable":
                 return lambda: graph.has_service(f"{message['action']}/_action/send_goal")
+            case "Nodes":
+                return _NodesCheck(lambda seen: self._answer({"id": number, "seen": seen}), graph)
         raise ProbeError("there is no such condition")
 
     def _check_all(self) -> None:
@@ -168,8 +101,25 @@ class Probe:
             self._checks.pop(number, None)
 
 
-class HttpCheck:
-    """Whether a GET of a URL answers 200; asks from a thread of its own."""
+class _NodesCheck:
+    """Reports the nodes on the graph whenever they change."""
+
+    def __init__(self, report: Callable[[dict[str, Any]], None], graph: RosGraph) -> None:
+        self._report = report
+        self._graph = graph
+        self._reported: dict[str, Any] | None = None
+
+    def __call__(self) -> bool:
+        """Look once; return False, because the nodes can always change again."""
+        seen = self._graph.census()
+        if seen != self._reported:
+            self._reported = seen
+            self._report(seen)
+        return False
+
+
+class _HttpCheck:
+    """Checks whether a GET request to a URL returns status 200, in a thread of its own."""
 
     def __init__(self, url: str) -> None:
         self._url = url
@@ -177,7 +127,7 @@ class HttpCheck:
         threading.Thread(target=self._ask, daemon=True).start()
 
     def __call__(self) -> bool:
-        """Return whether it has answered 200."""
+        """Return whether the status 200 has been returned."""
         return self._met.is_set()
 
     def _ask(self) -> None:
@@ -191,7 +141,7 @@ class HttpCheck:
                         self._met.set()
                         return
             except (OSError, ValueError):
-                pass  # Nobody listens yet, or the answer is not the one we wait for.
+                pass  # The server is not up yet, or returns an error.
             pause.wait(HTTP_POLL_S)
 
 

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from launch_py.packages import Packages
-from launch_py.substitution import Substitution, Text, describe_text, perform_text
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
+from launch_py.system.packages import Packages
 
 
 class FindPackageShare(Substitution):
@@ -17,7 +12,7 @@ class FindPackageShare(Substitution):
     def __init__(self, package: Text) -> None:
         self.package = package
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the path.
 
         Raises:
@@ -27,14 +22,14 @@ class FindPackageShare(Substitution):
         return str(packages.share_folder(perform_text(context, self.package)))
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as messages show it."""
         return f"FindPackageShare({describe_text(self.package)!r})"
 
 
 class FindPackagePrefix(FindPackageShare):
     """The prefix in which a package is installed."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the path.
 
         Raises:

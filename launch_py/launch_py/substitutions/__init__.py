@@ -1,8 +1,7 @@
 """The substitutions, named as in ROS 2's `launch.substitutions`; `Call` is new."""
 
 from launch_py.substitution import Substitution
-from launch_py.substitutions.call import Call
-from launch_py.substitutions.command import Command, FindExecutable
+from launch_py.substitutions.command import Call, Command, FindExecutable
 from launch_py.substitutions.logic import (
     AllSubstitution,
     AndSubstitution,

@@ -1,15 +1,15 @@
-"""Substitutions that find and run programs."""
+"""Substitutions that run a program or a function."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable
+from typing import Literal
 
-from launch_py.errors import NotFoundError, SubstitutionError
-from launch_py.programs import find_program
-from launch_py.substitution import Substitution, Text, describe_text, perform_text
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+from launch_py.errors import NotFoundError, SubstitutionError, errors_attributed_to
+from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
+from launch_py.system.child_environment import for_program
+from launch_py.system.packages import Packages
+from launch_py.system.programs import find_program
 
 OnStderr = Literal["fail", "ignore", "warn", "capture"]
 
@@ -20,7 +20,7 @@ class FindExecutable(Substitution):
     def __init__(self, *, name: Text) -> None:
         self.name = name
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the path.
 
         Raises:
@@ -38,8 +38,8 @@ class FindExecutable(Substitution):
 class Command(Substitution):
     """The output of a command, run while the launch file is expanded.
 
-    The joined text is split as a shell does, without a shell. A Python process takes a quarter of
-    a second: where the work is a Python function, `Call` does it in no time.
+    The joined text is split into words as by a shell, but run without one. Starting a Python
+    process takes a quarter of a second; use `Call` if the work is a Python function.
     """
 
     is_costly = True
@@ -48,11 +48,11 @@ class Command(Substitution):
         self.command = command
         self.on_stderr = on_stderr
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the standard output, without its last newline.
 
         Raises:
-            SubstitutionError: the command failed, or wrote to stderr where that means failure.
+            SubstitutionError: the command failed, or wrote to stderr and `on_stderr` is "fail".
         """
         import shlex
         import subprocess
@@ -70,16 +70,18 @@ class Command(Substitution):
         except NotFoundError as error:
             if len(words) > 1 or isinstance(self.command, str):
                 raise
-            hint = "Command joins its parts as they are: is there a space missing, as in 'xacro '?"
+            hint = "Command joins its parts without spaces: is one missing, as in 'xacro '?"
             raise NotFoundError(f"{error}; {hint}") from error
+        # Also looks up a full path, because FindExecutable(name="xacro") returns one.
+        words[:1] = Packages({}).stand_in(words[0]) or (words[0],)
         done = subprocess.run(
             words,
             capture_output=True,
             text=True,
             check=False,
-            env=context.complete_environment(words[0]),
+            env=for_program(words[0], context.complete_environment()),
         )
-        complaint = done.stderr.strip()
+        complaint = done.stderr.strip().replace("\n", "\n  ")
         if done.returncode != 0:
             raise SubstitutionError(
                 f"command {text!r} ended with exit code {done.returncode}"
@@ -88,10 +90,41 @@ class Command(Substitution):
         if complaint and self.on_stderr == "fail":
             raise SubstitutionError(f"command {text!r} complained: {complaint}")
         if complaint and self.on_stderr == "warn":
-            context.plan.warn(f"command {text!r} complained: {complaint}")
+            context.warnings.append(f"command {text!r} complained: {complaint}")
         output = done.stdout + (done.stderr if self.on_stderr == "capture" else "")
         return output.removesuffix("\n")
 
     def describe(self) -> str:
         """Return how it is written."""
         return f"Command({describe_text(self.command)!r})"
+
+
+class Call(Substitution):
+    """The result of a Python function, as text.
+
+    Arguments and keyword arguments are texts with substitutions; the function gets plain strings.
+    Unlike `Command` it starts no process. The function runs each time the substitution is
+    performed: store a costly result with `SetLaunchConfiguration`.
+    """
+
+    is_costly = True
+
+    def __init__(self, function: Callable[..., object], *args: Text, **kwargs: Text) -> None:
+        self.function = function
+        self.args = args
+        self.kwargs = kwargs
+
+    def perform(self, context: LaunchScope) -> str:
+        """Return the result.
+
+        Raises:
+            LaunchFileError: the function raised an exception; the message names it.
+        """
+        args = [perform_text(context, value) for value in self.args]
+        kwargs = {name: perform_text(context, value) for name, value in self.kwargs.items()}
+        with errors_attributed_to(self.describe):
+            return str(self.function(*args, **kwargs))
+
+    def describe(self) -> str:
+        """Return how it is written."""
+        return f"Call({getattr(self.function, '__name__', 'function')})"

@@ -1,27 +1,22 @@
-"""Substitutions that compare and choose; their results read 'true' and 'false'."""
+"""Substitutions that compare and choose; comparisons return 'true' or 'false'."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from launch_py.errors import SubstitutionError
-from launch_py.substitution import Substitution, Text, describe_text, perform_text
-from launch_py.truth import parse_truth, truth_text
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
+from launch_py.typed_values import boolean_text, parse_boolean
 
 
-def _truth(context: LaunchContext, value: Text) -> bool:
+def _truth(context: LaunchScope, value: Text) -> bool:
     text = perform_text(context, value)
-    truth = parse_truth(text)
+    truth = parse_boolean(text)
     if truth is None:
         raise SubstitutionError(f"{describe_text(value)} is {text!r}, neither true nor false")
     return truth
 
 
-def _equal(context: LaunchContext, left: Text, right: Text) -> bool:
-    """Compare as ROS does: true words equal true words, numbers equal numbers, else texts."""
+def _equal(context: LaunchScope, left: Text, right: Text) -> bool:
+    """Compare two texts as ROS does: as booleans, else as numbers, else as texts."""
     a, b = perform_text(context, left), perform_text(context, right)
     if a.lower() in ("true", "false") and b.lower() in ("true", "false"):
         return a.lower() == b.lower()
@@ -38,35 +33,35 @@ class _Pair(Substitution):
 
 
 class EqualsSubstitution(_Pair):
-    """Whether two texts are the same; numbers and true/false compare by value."""
+    """Whether two texts are equal; numbers and true/false compare by value."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(_equal(context, self.left, self.right))
+        return boolean_text(_equal(context, self.left, self.right))
 
 
 class NotEqualsSubstitution(_Pair):
     """Whether two texts differ."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(not _equal(context, self.left, self.right))
+        return boolean_text(not _equal(context, self.left, self.right))
 
 
 class AndSubstitution(_Pair):
-    """Whether both are true."""
+    """Whether both texts are true."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(_truth(context, self.left) and _truth(context, self.right))
+        return boolean_text(_truth(context, self.left) and _truth(context, self.right))
 
 
 class OrSubstitution(_Pair):
-    """Whether one of both is true."""
+    """Whether at least one of two texts is true."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(_truth(context, self.left) or _truth(context, self.right))
+        return boolean_text(_truth(context, self.left) or _truth(context, self.right))
 
 
 class _Several(Substitution):
@@ -75,30 +70,30 @@ class _Several(Substitution):
 
 
 class AllSubstitution(_Several):
-    """Whether all of several are true."""
+    """Whether all texts are true."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(all(_truth(context, value) for value in self.args))
+        return boolean_text(all(_truth(context, value) for value in self.args))
 
 
 class AnySubstitution(_Several):
-    """Whether one of several is true."""
+    """Whether at least one text is true."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(any(_truth(context, value) for value in self.args))
+        return boolean_text(any(_truth(context, value) for value in self.args))
 
 
 class NotSubstitution(Substitution):
-    """The opposite."""
+    """The negation of a text that is true or false."""
 
     def __init__(self, value: Text) -> None:
         self.value = value
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
-        return truth_text(not _truth(context, self.value))
+        return boolean_text(not _truth(context, self.value))
 
 
 class IfElseSubstitution(Substitution):
@@ -109,7 +104,7 @@ class IfElseSubstitution(Substitution):
         self.if_value = if_value
         self.else_value = else_value
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the chosen text."""
         chosen = self.if_value if _truth(context, self.condition) else self.else_value
         return perform_text(context, chosen)

@@ -6,16 +6,15 @@ import operator
 from typing import TYPE_CHECKING, Any
 
 from launch_py.errors import SubstitutionError
-from launch_py.substitution import Substitution, Text, describe_text, perform_text
+from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
 
 if TYPE_CHECKING:
     import ast
     from collections.abc import Callable
 
-    from launch_py.launch_context import LaunchContext
 
 NAMES = {"true": True, "false": False}
-"""Values of launch arguments read so; in Python they would be unknown names."""
+"""Launch arguments spell booleans in lower case; to Python these would be unknown names."""
 
 OPERATORS: dict[str, Callable[..., Any]] = {
     "Eq": operator.eq,
@@ -41,16 +40,16 @@ OPERATORS: dict[str, Callable[..., Any]] = {
 
 
 class PythonExpression(Substitution):
-    """The value of a Python expression over literals: comparisons, logic, sums, if-else.
+    """The value of a Python expression of literals: comparisons, logic, arithmetic, if-else.
 
-    Calls, attributes and names other than true and false are refused: what a user types as the
-    value of an argument ends up in this text.
+    Calls, attributes and names other than true and false are errors, because the values that a user
+    types for launch arguments end up in this text.
     """
 
     def __init__(self, expression: Text) -> None:
         self.expression = expression
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the value as text."""
         import ast
 
@@ -84,7 +83,7 @@ def _evaluate(node: ast.expr) -> Any:
         case ast.BinOp(left, op, right) if type(op).__name__ in OPERATORS:
             return OPERATORS[type(op).__name__](_evaluate(left), _evaluate(right))
         case ast.BoolOp(op, values):
-            return _decide(values, by=isinstance(op, ast.Or))
+            return _first_deciding(values, truth=isinstance(op, ast.Or))
         case ast.IfExp(test, body, orelse):
             return _evaluate(body if _evaluate(test) else orelse)
         case ast.Compare():
@@ -95,12 +94,12 @@ def _evaluate(node: ast.expr) -> Any:
     )
 
 
-def _decide(operands: list[ast.expr], by: bool) -> Any:
-    """Return the first operand that is as true as `by`, else the last one, as and/or do."""
+def _first_deciding(operands: list[ast.expr], truth: bool) -> Any:
+    """Return the first operand whose truth value is `truth`, else the last, as and/or do."""
     value = None
     for operand in operands:
         value = _evaluate(operand)
-        if bool(value) is by:
+        if bool(value) is truth:
             break
     return value
 

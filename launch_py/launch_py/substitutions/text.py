@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from launch_py.errors import SubstitutionError
 from launch_py.near_names import describe_known
-from launch_py.substitution import Substitution, Text, describe_text, perform_text
-
-if TYPE_CHECKING:
-    from launch_py.launch_context import LaunchContext
+from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
 
 
 class TextSubstitution(Substitution):
-    """A text as it stands."""
+    """A plain text."""
 
     def __init__(self, *, text: str) -> None:
         self.text = text
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the text."""
         return self.text
 
@@ -36,7 +32,7 @@ class LaunchConfiguration(Substitution):
         self.variable_name = variable_name
         self.default = default
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the value in this scope, else the default."""
         name = perform_text(context, self.variable_name)
         if name in context.launch_configurations:
@@ -52,17 +48,18 @@ class LaunchConfiguration(Substitution):
 
 
 class LocalSubstitution(Substitution):
-    """What an event tells, as in `LocalSubstitution("event.reason")`.
+    """An attribute of the event being handled, as in `LocalSubstitution("event.reason")`.
 
-    It has a value in actions that are expanded when the event happens: those of `OnShutdown`, of a
-    function, and of a handler of any process. Other handlers' lists are expanded before.
+    It has a value in actions that are expanded when the event happens: those of `OnShutdown`, those
+    that a function returns, and those of a handler for all processes. The lists of other handlers
+    are expanded before.
     """
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
         self.description = description
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the attribute of the event as a text."""
         name, _, path = self.expression.partition(".")
         if name != "event" or not path:
@@ -86,13 +83,13 @@ class LocalSubstitution(Substitution):
 
 
 class EnvironmentVariable(Substitution):
-    """The value of an environment variable, with what the launch file has set so far."""
+    """The value of an environment variable, as the launch file has set it so far."""
 
     def __init__(self, name: Text, *, default_value: Text | None = None) -> None:
         self.name = name
         self.default_value = default_value
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the value, else the default."""
         name = perform_text(context, self.name)
         value = context.environment_variable(name)
@@ -113,7 +110,7 @@ class PathJoinSubstitution(Substitution):
     def __init__(self, substitutions: Iterable[Text]) -> None:
         self.parts = tuple(substitutions)
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the joined path."""
         return os.path.join(*(perform_text(context, part) for part in self.parts))
 
@@ -125,7 +122,7 @@ class PathJoinSubstitution(Substitution):
 class ThisLaunchFile(Substitution):
     """The path of the launch file that is being expanded."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the path."""
         if context.launch_file is None:
             raise SubstitutionError("ThisLaunchFile has no value: no launch file is being read")
@@ -135,6 +132,6 @@ class ThisLaunchFile(Substitution):
 class ThisLaunchFileDir(Substitution):
     """The folder of the launch file that is being expanded."""
 
-    def perform(self, context: LaunchContext) -> str:
+    def perform(self, context: LaunchScope) -> str:
         """Return the path of the folder."""
         return os.path.dirname(ThisLaunchFile().perform(context))

@@ -1,1 +1,1 @@
-"""Carries out a plan: processes, signals, readiness, restarts, the end of everything."""
+"""Executes a plan: starts processes, checks readiness, restarts, handles signals, shuts down."""

@@ -1,24 +1,54 @@
-"""One run of one process: started, read, asked to end, waited for, with its whole group."""
+"""One run of one process: start, output, signals and end, with its whole process group."""
 
 from __future__ import annotations
 
 import os
 import signal
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from launch_py.errors import StartError
-from launch_py.plan import StopDelays
+from launch_py.plan.steps import StopDelays
 from launch_py.supervision import linux
 from launch_py.supervision.event_loop import EventLoop, Timer
-from launch_py.supervision.line_splitter import LineSplitter
+
+MAX_LINE_BYTES = 65536
+"""A longer line is cut: a process that never writes a newline must not fill the memory."""
+
+
+class LineSplitter:
+    """Collects bytes and returns complete lines as text."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, data: bytes) -> Iterator[str]:
+        """Yield the lines that `data` completes."""
+        *lines, self._rest = (self._rest + data).split(b"\n")
+        for line in lines:
+            yield _text(line)
+        while len(self._rest) > MAX_LINE_BYTES:
+            line, self._rest = self._rest[:MAX_LINE_BYTES], self._rest[MAX_LINE_BYTES:]
+            yield _text(line)
+
+    def finish(self) -> Iterator[str]:
+        """Yield what is left without a newline."""
+        rest, self._rest = self._rest, b""
+        if rest:
+            yield _text(rest)
+
+
+def _text(line: bytes) -> str:
+    """Return a line as a terminal shows it: the part after its last carriage return."""
+    return line.decode("utf-8", errors="replace").rstrip("\r").rpartition("\r")[2]
+
 
 GROUP_GRACE_S = 1.0
-"""How long what a process left behind may take to end after SIGTERM, before SIGKILL."""
+"""How long the rest of a process group may take to end after SIGTERM, before SIGKILL."""
 
 GROUP_POLL_S = 0.02
-"""How often a group without its leader is looked at: its end gives no signal."""
+"""How often a group without its leader is checked: no signal reports its end."""
 
 MAX_DRAIN_READS = 256
 READ_BYTES = 65536
@@ -26,7 +56,7 @@ READ_BYTES = 65536
 
 @dataclass(frozen=True, slots=True)
 class ChildSpec:
-    """What to start."""
+    """The command line of a process, and where and how to run it."""
 
     command: Sequence[str]
     environment: Mapping[str, str]
@@ -37,15 +67,15 @@ class ChildSpec:
 class ChildProcess:
     """A started process in a session of its own; belongs to the loop's thread.
 
-    It counts as ended when its leader has exited and nothing is left in its process group: what a
-    crashed process leaves behind is ended before `on_end` is called.
+    It counts as ended when its leader has exited and its process group is empty. Processes that a
+    crashed leader leaves in the group are stopped before `on_end` is called.
 
     Args:
         loop: the event loop.
         spec: what to start.
         on_line: called with the stream, "stdout" or "stderr", and each line.
         on_end: called once with the exit code; a signal counts as 128 + its number.
-        before_kill: called before SIGKILL is sent, the last chance to look at the process.
+        before_kill: called before SIGKILL is sent, while the process can still be inspected.
     """
 
     def __init__(
@@ -70,7 +100,7 @@ class ChildProcess:
 
     @property
     def pid(self) -> int:
-        """The process id, also that of its session and group."""
+        """The process id, which is also its session id and group id."""
         return self._process.pid
 
     @property
@@ -81,12 +111,13 @@ class ChildProcess:
     def stop(self, delays: StopDelays) -> None:
         """Send SIGINT to the process, then SIGTERM and SIGKILL to its group, until it ends.
 
-        Only the leader is asked politely: it knows best how to end its children. What it leaves
-        behind gets SIGTERM.
+        Only the leader gets SIGINT, because it knows how to end its children. Processes that it
+        leaves behind get SIGTERM.
         """
         if self._exit_code is None:
             linux.signal_process(self.pid, signal.SIGINT)
-            linux.signal_process(self.pid, signal.SIGCONT)  # A stopped one would not even see it.
+            # A stopped process handles SIGINT only after SIGCONT.
+            linux.signal_process(self.pid, signal.SIGCONT)
         self._escalate(delays.sigterm_timeout_s, lambda: self._terminate(delays))
 
     def kill(self) -> None:
@@ -97,12 +128,12 @@ class ChildProcess:
         if self._exit_code is None:
             self._killed = True
         else:
-            # What is left may be a zombie that its own parent never reaps: do not wait for it.
+            # A remaining process may be a zombie that its parent never reaps: do not wait for it.
             self._escalate(GROUP_GRACE_S, self._end)
         self._signal(signal.SIGKILL)
 
     def reap(self) -> None:
-        """Notice the end of the leader; to be called when SIGCHLD has come."""
+        """Check whether the leader has ended. Call it after SIGCHLD."""
         if self._exit_code is not None or self.ended:
             return
         code = self._process.poll()
@@ -124,7 +155,7 @@ class ChildProcess:
                 env=spec.environment,
                 cwd=spec.cwd,
                 start_new_session=True,
-                preexec_fn=linux.death_pact(),
+                preexec_fn=linux.kill_with_parent(),
             )
         except (OSError, ValueError, subprocess.SubprocessError) as error:
             for _, readable, _ in streams:
@@ -211,11 +242,11 @@ def _reason(error: Exception, spec: ChildSpec) -> str:
     if isinstance(error, OSError):
         missing = spec.cwd is not None and not os.path.isdir(spec.cwd)
         return f"there is no folder {spec.cwd}" if missing else str(error.strerror).lower()
-    return (_unfit(spec) if isinstance(error, ValueError) else None) or str(error)
+    return (_invalid_text(spec) if isinstance(error, ValueError) else None) or str(error)
 
 
-def _unfit(spec: ChildSpec) -> str | None:
-    """Return which text no process can be given."""
+def _invalid_text(spec: ChildSpec) -> str | None:
+    """Return why a word or a variable cannot be passed to a process, None if all can."""
     for name, value in spec.environment.items():
         if "=" in name:
             return f"no environment variable can be named {name!r}"

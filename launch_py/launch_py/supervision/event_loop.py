@@ -1,6 +1,6 @@
 """The one thread of the supervisor: waits for output, signals and timers.
 
-asyncio would do, but costs 30 ms to import, and the supervisor needs no more than this.
+asyncio would work too, but its import takes 30 ms, and the supervisor needs no more than this.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 LONGEST_WAIT_S = 3600.0
-"""A timer that is due later, or never, is looked at again: the kernel does not count that far."""
+"""The longest single wait. The kernel does not accept an infinite timeout as a number."""
 
 Callback = Callable[[], object]
-"""What it returns is ignored."""
+"""A callback; its return value is ignored."""
 
 
 class Timer:
@@ -32,14 +32,14 @@ class Timer:
         self.cancelled = False
 
     def cancel(self) -> None:
-        """Make sure that the callback is not called any more."""
+        """Do not call the callback any more."""
         self.cancelled = True
 
 
 class EventLoop:
-    """Calls back when a file is readable, a signal has come or a timer is due.
+    """Calls back when a file is readable, a signal has arrived or a timer is due.
 
-    Everything happens in the thread that calls `run`, which must be the main thread for signals.
+    All callbacks run in the thread that calls `run`. For signals it must be the main thread.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -57,13 +57,13 @@ class EventLoop:
         self._selector.unregister(fd)
 
     def call_later(self, delay_s: float, callback: Callback) -> Timer:
-        """Call back once after `delay_s`; timers of one time are called in their order."""
+        """Call back once after `delay_s`; timers due at the same time keep their order."""
         timer = Timer(self.clock() + delay_s, callback)
         heapq.heappush(self._timers, (timer.due_s, next(self._order), timer))
         return timer
 
     def run(self, until: Callable[[], bool]) -> None:
-        """Call back until `until()` is true; it is asked after each round of callbacks."""
+        """Run until `until()` is true; it is checked after each round of callbacks."""
         while not until():
             self._wait()
             self.call_due_timers()
@@ -100,7 +100,7 @@ class EventLoop:
         os.set_blocking(writable, False)
 
         def deliver() -> None:
-            # Once for however many of them: a profiler stops and continues a child without end.
+            # Handle each signal once: a profiler stops and continues a child many times.
             for number in dict.fromkeys(os.read(readable, 65536)):
                 callback = callbacks.get(signal.Signals(number))
                 if callback is not None:
@@ -109,7 +109,7 @@ class EventLoop:
         previous_fd = signal.set_wakeup_fd(writable, warn_on_full_buffer=False)
         previous = {number: signal.signal(number, lambda *_: None) for number in callbacks}
         self.add_reader(readable, deliver)
-        # Whoever started us may have blocked them until now, and again from then on.
+        # The parent process may have blocked these signals. Its mask is restored at the end.
         previous_mask = signal.pthread_sigmask(signal.SIG_UNBLOCK, callbacks)
         try:
             yield

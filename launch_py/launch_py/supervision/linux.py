@@ -1,4 +1,4 @@
-"""What Linux offers to hold on to processes, and Python does not wrap."""
+"""Linux system calls for supervising processes that Python does not wrap."""
 
 from __future__ import annotations
 
@@ -21,25 +21,26 @@ def _prctl(option: int, value: int) -> None:
 
 
 def become_subreaper() -> None:
-    """Make orphans among the descendants of this process its children, instead of init's."""
+    """Make this process, not init, the new parent of orphans among its descendants."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
-def die_with_parent(parent_pid: int, number: signal.Signals) -> None:
-    """Ask for a signal when the parent ends; ends at once if it has ended already.
+def end_with_parent(parent_pid: int, number: signal.Signals) -> None:
+    """Ask the kernel for a signal when the parent ends; exit at once if it has ended already.
 
-    The parent is the thread that made this process, so only a main thread should.
+    To the kernel the parent is the thread that forked this process, so only a main thread should
+    fork.
     """
     _prctl(_PR_SET_PDEATHSIG, number)
     if os.getppid() != parent_pid:
         os._exit(1)
 
 
-def death_pact() -> Callable[[], None]:
-    """Return what a child calls between fork and exec, so that it never outlives this process.
+def kill_with_parent() -> Callable[[], None]:
+    """Return a function for a child to call before exec, so that it dies with this process.
 
-    Everything that it needs is prepared here: the child only makes two system calls. The launcher
-    forks from its only thread, so no lock can be held by another.
+    Everything is prepared here, so the child only makes two system calls. The launcher forks from
+    its only thread, so no other thread can hold a lock.
     """
     libc = ctypes.CDLL(None, use_errno=True)
     parent_pid = os.getpid()
@@ -66,19 +67,19 @@ def children() -> list[int]:
 
 
 def adopted_children() -> list[int]:
-    """Return the children that surely are orphans, made by other processes.
+    """Return the children that are certainly orphans, started by other processes.
 
-    To be called in the leader of a session whose supervised children lead sessions of their own. A
-    child that this process has made itself, as a function of the launch file does with subprocess,
-    is in its session or leads one, and is left to whoever made it: reaped here, its exit code would
-    be lost. An orphan that leads a session cannot be told from such a child, and is left as well.
+    Call it in a session leader whose supervised children lead sessions of their own. A child that
+    this process has started itself, as a function of the launch file does with subprocess, is in
+    its session or leads one. It is not returned: reaping it here would lose its exit code. An
+    orphan that leads a session looks like such a child and is not returned either.
     """
     own = os.getsid(0)
     return [pid for pid in children() if session_of(pid) not in (own, pid, None)]
 
 
 def child_has_ended() -> bool:
-    """Return whether a child waits to be reaped. SIGCHLD also says that one stopped or went on."""
+    """Return whether a child waits to be reaped. SIGCHLD also comes when one stops or continues."""
     try:
         return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
     except ChildProcessError:
@@ -86,7 +87,7 @@ def child_has_ended() -> bool:
 
 
 def reap(pids: list[int]) -> None:
-    """Take the exit status of those of these children that have ended."""
+    """Reap the listed children that have ended."""
     for pid in pids:
         with suppress(ChildProcessError):
             os.waitpid(pid, os.WNOHANG)
@@ -122,23 +123,33 @@ def session_of(pid: int) -> int | None:
         return None
 
 
-def start_of_program(entered_s: float) -> float:
-    """Return when this program was started, its interpreter's start included.
+def start_ticks(pid: int) -> int | None:
+    """Return when a process started, in clock ticks after boot; None if it has ended.
 
-    A shell may have become this process: `bash -c "pip install . && arm launch"` ends so. How long
-    the shell had lived by then is nobody's start.
+    See proc_pid_stat(5): field 22, of which the second one is in parentheses.
+    """
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            return int(file.read().rpartition(b")")[2].split()[19])
+    except (OSError, IndexError, ValueError):
+        return None
+
+
+def start_of_program(entered_s: float) -> float:
+    """Return when this program was started, on `time.monotonic`, before its interpreter started.
+
+    A shell may have exec'd this program, as in `bash -c "pip install . && arm launch"`. The age of
+    the process is then ignored.
 
     Args:
-        entered_s: when its first line ran, of `time.monotonic`, as is the result.
+        entered_s: when its first line ran, on `time.monotonic`.
     """
     forked_s = _forked_s()
     return forked_s if 0.0 <= entered_s - forked_s <= LONGEST_INTERPRETER_START_S else entered_s
 
 
 def _forked_s() -> float:
-    """Return when this process was made, of `time.monotonic`."""
-    with open("/proc/self/stat", encoding="utf-8") as file:
-        # The name in parentheses may hold spaces; the start time is field 22, since the boot.
-        forked_ticks = int(file.read().rpartition(")")[2].split()[19])
+    """Return when this process was forked, on `time.monotonic`."""
+    forked_ticks = start_ticks(os.getpid()) or 0
     age_s = time.clock_gettime(time.CLOCK_BOOTTIME) - forked_ticks / os.sysconf("SC_CLK_TCK")
     return time.monotonic() - max(0.0, age_s)

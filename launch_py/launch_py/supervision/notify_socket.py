@@ -1,8 +1,9 @@
-"""The socket on which processes say that they are ready, and how they are.
+"""The socket on which processes report their readiness and status.
 
 The protocol is systemd's: a datagram of lines `READY=1` and `STATUS=text` to the address in
-NOTIFY_SOCKET, so whatever runs as a service under systemd can use it as it is. The status of the
-processes is shown in the terminal's status line.
+NOTIFY_SOCKET, so a program that runs as a service under systemd needs no change. The terminal's
+status line shows the status of the processes. This project adds one field: `X_REMARK=text` is shown
+to users when everything is ready.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ MAX_DATAGRAM_BYTES = 4096
 class NotifySocket:
     """Receives notifications; belongs to the loop's thread.
 
-    The address is abstract (no file that could be left behind); the kernel says who sent what.
+    The address is abstract, so no file is left behind. The kernel gives the sender of each message.
 
     Args:
         on_notification: called with the sender's process id and the fields of its message.
@@ -36,11 +37,11 @@ class NotifySocket:
         self._socket.bind(f"\0{name}")
 
     def fileno(self) -> int:
-        """Return the file to watch for reading."""
+        """Return the file descriptor to watch for reading."""
         return self._socket.fileno()
 
     def receive(self) -> None:
-        """Take one message; to be called when the socket is readable."""
+        """Receive one message. Call it when the socket is readable."""
         try:
             data, ancillary, _, _ = self._socket.recvmsg(
                 MAX_DATAGRAM_BYTES, socket.CMSG_SPACE(_CREDENTIALS.size)

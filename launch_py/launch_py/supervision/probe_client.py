@@ -1,7 +1,7 @@
 """The supervisor's end of the probe process, which watches topics, services and web pages.
 
-The probe is a process of its own, started only where a condition needs it: rclpy brings threads,
-100 MB and shared-memory files, none of which the supervisor should have.
+The probe is a process of its own, started only if a condition needs it. rclpy brings threads,
+100 MB and shared-memory files, which the supervisor should not have.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-from launch_py.readiness import Probe
+from launch_py.plan.readiness import ProbedCondition
 from launch_py.supervision import linux
+from launch_py.supervision.child_process import LineSplitter
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.line_splitter import LineSplitter
 
 PROBE_COMMAND = (sys.executable, "-P", "-c", "from launch_py.ros.probe import main; main()")
 
@@ -29,7 +30,7 @@ class ProbeClient:
 
     Args:
         loop: the event loop.
-        log_file: where a probe's own complaints go.
+        log_file: receives the stderr of the probes.
     """
 
     def __init__(self, loop: EventLoop, log_file: Path) -> None:
@@ -39,7 +40,7 @@ class ProbeClient:
 
     def watch(
         self,
-        condition: Probe,
+        condition: ProbedCondition,
         environment: Mapping[str, str],
         on_met: Callable[[], None],
         on_failed: Callable[[str], None],
@@ -47,21 +48,44 @@ class ProbeClient:
         """Call back once the condition is met, seen from a process with this environment.
 
         Args:
-            condition: what is watched for.
-            environment: that of the process.
+            condition: the condition to watch.
+            environment: the environment of the probe process.
             on_met: called when the condition is met.
-            on_failed: called instead, with the reason, where that can never be known.
+            on_failed: called instead, with the reason, if the condition cannot be watched.
 
         Returns:
             A function that stops watching.
         """
+        fields = {"kind": type(condition).__name__, **asdict(condition)}
+        return self._process_for(environment).watch(fields, _Watch(on_met, on_failed))
+
+    def watch_nodes(
+        self,
+        environment: Mapping[str, str],
+        on_seen: Callable[[Mapping[str, Any]], None],
+        on_failed: Callable[[str], None],
+    ) -> Callable[[], None]:
+        """Call back with the nodes on the graph now and whenever they change.
+
+        Args:
+            environment: the environment of the probe process.
+            on_seen: called with the nodes; see `find_nodes` of `launch_py.ros.graph`.
+            on_failed: called instead, with the reason, if the graph cannot be watched.
+
+        Returns:
+            A function that stops watching.
+        """
+        watch = _Watch(lambda: None, on_failed, on_seen)
+        return self._process_for(environment).watch({"kind": "Nodes"}, watch)
+
+    def _process_for(self, environment: Mapping[str, str]) -> _ProbeProcess:
         domain = environment.get("ROS_DOMAIN_ID", "")
         open_ones = (p for p in self._processes if p.domain == domain and not p.closed)
         process = next(open_ones, None)
         if process is None:
             process = _ProbeProcess(self._loop, domain, environment, self._log_file)
             self._processes.append(process)
-        return process.watch(condition, _Watch(on_met, on_failed))
+        return process
 
     @property
     def pids(self) -> set[int]:
@@ -69,7 +93,7 @@ class ProbeClient:
         return {process.pid for process in self._processes if not process.ended}
 
     def reap(self) -> None:
-        """Notice ended probes; to be called when SIGCHLD has come."""
+        """Check which probes have ended. Call it after SIGCHLD."""
         for process in self._processes:
             process.reap()
 
@@ -87,14 +111,15 @@ class ProbeClient:
 
 @dataclass(frozen=True, slots=True)
 class _Watch:
-    """Whom to tell what has become of a condition."""
+    """The callbacks of one watched condition."""
 
     on_met: Callable[[], None]
     on_failed: Callable[[str], None]
+    on_seen: Callable[[Mapping[str, Any]], None] = lambda _: None
 
 
 class _ProbeProcess:
-    """One running probe: a line of JSON for each condition in, one for each that is met out."""
+    """One running probe process; see `launch_py.ros.probe` for its protocol."""
 
     def __init__(
         self,
@@ -119,7 +144,7 @@ class _ProbeProcess:
                 stderr=log,
                 env=environment,
                 start_new_session=True,
-                preexec_fn=linux.death_pact(),
+                preexec_fn=linux.kill_with_parent(),
             )
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -137,10 +162,10 @@ class _ProbeProcess:
     def idle(self) -> bool:
         return not self._watched
 
-    def watch(self, condition: Probe, watch: _Watch) -> Callable[[], None]:
+    def watch(self, fields: Mapping[str, object], watch: _Watch) -> Callable[[], None]:
         number = next(self._ids)
         self._watched[number] = watch
-        self._send({"id": number, "kind": type(condition).__name__, **asdict(condition)})
+        self._send({"id": number, **fields})
 
         def stop_watching() -> None:
             if self._watched.pop(number, None) is not None:
@@ -158,7 +183,7 @@ class _ProbeProcess:
 
     def _send(self, message: Mapping[str, object]) -> None:
         if not self.closed:
-            with suppress(BrokenPipeError):  # Then its output ends, too.
+            with suppress(BrokenPipeError):  # Its output then ends too, which `_read` handles.
                 self._stdin.write(json.dumps(message).encode() + b"\n")
 
     def _read(self) -> None:
@@ -167,6 +192,10 @@ class _ProbeProcess:
             self._end()
         for line in self._splitter.feed(data):
             answer = json.loads(line)
+            if "seen" in answer:
+                if watch := self._watched.get(answer["id"]):
+                    watch.on_seen(answer["seen"])
+                continue
             watch = self._watched.pop(answer["id"], None)
             if watch is None:
                 continue

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 
-from launch_py.child_environment import for_program
-from launch_py.plan import GeneratedFile, ProcessStep
-from launch_py.readiness import Probe
+from launch_py.output.log_folder import LogFolder
+from launch_py.plan.readiness import ProbedCondition
+from launch_py.plan.steps import GeneratedFile, ProcessStep
 from launch_py.supervision.child_process import ChildProcess, ChildSpec
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.log_folder import LogFolder
 from launch_py.supervision.probe_client import ProbeClient
+from launch_py.system.child_environment import for_program
 
 
 class LocalRunner:
@@ -18,11 +19,12 @@ class LocalRunner:
 
     Args:
         loop: the event loop.
-        environment: what every process gets.
+        environment: the variables that every process gets.
         logs: the folder for generated files.
         probes: watches conditions.
-        look_at_segments: called while processes live that may not end in order: when all are
-            ready, and before SIGKILL is sent to one.
+        observe_segments: called before SIGKILL is sent to a process, which then leaves its
+            shared-memory files.
+        on_settled: called when everything is ready.
     """
 
     def __init__(
@@ -31,13 +33,17 @@ class LocalRunner:
         environment: Mapping[str, str],
         logs: LogFolder,
         probes: ProbeClient,
-        look_at_segments: Callable[[], None],
+        observe_segments: Callable[[], None],
+        on_settled: Callable[[], None],
     ) -> None:
+        self.sessions: set[int] = set()
+        """The session of every process that was started; each process leads its own."""
         self._loop = loop
         self._environment = environment
         self._logs = logs
         self._probes = probes
-        self._look_at_segments = look_at_segments
+        self._observe_segments = observe_segments
+        self._on_settled = on_settled
 
     def start(
         self,
@@ -48,29 +54,32 @@ class LocalRunner:
         """Start the process of a step.
 
         Raises:
-            StartError: it cannot be started.
+            StartError: the process cannot be started.
         """
         command = [self._word(step, i, word) for i, word in enumerate(step.command)]
-        environment = for_program(command[0], self._merged_environment(step))
+        environment = for_program(command[0], self.environment_of(step))
         spec = ChildSpec(command, environment, step.cwd, step.emulate_tty)
-        return ChildProcess(self._loop, spec, on_line, on_end, self._look_at_segments)
+        child = ChildProcess(self._loop, spec, on_line, on_end, self._observe_segments)
+        self.sessions.add(child.pid)
+        return child
 
     def watch(
         self,
         step: ProcessStep,
-        condition: Probe,
+        condition: ProbedCondition,
         on_met: Callable[[], None],
         on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Call back once the condition is met, or can never be; return how to stop watching."""
-        return self._probes.watch(condition, self._merged_environment(step), on_met, on_failed)
+        """Call back once the condition is met or can never be; return a function to stop that."""
+        environment = for_program(sys.executable, self.environment_of(step))
+        return self._probes.watch(condition, environment, on_met, on_failed)
 
     def settled(self) -> None:
-        """End the probes that nothing waits for; a later condition starts a new one."""
-        self._look_at_segments()
-        self._probes.close_idle()
+        """Report that everything is ready."""
+        self._on_settled()
 
-    def _merged_environment(self, step: ProcessStep) -> dict[str, str]:
+    def environment_of(self, step: ProcessStep) -> dict[str, str]:
+        """Return the environment of a step's process, before it is adapted to the program."""
         inherited = {} if step.replace_environment else self._environment
         merged = {**inherited, **step.environment}
         return {name: value for name, value in merged.items() if value is not None}

@@ -1,82 +1,109 @@
-"""One launch from its first process to its last line: puts the parts together."""
+"""One launch from start to end: creates the parts of the supervisor and connects them."""
 
 from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from launch_py.child_environment import default_environment
-from launch_py.plan import Plan
-from launch_py.screen import PlainScreen, ReadySummary, Screen, TerminalScreen
+from launch_py.fast_dds.shared_memory import SharedMemoryLedger, watch_folder
+from launch_py.output import PlainScreen, ReadySummary, Screen, TerminalScreen
+from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder, log_root
+from launch_py.output.reporter import Reporter
+from launch_py.plan.steps import LaunchPlan
 from launch_py.supervision import linux
+from launch_py.supervision.child_process import READ_BYTES, LineSplitter
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.front import stop_signals, supervise_in_fork
-from launch_py.supervision.log_folder import LogFolder, log_root
+from launch_py.supervision.foreground import (
+    KEY_SIGNAL,
+    STANDARD_INPUT,
+    stop_signals,
+    supervise_in_fork,
+)
+from launch_py.supervision.name_guard import NameGuard
 from launch_py.supervision.notify_socket import NotifySocket
 from launch_py.supervision.probe_client import ProbeClient
-from launch_py.supervision.reporter import Reporter
 from launch_py.supervision.runner import LocalRunner
-from launch_py.supervision.shared_memory import SharedMemoryLedger, watch_folder
 from launch_py.supervision.supervisor import Supervisor
+from launch_py.supervision.terminal_key import KeyCommand, is_heard
+from launch_py.system.child_environment import default_environment
 
 OBSERVE_DELAYS_S = (0.02, 0.1, 0.5)
-"""From the creation of a lock file to the looks at who holds it: the lock is taken next, which may
-take a while where the processor is busy."""
+"""The times after a lock file's creation at which its owner is looked up. The process takes the
+lock a little after creating the file, and much later on a busy processor."""
 
 REPEATED_SIGNAL_S = 0.25
-"""A second SIGINT within this time is the first one again: `timeout` sends each signal twice."""
+"""A second SIGINT within this time is ignored: `timeout` sends each signal twice."""
 
 STATUS_PERIOD_S = 1.0
+LOG_PERIOD_S = 2.0
 ORPHAN_GRACE_S = 1.0
 ORPHAN_POLL_S = 0.02
 
 
 @dataclass(frozen=True, slots=True)
-class SessionOptions:
-    """How one launch is shown; `started_s` is the time of `time.monotonic` at which it began."""
+class LaunchOptions:
+    """Options of one launch.
+
+    Attributes:
+        title: the title of the ready panel, unless the launch file sets one.
+        started_s: the time of `time.monotonic` at which it began.
+        show_all: whether the screen also shows output that otherwise goes to the log files only.
+        replace: whether to end running nodes that have the names of this launch's nodes.
+        log_limit_bytes: the largest total size of a process's log files.
+        key: what the space bar does on a terminal; None for nothing.
+    """
 
     title: str
     started_s: float
     show_all: bool = False
+    replace: bool = False
+    log_limit_bytes: int = DEFAULT_LIMIT_BYTES
+    key: KeyCommand | None = None
 
 
-def run_plan(plan: Plan, environ: Mapping[str, str], options: SessionOptions) -> int:
-    """Carry out a plan; return the exit code when everything has ended.
+def run_plan(plan: LaunchPlan, environ: Mapping[str, str], options: LaunchOptions) -> int:
+    """Execute a plan; return the exit code when everything has ended.
 
     Raises:
-        StartError: the log folder cannot be made.
+        StartError: the log folder cannot be created.
     """
-    logs = LogFolder(log_root(environ))
+    logs = LogFolder(log_root(environ), options.log_limit_bytes)
+    if not is_heard(STANDARD_INPUT):
+        options = replace(options, key=None)
     return supervise_in_fork(
-        lambda front_pid: Session(plan, environ, options, logs, front_pid).run()
+        lambda foreground_pid: _LaunchSession(plan, environ, options, logs, foreground_pid).run(),
+        with_key=options.key is not None,
     )
 
 
-class Session:
-    """Everything that lives as long as one launch; runs in the supervisor's process.
+class _LaunchSession:
+    """Owns all objects of one launch; runs in the supervisor's process.
 
     Args:
-        plan: what to do.
+        plan: the plan to execute.
         environ: the environment of the supervisor.
-        options: how it is shown.
+        options: the options of the launch.
         logs: the log folder.
-        front_pid: the process that the user started; its end is the end of everything.
+        foreground_pid: the process that the user started. The launch ends with it.
     """
 
     def __init__(
         self,
-        plan: Plan,
+        plan: LaunchPlan,
         environ: Mapping[str, str],
-        options: SessionOptions,
+        options: LaunchOptions,
         logs: LogFolder,
-        front_pid: int,
+        foreground_pid: int,
     ) -> None:
-        self._front_pid = front_pid
+        self._foreground_pid = foreground_pid
+        self._plan = plan
+        self._key = options.key
         self._logs = logs
         self._stop_requested_s: float | None = None
         self._loop = EventLoop()
@@ -88,9 +115,16 @@ class Session:
         self._ledger = SharedMemoryLedger(self._is_ours)
         self._probes = ProbeClient(self._loop, logs.path / "probe.log")
         added = default_environment(environ, logs.path, self._notify.address, colours)
+        self._environ = {**environ, **added}
         runner = LocalRunner(
-            self._loop, {**environ, **added}, logs, self._probes, self._ledger.observe
+            self._loop,
+            self._environ,
+            logs,
+            self._probes,
+            self._ledger.observe,
+            self._settled,
         )
+        self._names = NameGuard(self._loop, self._probes, runner, self._reporter, options.replace)
         self._supervisor = Supervisor(
             plan,
             self._loop,
@@ -101,21 +135,25 @@ class Session:
         )
 
     def run(self) -> int:
-        """Start everything, wait for its end, clean up; return the exit code."""
+        """Start everything, wait until it has ended, clean up; return the exit code."""
         self._loop.add_reader(self._notify.fileno(), self._notify.receive)
         inotify = watch_folder()
         if inotify is not None:
             self._loop.add_reader(inotify, lambda: self._segments_appeared(inotify))
-        # Afterwards they are blocked here, but not in the thread of a function that is not waited
-        # for: there one would raise KeyboardInterrupt in the last lines.
+        # The loop blocks these signals in this thread later. Without handlers, a signal in the
+        # thread of an event handler that is still running would raise KeyboardInterrupt.
         for number in stop_signals():
             signal.signal(number, lambda *_: None)
         with self._loop.signals(self._signal_callbacks()):
-            self._supervisor.begin()
+            self._names.look(self._plan.processes, self._supervisor.refuse)
+            self._loop.run(until=lambda: self._supervisor.stopping or not self._names.busy)
+            if not self._supervisor.stopping:
+                self._supervisor.begin()
             if self._live:
                 self._refresh()
+            self._loop.call_later(LOG_PERIOD_S, self._maintain_logs)
             self._loop.run(until=self._is_over)
-            self._supervisor.rest()
+            self._supervisor.finish_idle()
             self._loop.run(until=self._is_over)
             self._end_orphans()
         self._ledger.sweep()
@@ -130,13 +168,47 @@ class Session:
             number: lambda n=number: self._stop_for(n) for number in stop_signals()
         }
         callbacks[signal.SIGCHLD] = self._reap
+        callbacks[KEY_SIGNAL] = self._run_key_command
         return callbacks
+
+    def _run_key_command(self) -> None:
+        """Run the command of the space bar, and show its output line by line."""
+        key = self._key
+        if key is None or self._supervisor.stopping:
+            return
+        self._reporter.note(f"{key.what}: {' '.join(key.words)}")
+        try:
+            child = subprocess.Popen(
+                key.words,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                env=self._environ,
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._reporter.problem(f"{key.what} is not possible: {error}")
+            return
+        assert child.stdout is not None
+        output = child.stdout
+
+        splitter = LineSplitter()
+
+        def show() -> None:
+            data = os.read(output.fileno(), READ_BYTES)
+            for line in splitter.feed(data) if data else splitter.finish():
+                self._reporter.note(line)
+            if not data:
+                self._loop.remove_reader(output.fileno())
+                output.close()
+
+        self._loop.add_reader(output.fileno(), show)
 
     def _stop_for(self, number: signal.Signals) -> None:
         now_s = time.monotonic()
         first_s = self._stop_requested_s
-        if os.getppid() != self._front_pid:
-            self._supervisor.stop_hastily("the launcher was killed")
+        if os.getppid() != self._foreground_pid:
+            self._supervisor.stop_quickly("the launcher was killed")
         elif number is signal.SIGQUIT:
             self._supervisor.kill("stopped now by SIGQUIT")
         elif first_s is None:
@@ -159,25 +231,31 @@ class Session:
         linux.reap(linux.adopted_children())
         self._ledger.sweep()
 
+    def _settled(self) -> None:
+        """Release the resources of the start-up, because everything is ready."""
+        self._ledger.observe()
+        self._probes.close_idle()
+        self._names.settled()
+
     def _others(self) -> list[int]:
-        """Return the children that nobody supervises: orphans, and what functions have started."""
-        own = {m.child.pid for m in self._supervisor.members.values() if m.child is not None}
+        """Return the unsupervised children: orphans, and children of the launch file's code."""
+        own = {m.child.pid for m in self._supervisor.processes.values() if m.child is not None}
         return [pid for pid in linux.children() if pid not in own | self._probes.pids]
 
     def _end_orphans(self) -> None:
-        """End what left its process group and so outlived its parent, and the probes."""
+        """End the probes, and the processes that left their group and outlived their parent."""
         self._probes.close()
         self._end_remaining(signal.SIGTERM, time.monotonic() + ORPHAN_GRACE_S)
         self._end_remaining(signal.SIGKILL, time.monotonic() + ORPHAN_GRACE_S)
 
     def _end_remaining(self, number: signal.Signals, deadline_s: float) -> None:
-        """Send a signal to each remaining child once, and wait until none is left.
+        """Send a signal to each remaining child once, and wait until none remains.
 
-        All are reaped now: no function is waited for any more that would want an exit code.
+        All of them are reaped now, because the launch file's code no longer waits for exit codes.
         """
         signalled = set(self._probes.pids) if number is signal.SIGTERM else set[int]()
 
-        def none_is_left() -> bool:
+        def none_remains() -> bool:
             linux.reap(self._others())
             remaining = {*self._others(), *self._probes.pids}
             for pid in remaining - signalled:
@@ -186,17 +264,17 @@ class Session:
                 signalled.add(pid)
             return not remaining or time.monotonic() > deadline_s
 
-        def look_again() -> None:
-            self._loop.call_later(ORPHAN_POLL_S, look_again)
+        def wake_loop() -> None:
+            self._loop.call_later(ORPHAN_POLL_S, wake_loop)
 
-        look_again()
-        self._loop.run(until=none_is_left)
+        wake_loop()
+        self._loop.run(until=none_remains)
 
     def _is_ours(self, pid: int) -> bool:
         session = linux.session_of(pid)
         return any(
             m.child is not None and m.child.pid == session
-            for m in self._supervisor.members.values()
+            for m in self._supervisor.processes.values()
         )
 
     def _segments_appeared(self, inotify: int) -> None:
@@ -206,23 +284,28 @@ class Session:
 
     def _take_notification(self, pid: int, fields: dict[str, str]) -> None:
         session = linux.session_of(pid)
-        for member in self._supervisor.members.values():
-            if member.child is not None and member.child.pid == session:
-                member.notified(fields)
+        for process in self._supervisor.processes.values():
+            if process.child is not None and process.child.pid == session:
+                process.notified(fields)
+
+    def _maintain_logs(self) -> None:
+        self._logs.trim_others()
+        self._reporter.report_dropped()
+        self._loop.call_later(LOG_PERIOD_S, self._maintain_logs)
 
     def _refresh(self) -> None:
         self._reporter.refresh()
         self._loop.call_later(STATUS_PERIOD_S, self._refresh)
 
 
-def _screen(options: SessionOptions, terminal: bool, colours: bool) -> Screen:
+def _screen(options: LaunchOptions, terminal: bool, colours: bool) -> Screen:
     if terminal:
         return TerminalScreen(sys.stdout, options.started_s, colours)
     return PlainScreen(sys.stdout)
 
 
 def _summary(
-    plan: Plan, environ: Mapping[str, str], options: SessionOptions, log_folder: Path
+    plan: LaunchPlan, environ: Mapping[str, str], options: LaunchOptions, log_folder: Path
 ) -> ReadySummary:
     titles = [panel.title for panel in plan.panels if panel.title]
     discovery = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
@@ -233,6 +316,8 @@ def _summary(
         ("ROS_DOMAIN_ID", f"{domain}, discovery {discovery}"),
         ("stop", "Ctrl-C; twice: now"),
     ]
+    if options.key is not None:
+        notes.append((options.key.what, "space bar"))
     return ReadySummary(
         title=titles[0] if titles else options.title,
         topics=tuple(row for panel in plan.panels for row in panel.topics),

@@ -1,33 +1,40 @@
-"""Takes the steps of a plan when their time has come, and ends everything in order."""
+"""Executes a plan: takes each step when it is due, and stops everything in order."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from launch_py.errors import LaunchError
-from launch_py.events import ProcessEvent, Shutdown
-from launch_py.plan import (
+from launch_py.events import Shutdown
+from launch_py.output.reporter import Reporter
+from launch_py.output.screen import ReadySummary
+from launch_py.plan.readiness import Finished
+from launch_py.plan.steps import (
     DeferredStep,
-    FarewellStep,
-    ListeningStep,
+    LaunchPlan,
     MessageStep,
-    Plan,
+    OutputHandlerStep,
     ProcessStep,
+    ShutdownHandlerStep,
     ShutdownStep,
     Step,
     StopDelays,
     Trigger,
     TriggerKind,
 )
-from launch_py.readiness import ProcessExited
-from launch_py.screen.screen import ReadySummary
+from launch_py.supervision.event_handling import (
+    HANDLER_TIMEOUT_S,
+    HandlerResult,
+    HandlerThread,
+    awaited_event,
+    call_handler,
+    line_event,
+)
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.late_calls import LIMIT_S, LateCalls, Outcome, outcome_of
-from launch_py.supervision.member import Member, MemberState, ProcessRunner
-from launch_py.supervision.process_events import exited_event, line_event, started_event
-from launch_py.supervision.reporter import Reporter
+from launch_py.supervision.managed_process import ManagedProcess, ProcessRunner, ProcessState
+from launch_py.supervision.step_schedule import StepSchedule
 
 EventT = TypeVar("EventT")
 
@@ -36,45 +43,44 @@ EXIT_KILLED = 137
 EXIT_FORCED = 130
 
 REASON_IDLE = "idle"
-"""Why handlers of the shutdown are told that it ends where everything has ended by itself, as in
-ros2 launch."""
+"""The reason of the shutdown event if every process has ended by itself, as in ros2 launch."""
 
-HASTY_DELAYS = StopDelays(sigterm_timeout_s=1.0, sigkill_timeout_s=1.0)
-"""For an end that nobody watches any more: the launcher itself was killed."""
+SHORT_DELAYS = StopDelays(sigterm_timeout_s=1.0, sigkill_timeout_s=1.0)
+"""Used when the launcher itself was killed, and nobody waits for an orderly shutdown."""
 
 
 @dataclass(frozen=True, slots=True)
-class Failure:
-    """The first thing that went wrong, and the exit code that tells of it."""
+class LaunchFailure:
+    """The first failure of a launch, and the exit code that reports it."""
 
     text: str
     exit_code: int
 
 
 class Supervisor:
-    """Carries out one plan; belongs to the loop's thread.
+    """Executes one plan; belongs to the loop's thread.
 
     Args:
-        plan: what to do.
+        plan: the plan.
         loop: the event loop.
-        runner: starts processes and probes conditions.
-        reporter: says what happens.
-        summary: what to say when everything is ready.
+        runner: starts processes and watches conditions.
+        reporter: tells the user what happens.
+        summary: what to show when everything is ready.
         started_s: the loop's time at which the launch began.
     """
 
     def __init__(
         self,
-        plan: Plan,
+        plan: LaunchPlan,
         loop: EventLoop,
         runner: ProcessRunner,
         reporter: Reporter,
         summary: ReadySummary,
         started_s: float,
     ) -> None:
-        self.members: dict[str, Member] = {}
+        self.processes: dict[str, ManagedProcess] = {}
         self.stopping = False
-        self.failure: Failure | None = None
+        self.failure: LaunchFailure | None = None
         self._plan = plan
         self._loop = loop
         self._runner = runner
@@ -83,132 +89,148 @@ class Supervisor:
         self._started_s = started_s
         self._start_up = plan.start_up()
         self._announced = not self._start_up
-        self._pending: list[Step] = []
-        self._listening: list[ListeningStep] = []
-        self._farewells: list[FarewellStep] = []
-        self._farewells_left = 0
-        self._delayed = 0
-        self._late_calls = LateCalls(loop, self._too_late)
+        self._schedule = StepSchedule(loop, self._has_happened)
+        self._output_handlers: list[OutputHandlerStep] = []
+        self._shutdown_handlers: list[ShutdownHandlerStep] = []
+        self._shutdown_handlers_left = 0
+        self._handler_thread = HandlerThread(loop, self._handler_timed_out)
         self._add(plan.steps)
 
     @property
     def done(self) -> bool:
-        """Whether nothing runs and nothing more can happen."""
-        if any(member.active for member in self.members.values()):
+        """Whether no process runs and no step can follow."""
+        if any(process.active for process in self.processes.values()):
             return False
         if self.stopping:
-            return not self._late_calls.busy
-        return not (self._delayed or any(map(self._is_due, self._pending)))
+            return not self._handler_thread.busy
+        return not self._schedule.open
 
     def begin(self) -> None:
         """Take the first steps."""
-        self._reporter.begin(list(self.members), self.status)
+        self._reporter.begin(list(self.processes), self.status)
         for warning in self._plan.warnings:
             self._reporter.problem(warning)
         self._advance()
 
     def stop(self, reason: str) -> None:
-        """End everything, whatever depends on another process before that process."""
+        """Stop everything; a process that depends on another one stops first."""
         if not self.stopping:
             self._reporter.note(f"stopping: {reason}")
-            self._begin_to_end(reason)
+            self._begin_shutdown(reason)
 
-    def rest(self) -> None:
-        """Say farewell where everything has ended by itself; `done` is true again afterwards."""
+    def refuse(self, why: str) -> None:
+        """Fail because a node's name is taken, and stop what has been started."""
         if not self.stopping:
-            failed = [m for m in self.members.values() if m.exit_code]
-            if failed:
-                self._fail(Failure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code))
-            self._begin_to_end(REASON_IDLE)
+            self._fail(LaunchFailure(why, EXIT_NOT_READY))
+            if any(process.was_started for process in self.processes.values()):
+                self.stop("two nodes have the same name")
+            else:
+                self.stopping = True
+                self._schedule.clear()
 
-    def stop_hastily(self, reason: str) -> None:
-        """End everything at once, with short delays before SIGKILL."""
+    def finish_idle(self) -> None:
+        """Call the shutdown handlers after every process has ended by itself.
+
+        `done` is false until they have returned.
+        """
+        if not self.stopping:
+            failed = [p for p in self.processes.values() if p.exit_code]
+            if failed:
+                self._fail(
+                    LaunchFailure(f"{failed[0].name} {failed[0].ending}", failed[0].exit_code)
+                )
+            self._begin_shutdown(REASON_IDLE)
+
+    def stop_quickly(self, reason: str) -> None:
+        """Stop every process at once, with short delays before SIGKILL."""
         if not self.stopping:
             self.stopping = True
-            self._pending.clear()
+            self._schedule.clear()
             self._reporter.note(f"stopping: {reason}")
-        self._late_calls.give_up()
-        for member in self._active():
-            member.stop(HASTY_DELAYS)
+        self._handler_thread.give_up()
+        for process in self._active():
+            process.stop(SHORT_DELAYS)
 
     def kill(self, reason: str) -> None:
-        """End everything now, by SIGKILL."""
+        """Kill every process now, by SIGKILL."""
         self.stopping = True
-        self._pending.clear()
-        self._late_calls.give_up()
-        self._fail(Failure(reason, EXIT_FORCED))
-        for member in self._active():
-            member.kill()
+        self._schedule.clear()
+        self._handler_thread.give_up()
+        self._fail(LaunchFailure(reason, EXIT_FORCED))
+        for process in self._active():
+            process.kill()
 
     def reap(self) -> None:
-        """Notice ended processes; to be called when SIGCHLD has come."""
-        for member in list(self.members.values()):
-            member.reap()
+        """Check which processes have ended. Call it after SIGCHLD."""
+        for process in list(self.processes.values()):
+            process.reap()
 
     def status(self) -> str:
-        """Return how things stand, in one line."""
-        running = [m for m in self.members.values() if m.state is MemberState.RUNNING]
+        """Return the status line."""
+        running = [p for p in self.processes.values() if p.state is ProcessState.RUNNING]
         up_s = int(self._loop.clock() - self._started_s)
         facts = [f"up {up_s // 60}:{up_s % 60:02d}"]
         facts.append(f"{len(running)} process{'' if len(running) == 1 else 'es'}")
         if self.stopping and running:
-            facts.append("stopping " + ", ".join(m.name for m in running))
-        elif late := sorted(name for name in self._start_up if not self.members[name].ready):
+            facts.append("stopping " + ", ".join(p.name for p in running))
+        elif late := sorted(name for name in self._start_up if not self.processes[name].ready):
             facts.append("waiting for " + ", ".join(late))
-        facts += [member.status for member in running if member.status]
+        facts += [process.status for process in running if process.status]
         return " · ".join(facts)
 
-    def member_started(self, member: Member) -> None:
+    def process_started(self, process: ManagedProcess) -> None:
         """Take the steps that wait for the start."""
-        pid = member.child.pid if member.child is not None else 0
-        self._reporter.detail(f"{member.name} started, process {pid}")
+        pid = process.child.pid if process.child is not None else 0
+        self._reporter.detail(f"{process.name} started, process {pid}")
         self._advance()
 
-    def member_ready(self, member: Member) -> None:
-        """Take the steps that wait for the readiness; say so when it was the last one."""
+    def process_ready(self, process: ManagedProcess) -> None:
+        """Take the steps that wait for it. Report when everything is ready."""
         if self.stopping:
             return
-        if any(not isinstance(condition, ProcessExited) for condition in member.step.ready):
+        if any(not isinstance(condition, Finished) for condition in process.step.ready):
             elapsed_s = self._loop.clock() - self._started_s
-            self._reporter.note(f"{member.name} is ready after {elapsed_s:.2f} s")
+            self._reporter.note(f"{process.name} is ready after {elapsed_s:.2f} s")
         self._advance()
-        if not self._announced and all(self.members[name].ready for name in self._start_up):
+        if not self._announced and all(self.processes[name].ready for name in self._start_up):
             self._announced = True
-            # Before the user knows: from then on anybody may kill a process.
+            # This comes before the report, because a user may kill a process right after it.
             self._runner.settled()
-            self._reporter.ready(self._loop.clock() - self._started_s, self._summary)
+            remarks = [(p.name, p.remark) for p in self.processes.values() if p.remark]
+            summary = replace(self._summary, notes=(*self._summary.notes, *remarks))
+            self._reporter.ready(self._loop.clock() - self._started_s, summary)
 
-    def member_not_ready(self, member: Member, why: str) -> None:
-        """Give up: what depends on the process could never start."""
+    def process_not_ready(self, process: ManagedProcess, why: str) -> None:
+        """Stop everything, because the processes that depend on this one can never start."""
         if self.stopping:
             return
-        self._fail(Failure(f"{member.name} {why}", EXIT_NOT_READY))
-        self.stop(f"{member.name} is not ready")
+        self._fail(LaunchFailure(f"{process.name} {why}", EXIT_NOT_READY))
+        self.stop(f"{process.name} is not ready")
 
-    def member_wrote(self, member: Member, stream: str, text: str) -> None:
-        """Ask those who listen what follows."""
-        for step in self._listening:
-            heard = step.processes is None or member.name in step.processes
-            if heard and not self.stopping:
-                self._expand(step.expand, line_event(member, stream, text))
+    def process_wrote(self, process: ManagedProcess, stream: str, text: str) -> None:
+        """Call the output handlers of the process."""
+        for step in self._output_handlers:
+            handles = step.processes is None or process.name in step.processes
+            if handles and not self.stopping:
+                self._expand(step.expand, line_event(process, stream, text))
 
-    def member_ended(self, member: Member) -> None:
-        """Take the steps that wait for the end, or go on stopping."""
-        text = f"{member.name} {member.ending}"
-        if member.stopping:
-            killed = member.child is not None and member.child.killed
+    def process_ended(self, process: ManagedProcess) -> None:
+        """Take the steps that wait for the end, or stop the next process."""
+        text = f"{process.name} {process.ending}"
+        if process.stopping:
+            killed = process.child is not None and process.child.killed
             (self._reporter.problem if killed else self._reporter.note)(text)
             if killed:
-                self._fail(Failure(text, EXIT_KILLED))
+                self._fail(LaunchFailure(text, EXIT_KILLED))
         else:
-            (self._reporter.problem if member.exit_code else self._reporter.note)(text)
-            self._check_ended(member, text)
+            (self._reporter.problem if process.exit_code else self._reporter.note)(text)
+            self._check_ended(process, text)
         if self.stopping:
             self._stop_next()
         self._advance()
 
     def finish(self) -> int:
-        """Return the exit code, after everything has ended; the last line names what failed."""
+        """Show the last line, which names the failure, and return the exit code."""
         elapsed_s = self._loop.clock() - self._started_s
         if self.failure is None:
             self._reporter.end(f"stopped after {elapsed_s:.2f} s", failed=False)
@@ -220,169 +242,145 @@ class Supervisor:
     def _add(self, steps: Iterable[Step]) -> None:
         for step in steps:
             if isinstance(step, ProcessStep):
-                self.members[step.name] = Member(
+                self.processes[step.name] = ManagedProcess(
                     step, self._loop, self._runner, self._reporter, self
                 )
-            self._pending.append(step)
+            self._schedule.add(step)
 
-    def _active(self) -> list[Member]:
-        return [member for member in self.members.values() if member.active]
+    def _active(self) -> list[ManagedProcess]:
+        return [process for process in self.processes.values() if process.active]
 
     def _advance(self) -> None:
-        """Take every step whose time has come.
+        """Take every step that is due.
 
-        Taking one may call back into this method, so the list is looked at anew each time.
+        Taking a step may call this method again, so the loop asks the schedule each time.
         """
-        while (step := next(filter(self._is_due, self._pending), None)) is not None:
-            self._pending.remove(step)
+        while (step := self._schedule.next_due()) is not None:
             if self.stopping:
-                self._take_late(step)
+                self._take_while_stopping(step)
             elif step.delay_s > 0.0:
-                self._delayed += 1
-                self._loop.call_later(step.delay_s, lambda s=step: self._take_delayed(s))
+                self._schedule.delay(step, self._take_delayed)
             else:
                 self._take(step)
 
-    def _is_due(self, step: Step) -> bool:
-        return all(self._has_happened(trigger) for trigger in step.after)
-
     def _has_happened(self, trigger: Trigger) -> bool:
-        member = self.members[str(trigger.process)]
+        process = self.processes[str(trigger.process)]
         match trigger.kind:
             case TriggerKind.STARTED:
-                return member.was_started
+                return process.was_started
             case TriggerKind.READY:
-                return member.ready
+                return process.ready
             case TriggerKind.EXITED:
-                return member.state is MemberState.ENDED
+                return process.state is ProcessState.ENDED
 
     def _take_delayed(self, step: Step) -> None:
-        self._delayed -= 1
         if not self.stopping:
             self._take(step)
 
     def _take(self, step: Step) -> None:
         match step:
             case ProcessStep():
-                self.members[step.name].start()
+                self.processes[step.name].start()
             case MessageStep():
                 self._reporter.note(step.text)
             case ShutdownStep():
                 self._shut_down(step)
             case DeferredStep():
-                self._expand(step.expand, self._event(step))
-            case ListeningStep():
-                self._listening.append(step)
-            case FarewellStep():
-                self._farewells.append(step)
+                self._expand(step.expand, awaited_event(step, self.processes))
+            case OutputHandlerStep():
+                self._output_handlers.append(step)
+            case ShutdownHandlerStep():
+                self._shutdown_handlers.append(step)
 
-    def _take_late(self, step: Step) -> None:
-        """Take a step while everything stops: nothing is started, and nothing waited for."""
+    def _take_while_stopping(self, step: Step) -> None:
+        """Take a step during the shutdown, which starts no process and waits for no delay."""
         match step:
             case ProcessStep():
-                self._reporter.problem(f"{step.name} is not started: everything stops")
+                self._reporter.problem(f"{step.name} is not started: the launch is stopping")
             case MessageStep() if not step.delay_s:
                 self._reporter.note(step.text)
             case DeferredStep() if not step.delay_s:
-                event = self._event(step)
-                self._late_calls.call(lambda: step.expand(event), self._take_outcome)
+                event = awaited_event(step, self.processes)
+                self._handler_thread.call(lambda: step.expand(event), self._take_result)
             case _:
                 pass
 
-    def _take_outcome(self, outcome: Outcome) -> None:
+    def _take_result(self, outcome: HandlerResult) -> None:
         if isinstance(outcome, LaunchError):
             self._reporter.problem(str(outcome))
             return
         self._add(outcome)
         self._advance()
 
-    def _too_late(self) -> None:
+    def _handler_timed_out(self) -> None:
         self._reporter.problem(
-            f"an event handler has not returned after {LIMIT_S:g} s: it is not waited for, and no "
-            "other is called"
+            f"an event handler has not returned after {HANDLER_TIMEOUT_S:g} s; "
+            "the launcher stops waiting for it and calls no other handler"
         )
-        self._farewells_left = 0
+        self._shutdown_handlers_left = 0
         self._stop_next()
 
     def _shut_down(self, step: ShutdownStep) -> None:
-        ended = [self.members[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
-        for member in ended:
-            if member.exit_code:
-                self._fail(Failure(f"{member.name} {member.ending}", member.exit_code))
-        reason = step.reason or " and ".join(f"{m.name} {m.ending}" for m in ended)
+        ended = [self.processes[str(t.process)] for t in step.after if t.kind is TriggerKind.EXITED]
+        for process in ended:
+            if process.exit_code:
+                self._fail(LaunchFailure(f"{process.name} {process.ending}", process.exit_code))
+        reason = step.reason or " and ".join(f"{p.name} {p.ending}" for p in ended)
         self.stop(reason or "the launch file asks for it")
 
     def _expand(self, expand: Callable[[EventT], Sequence[Step]], event: EventT) -> None:
-        outcome = outcome_of(lambda: expand(event))
+        outcome = call_handler(lambda: expand(event))
         if isinstance(outcome, LaunchError):
-            self._fail(Failure(str(outcome), EXIT_NOT_READY))
+            self._fail(LaunchFailure(str(outcome), EXIT_NOT_READY))
             self.stop("an event handler failed")
         else:
             self._add(outcome)
         self._advance()
 
-    def _begin_to_end(self, reason: str) -> None:
-        """Say farewell, then stop every process; from now on nothing is started."""
+    def _begin_shutdown(self, reason: str) -> None:
+        """Call the shutdown handlers, then stop every process. Nothing is started from now on."""
         self.stopping = True
-        self._pending = [step for step in self._pending if _follows_an_end(step)]
-        self._farewells_left = len(self._farewells)
-        for member in self._active():
-            member.restart_no_more()
+        self._schedule.keep_reactions_to_exits()
+        self._shutdown_handlers_left = len(self._shutdown_handlers)
+        for process in self._active():
+            process.disable_restart()
         event = Shutdown(reason)
-        for farewell in self._farewells:
-            self._late_calls.call(lambda f=farewell: f.expand(event), self._take_farewell)
+        for handler in self._shutdown_handlers:
+            self._handler_thread.call(lambda h=handler: h.expand(event), self._take_shutdown_result)
         self._stop_next()
 
-    def _take_farewell(self, outcome: Outcome) -> None:
+    def _take_shutdown_result(self, outcome: HandlerResult) -> None:
         if isinstance(outcome, LaunchError):
-            self._fail(Failure(str(outcome), EXIT_NOT_READY))
+            self._fail(LaunchFailure(str(outcome), EXIT_NOT_READY))
         else:
-            self._take_outcome(outcome)
-        self._farewells_left -= 1
+            self._take_result(outcome)
+        self._shutdown_handlers_left -= 1
         self._stop_next()
 
-    def _event(self, step: DeferredStep) -> ProcessEvent | None:
-        """Return the event that the step's function is told of: the last one it waited for."""
-        if not step.after:
-            return None
-        trigger = step.after[-1]
-        member = self.members[str(trigger.process)]
-        exited = trigger.kind is TriggerKind.EXITED
-        return exited_event(member) if exited else started_event(member)
-
-    def _check_ended(self, member: Member, text: str) -> None:
-        """Fail where something can never happen because this process has ended."""
-        if member.ready:
+    def _check_ended(self, process: ManagedProcess, text: str) -> None:
+        """Fail if a step or a readiness condition can no longer be met after this exit."""
+        if process.ready:
             return
-        needed = any(
-            trigger.process == member.name and trigger.kind is not TriggerKind.EXITED
-            for step in self._pending
-            for trigger in step.after
-        )
-        if member.step.ready or needed or not member.was_started:
-            early = ", before it was ready" if member.missing() else ""
-            # Of a process that failed, its own words are the reason, not what did not follow.
-            missing = f": {member.missing()}" if early and not member.exit_code else ""
-            self._fail(Failure(text + early + missing, member.exit_code or EXIT_NOT_READY))
-            self.stop(f"{member.name} ended before it was ready")
+        needed = self._schedule.needs(process.name)
+        if process.step.ready or needed or not process.was_started:
+            early = ", before it was ready" if process.missing() else ""
+            # If the process failed, its exit code is the reason, not the unmet condition.
+            missing = f": {process.missing()}" if early and not process.exit_code else ""
+            self._fail(LaunchFailure(text + early + missing, process.exit_code or EXIT_NOT_READY))
+            self.stop(f"{process.name} ended before it was ready")
 
-    def _fail(self, failure: Failure) -> None:
-        """Keep the first failure; the others follow from it."""
+    def _fail(self, failure: LaunchFailure) -> None:
+        """Keep the first failure. Later ones follow from it."""
         if self.failure is None:
             self.failure = failure
             self._reporter.detail(f"failure: {failure.text}")
 
     def _stop_next(self) -> None:
-        """Stop every process that no running one depends on, once all farewells are said."""
-        if self._farewells_left:
+        """Stop every process that no running process needs, once the shutdown handlers returned."""
+        if self._shutdown_handlers_left:
             return
         active = self._active()
-        needed = {str(t.process) for m in active for t in m.step.after}
-        for member in active:
-            if member.name not in needed and not member.stopping:
-                member.stop()
-
-
-def _follows_an_end(step: Step) -> bool:
-    """Return whether the step may still be taken while everything stops."""
-    return any(trigger.kind is TriggerKind.EXITED for trigger in step.after)
+        needed = {str(t.process) for p in active for t in p.step.after}
+        for process in active:
+            if process.name not in needed and not process.stopping:
+                process.stop()

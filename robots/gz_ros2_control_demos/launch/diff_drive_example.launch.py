@@ -1,4 +1,4 @@
-"""A robot on two wheels, driven by diff_drive_controller."""
+"""A two-wheeled robot driven by diff_drive_controller."""
 
 from launch_py import IncludeLaunchDescription, LaunchDescription, ReadyPanel
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
@@ -7,7 +7,7 @@ from launch_py.substitutions import PathJoinSubstitution
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the simulation of any robot, told about this one; its arguments are this file's."""
+    """Return sim.launch.py with this robot; its other arguments are available here as well."""
     share = FindPackageShare("gz_ros2_control_demos")
     simulation = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "sim.launch.py"])
     return LaunchDescription(

@@ -1,4 +1,4 @@
-"""A gripper whose left finger follows the right one, commanded by force or by place."""
+"""A gripper whose left finger mimics the right one, commanded by force or position."""
 
 from launch_py import (
     DeclareLaunchArgument,
@@ -10,16 +10,16 @@ from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
 
-UNITS = {"effort": "a force in N", "position": "a place in m"}
+UNITS = {"effort": "a force in N", "position": "a position in m"}
 
 
 def command(interface: str) -> str:
-    """Return what the controller takes."""
+    """Return the type and unit of the controller's commands."""
     return f"std_msgs/msg/Float64MultiArray, {UNITS[interface]}"
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the simulation of any robot, told about this one; its arguments are this file's."""
+    """Return sim.launch.py with this robot; its other arguments are available here as well."""
     share = FindPackageShare("gz_ros2_control_demos")
     simulation = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "sim.launch.py"])
     interface = LaunchConfiguration("interface")
@@ -28,7 +28,7 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "interface",
                 default_value="effort",
-                description="what is commanded",
+                description="command interface of the right finger",
                 choices=list(UNITS),
             ),
             IncludeLaunchDescription(

@@ -1,4 +1,4 @@
-"""A gripper whose left finger follows the right one, commanded by a force in N."""
+"""A gripper whose left finger mimics the right one, commanded by a force in N."""
 
 from launch_py import IncludeLaunchDescription, LaunchDescription
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource

@@ -1,4 +1,4 @@
-"""A gripper whose left finger follows the right one, commanded by a place in m."""
+"""A gripper whose left finger mimics the right one, commanded by a position in m."""
 
 from launch_py import IncludeLaunchDescription, LaunchDescription
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource

@@ -26,31 +26,32 @@ ARM_CONTROLLERS = "joint_state_broadcaster,arm_controller"
 GRIPPER_CONTROLLER = "gripper_action_controller"
 
 ARGUMENTS = {
-    "robot_name": ("mycobot_280", "which robot of mycobot_description", None),
-    "prefix": ("", "put before the name of every link and joint", None),
-    "use_gripper": ("true", "with the gripper", SWITCH),
-    "use_camera": ("false", "with a depth camera on a stand, /camera_head/...", SWITCH),
+    "robot_name": ("mycobot_280", "robot of mycobot_description", None),
+    "prefix": ("", "prefix of every link and joint name", None),
+    "use_gripper": ("true", "add the gripper", SWITCH),
+    "use_camera": ("false", "add a depth camera on a stand, /camera_head/...", SWITCH),
     "load_controllers": ("true", "start the controllers with the simulation", SWITCH),
-    "use_robot_state_pub": ("true", "publish where the links are", SWITCH),
-    "jsp_gui": ("false", "sliders, where no controllers publish joint states", SWITCH),
-    "use_gazebo": ("true", "the simulation is the robot's hardware", SWITCH),
-    "use_sim_time": ("true", "the nodes' clock is the simulation's", SWITCH),
+    "use_robot_state_pub": ("true", "publish the links' transforms on /tf", SWITCH),
+    "jsp_gui": ("false", "show sliders, if no controller publishes joint states", SWITCH),
+    "use_gazebo": ("true", "use the simulation as hardware", SWITCH),
+    "use_sim_time": ("true", "nodes use simulation time", SWITCH),
     "world_file": ("pick_and_place_demo", "a shipped world, or a MuJoCo XML or SDF file", None),
-    "real_time_factor": ("1.0", "simulated over wall time; 0 is as fast as possible", None),
-    "headless": ("true", "false opens a window on the simulation", SWITCH),
-    "viewer": ("false", "open the page in the browser, to see and move it", SWITCH),
-    "viewer_port": ("8080", "of the page, on 127.0.0.1", None),
-    "x": ("0.0", "where base_link is in the world, in m", None),
-    "y": ("0.0", "likewise", None),
-    "z": ("0.025", "likewise; the underside of the base is 0.025 m lower", None),
-    "roll": ("0.0", "how base_link is turned, in rad", None),
-    "pitch": ("0.0", "likewise", None),
-    "yaw": ("0.0", "likewise", None),
+    "real_time_factor": ("1.0", "simulation time over wall time; 0 is as fast as possible", None),
+    "headless": ("true", "false opens a window", SWITCH),
+    "record_run": ("", "file to record the run to, for `arm sim replay`", None),
+    "viewer": ("false", "serve the browser page that shows and moves it", SWITCH),
+    "viewer_port": ("8080", "port of the page on 127.0.0.1", None),
+    "x": ("0.0", "x of base_link in the world, in m", None),
+    "y": ("0.0", "y of base_link in the world, in m", None),
+    "z": ("0.025", "z of base_link in m; the underside of the base is 0.025 m lower", None),
+    "roll": ("0.0", "roll of base_link in rad", None),
+    "pitch": ("0.0", "pitch of base_link in rad", None),
+    "yaw": ("0.0", "yaw of base_link in rad", None),
 }
 
 
 def choose_controllers(context: LaunchContext) -> list[Action]:
-    """Return the setting of which controllers start; sliders and a broadcaster exclude each other.
+    """Return the setting with the controllers to start; sliders exclude a broadcaster.
 
     Raises:
         UsageError: both would publish the joint states.
@@ -60,7 +61,7 @@ def choose_controllers(context: LaunchContext) -> list[Action]:
     if loaded and words["jsp_gui"] == "true":
         raise UsageError(
             "jsp_gui:=true publishes /joint_states, and so does joint_state_broadcaster: "
-            "give load_controllers:=false with it"
+            "add load_controllers:=false"
         )
     if not loaded:
         return [SetLaunchConfiguration("controllers_to_start", "")]
@@ -69,7 +70,7 @@ def choose_controllers(context: LaunchContext) -> list[Action]:
 
 
 def simulation() -> IncludeLaunchDescription:
-    """Return the simulation of any robot, told about this one."""
+    """Return sim.launch.py with this robot."""
     robot = LaunchConfiguration("robot_name")
     model_args = [part for name in XACRO_ARGUMENTS for part in argument(name)]
     places = [part for name in POSE for part in (LaunchConfiguration(name), ", ")][:-1]
@@ -100,7 +101,7 @@ def argument(name: str) -> list[str | LaunchConfiguration]:
 
 
 def panel() -> ReadyPanel:
-    """Return what the user is told."""
+    """Return the panel shown to the user."""
     return ReadyPanel(
         title="The myCobot is up",
         topics=[
@@ -125,7 +126,7 @@ def generate_launch_description() -> LaunchDescription:
     rviz = "true" if shutil.which("rviz2") else "false"
     table = {
         **ARGUMENTS,
-        "use_rviz": (rviz, "start RViz; it comes with a ROS 2 installation", SWITCH),
+        "use_rviz": (rviz, "start RViz; where it is not installed, the page in its place", SWITCH),
     }
     sliders = Node(
         package=SLIDERS, executable=SLIDERS, condition=IfCondition(LaunchConfiguration("jsp_gui"))

@@ -1,4 +1,4 @@
-"""The myCobot picks the red cylinder up and puts it back; the simulation stays."""
+"""The myCobot picks up the red cylinder and puts it back; the simulation continues."""
 
 from launch_py import DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
@@ -16,10 +16,10 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "prefix",
                 default_value="",
-                description="put before the name of every link and joint",
+                description="prefix of every link and joint name",
             ),
             DeclareLaunchArgument(
-                "hold_time", default_value="5.0", description="how long it is held up, in s"
+                "hold_time", default_value="5.0", description="how long to hold the cylinder, in s"
             ),
             IncludeLaunchDescription(PythonLaunchDescriptionSource(simulation)),
             Node(

@@ -1,21 +1,21 @@
-"""The myCobot's controllers, in a simulation that is up: one after the other, each when ready."""
+"""Start the myCobot's controllers in a running simulation, one after the other."""
 
 from typing import Any
 
-from launch_py import DeclareLaunchArgument, LaunchDescription, ProcessExited
+from launch_py import DeclareLaunchArgument, Finished, LaunchDescription
 from launch_py.conditions import IfCondition
 from launch_py.ros import Node
 from launch_py.substitutions import LaunchConfiguration
 
 
 def spawner(controller: str, **options: Any) -> Node:
-    """Return what starts a controller in the manager that the arguments name."""
+    """Return the spawner of a controller for the manager that the arguments name."""
     return Node(
         package="arm_control",
         executable="spawner",
         exec_name=f"spawner_{controller}",
         arguments=[controller, "--controller-manager", LaunchConfiguration("manager")],
-        ready=ProcessExited(),
+        ready=Finished(),
         **options,
     )
 
@@ -35,18 +35,18 @@ def generate_launch_description() -> LaunchDescription:
                 "use_gripper",
                 default_value="true",
                 choices=["true", "false"],
-                description="the robot has its gripper",
+                description="start the gripper's controller",
             ),
             DeclareLaunchArgument(
                 "use_sim_time",
                 default_value="true",
                 choices=["true", "false"],
-                description="the nodes' clock is the simulation's",
+                description="nodes use simulation time",
             ),
             DeclareLaunchArgument(
                 "manager",
                 default_value="/controller_manager",
-                description="the controller manager's node",
+                description="name of the controller manager's node",
             ),
             broadcaster,
             arm,

@@ -7,20 +7,20 @@ from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitut
 
 SWITCH = ["true", "false"]
 XACRO_ARGUMENTS = {
-    "prefix": ("", "put before the name of every link and joint", None),
-    "use_gazebo": ("false", "the simulation is the hardware, not a mock", SWITCH),
+    "prefix": ("", "prefix of every link and joint name", None),
+    "use_gazebo": ("false", "use the simulation as hardware instead of a mock", SWITCH),
 }
 
 
 def describe(model: str, *values: str) -> str:
     """Return the URDF text of the model, given the values of XACRO_ARGUMENTS."""
-    from arm_description.xacro_expansion import expand_xacro
+    from arm_description.xacro.expansion import expand_xacro
 
     return expand_xacro(model, dict(zip(XACRO_ARGUMENTS, values, strict=True)))
 
 
 def sliders(jsp_gui: str) -> str:
-    """Return whose sliders move the wheels."""
+    """Return which sliders move the wheels."""
     return "gui" if jsp_gui == "true" else "none"
 
 
@@ -29,7 +29,7 @@ def arguments() -> list[DeclareLaunchArgument]:
     share = FindPackageShare("yahboom_rosmaster_description")
     model = [LaunchConfiguration("robot_name"), ".urdf.xacro"]
     table = {
-        "robot_name": ("rosmaster_x3", "which robot of this package", None),
+        "robot_name": ("rosmaster_x3", "robot of this package", None),
         **XACRO_ARGUMENTS,
         "urdf_model": (
             PathJoinSubstitution([share, "urdf", "robots", model]),
@@ -38,12 +38,12 @@ def arguments() -> list[DeclareLaunchArgument]:
         ),
         "rviz_config_file": (
             PathJoinSubstitution([share, "config/rviz/yahboom_rosmaster_description.rviz"]),
-            "what RViz shows",
+            "RViz configuration",
             None,
         ),
         "jsp_gui": (
             "true",
-            "sliders for the wheels: joint_state_publisher_gui of a ROS 2 installation, or else "
+            "show sliders for the wheels: joint_state_publisher_gui if ROS 2 is installed, or else "
             "the page",
             SWITCH,
         ),
@@ -55,7 +55,7 @@ def arguments() -> list[DeclareLaunchArgument]:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return what shows any robot, told about this one."""
+    """Return robot_view.launch.py with this robot."""
     view = PathJoinSubstitution(
         [FindPackageShare("arm_description"), "launch", "robot_view.launch.py"]
     )
@@ -68,7 +68,7 @@ def generate_launch_description() -> LaunchDescription:
                 launch_arguments={
                     "robot_description": Call(describe, LaunchConfiguration("urdf_model"), *values),
                     "sliders": Call(sliders, LaunchConfiguration("jsp_gui")),
-                    # The file's own fixed frame is base_link: not there with a prefix.
+                    # The file's own fixed frame base_link does not exist with a prefix.
                     "fixed_frame": [LaunchConfiguration("prefix"), "base_link"],
                 },
             ),

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from arm_gazebo.camera import environment as module
-from arm_gazebo.camera.environment import camera_environment
+from arm_gazebo.camera import process as module
+from arm_gazebo.camera.process import camera_environment
 
 VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
 
@@ -56,7 +56,7 @@ def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_pro
     assert environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
 
 
-def test_the_supervisor_is_not_told_of_this_process(shared_memory):
+def test_the_child_does_not_inherit_the_notify_socket(shared_memory):
     environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"})
     assert "NOTIFY_SOCKET" not in environment
     assert environment["HOME"] == "/home/me"

@@ -1,4 +1,4 @@
-"""The simulation's side of the cameras, over the real sockets; the child is a stand-in."""
+"""The cameras' settings, and the simulation's side of their feed; the child process is a fake."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.camera.settings import CameraSettings
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import CameraEnd, ModelMessage
+from arm_gazebo.feed.channel import CameraEnd, CameraProgress, ModelMessage
 from arm_gazebo.feed.snapshot import CameraSnapshot
 from arm_gazebo.sensors.camera import CameraSensor
 
@@ -28,7 +28,7 @@ MJCF = """
 
 
 class Child:
-    """Stands for a camera process: a real end of the socket, read by the test."""
+    """Replaces a camera process: a real end of the socket that the test reads."""
 
     pid = 1
 
@@ -158,6 +158,34 @@ def test_a_simulation_that_races_sends_at_most_500_states_a_second(started):
     assert [state.frames[0].serial for state in states] == list(range(0, 100, 5))
 
 
+def test_a_picture_is_awaited_until_the_child_has_dealt_with_it(started):
+    assert started.feed.unpublished(0.0) == ()
+    started.publish(0.0)
+    assert started.feed.unpublished(0.0) == ("eye",)
+    started.child.end.tell_progress([CameraProgress(0, 1, 0)])
+    assert started.feed.unpublished(30.0) == ()
+    (count,) = started.feed.counts()
+    assert (count.rate_hz, count.due, count.published, count.dropped) == (10.0, 1, 1, 0)
+
+
+def test_a_picture_of_the_model_before_is_not_awaited(started):
+    started.publish(0.0)
+    started.feed.set_model(started.model)
+    assert started.feed.unpublished(0.0) == ()
+    started.publish(0.1)
+    assert started.feed.unpublished(0.0) == ("eye",)
+
+
+def test_frames_that_are_not_sent_are_counted(started):
+    started.wall_s_per_publish = 0.001
+    started.publish(0.0, 0.1, 0.2)
+    assert started.feed.missed() == {"eye": 1}
+    # Once all pictures are out, the next one need not wait.
+    started.feed.forget_pace()
+    started.publish(0.3)
+    assert started.feed.missed() == {"eye": 1}
+
+
 def test_a_child_that_died_is_replaced_and_gets_the_model(started):
     started.publish(0.0)
     started.child.returncode = -9
@@ -219,3 +247,21 @@ def test_a_state_too_large_to_send_is_refused(world, monkeypatch):
 def test_an_unknown_backend_is_refused_at_once():
     with pytest.raises(CameraError, match="no render backend 'vulkan'"):
         CameraFeed([CameraSensor("eye", "l", "f")], render_backend="vulkan")
+
+
+SETTINGS_SENSOR = CameraSensor(
+    "c", "l", "f", image_topics=("a", "b"), info_topics=("i",), rpy=(0, 1, 2)
+)
+
+
+def test_settings_survive_as_text():
+    settings = CameraSettings((SETTINGS_SENSOR,), seed=-3, backend="egl", excluded=("osmesa",))
+    assert CameraSettings.from_json(settings.to_json()) == settings
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"cameras":[],"excluded":[],"colour":1}', '{"cameras":[{}]}']
+)
+def test_other_text_is_refused(text):
+    with pytest.raises(CameraError, match="not settings of a camera process"):
+        CameraSettings.from_json(text)

@@ -1,4 +1,4 @@
-"""What the camera process makes of the simulation's messages."""
+"""The camera process turns the simulation's messages into images."""
 
 import os
 
@@ -202,7 +202,7 @@ def test_a_new_model_is_drawn_from_then_on(process):
     assert len(process.renderer.models) == 2
 
 
-def test_distances_are_drawn_for_those_who_want_them_alone(process):
+def test_depth_is_rendered_only_for_its_subscribers(process):
     sink = process.sinks[0]
     sink.watched, sink.measured = False, True
     process.pipeline.handle([model_message(), process.state(0.5, level=3)])
@@ -249,7 +249,7 @@ def test_noise_is_added_and_repeatable():
 
 def test_a_state_that_does_not_fit_its_model_is_refused(process):
     other = MJCF.replace('<joint name="slide" type="slide"/>', "<freejoint/>")
-    with pytest.raises(CameraError, match="1 positions is not of this model, which has 7"):
+    with pytest.raises(CameraError, match="1 positions does not belong to this model, which has 7"):
         process.pipeline.handle([model_message(mjcf=other), process.state(0.0)])
 
 

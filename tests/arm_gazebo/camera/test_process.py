@@ -1,4 +1,4 @@
-"""Watching over the camera process, with a process that only exists here."""
+"""Supervision of the camera process, with a fake process."""
 
 import os
 import signal
@@ -59,7 +59,7 @@ class World:
         return self.children[-1]
 
     def die(self, code: int, *backends: str, after_s: float = 0.0) -> bool:
-        """The child dies; return whether it is to be started again at once."""
+        """Let the child die; return whether it should be restarted at once."""
         self.now_s += after_s
         self.children[-1].returncode = code
         return self.process.start_again_due(backends)
@@ -70,7 +70,7 @@ def world():
     return World()
 
 
-def test_the_child_inherits_the_socket_and_is_told_its_parent(world):
+def test_the_child_inherits_the_socket_and_gets_its_parents_id(world):
     (child,) = world.children
     assert child.options["pass_fds"] == (7,)
     assert child.command[child.command.index("--socket") + 1] == "7"
@@ -118,7 +118,7 @@ def test_what_was_never_started_is_not_started_again():
     assert not process.start_again_due([])
 
 
-def test_a_long_life_starts_the_delays_anew(world):
+def test_a_long_run_resets_the_restart_delay(world):
     world.die(1)
     world.now_s += 1.0
     world.process.start(7)
@@ -128,7 +128,7 @@ def test_a_long_life_starts_the_delays_anew(world):
 
 
 @pytest.mark.parametrize("code", [-signal.SIGSEGV, -signal.SIGABRT, EXIT_BACKEND])
-def test_a_backend_that_ends_the_child_is_left_out_at_once(world, code, caplog):
+def test_a_backend_that_crashes_the_child_is_excluded_at_once(world, code, caplog):
     assert world.die(code, "egl")
     world.process.start(7)
     assert world.children[-1].settings.excluded == ("egl",)
@@ -138,7 +138,7 @@ def test_a_backend_that_ends_the_child_is_left_out_at_once(world, code, caplog):
     assert world.children[-1].settings.excluded == ("egl", "osmesa")
 
 
-def test_what_was_said_before_the_death_counts(world):
+def test_a_backend_announced_before_the_crash_is_excluded(world):
     assert not world.process.start_again_due(["egl"])
     assert world.die(-signal.SIGSEGV)
     assert world.process.settings.excluded == ("egl",)

@@ -47,7 +47,7 @@ def test_frames_that_no_tick_took_lower_the_rate_but_are_not_dropped():
     assert report.achieved == pytest.approx(3 / 7)
 
 
-def test_time_that_jumps_back_is_no_gap():
+def test_time_that_jumps_back_is_not_a_gap():
     statistics = CameraStatistics()
     count(statistics, (100, 100), (0, 101))
     report = statistics.report()

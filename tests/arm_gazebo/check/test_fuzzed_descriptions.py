@@ -1,4 +1,4 @@
-"""Descriptions and meshes that somebody, or something, has spoilt: always a report, never more."""
+"""Corrupted descriptions and meshes always give a report, and never an exception."""
 
 import base64
 import json
@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arm_description.errors import XacroError
-from arm_description.xacro_expansion import expand_xacro
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.check.description import DescriptionCheck, check_description
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import BuildOptions
 
 FILES = sorted(Path(__file__).with_name("urdfs").glob("*.urdf"))
 TEXTS = [file.read_text().partition("-->\n")[2] for file in FILES]
@@ -131,7 +131,7 @@ def as_bytes(content: str | bytes) -> bytes:
 
 
 def gltf_in_one_file() -> bytes:
-    """Return a .gltf whose data stand in itself."""
+    """Return a .gltf with embedded data."""
     files = BOX.export(file_type="gltf")
     document = json.loads(files["model.gltf"])
     for buffer in document["buffers"]:

@@ -1,4 +1,4 @@
-"""Small hard URDFs, one for each rule: the comment on top of each says what must come out."""
+"""Small difficult URDFs, one for each rule, with the expected findings in their first comment."""
 
 import re
 from pathlib import Path
@@ -18,12 +18,12 @@ def outcome(text: str, name: str) -> list[str]:
     return ["usable" if check.is_usable else "not usable", *found]
 
 
-def test_the_folder_is_here():
+def test_the_folder_of_urdfs_exists():
     assert len(FILES) > 40
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_what_is_said_of_a_file_is_what_its_comment_says(file):
+def test_the_findings_of_a_file_match_its_comment(file):
     text = file.read_text()
     written = EXPECTED.match(text)
     assert written is not None

@@ -1,4 +1,4 @@
-"""Arms that nobody tuned anything for: a step of all joints, its overshoot and its sag."""
+"""Arms without any tuning: a step of all joints, its overshoot and its sag."""
 
 from dataclasses import dataclass, field
 
@@ -11,8 +11,8 @@ from arm_gazebo.launching.default_control import with_hardware
 STEP = 0.3
 SETTLED_S = 2.0
 WATCHED_S = 2.0
-MOST_OVERSHOOT = 0.03
-MOST_SAG = 0.003
+MAX_OVERSHOOT = 0.03
+MAX_SAG = 0.003
 
 X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
 PARALLEL = (Z, Y, Y, Y, Z, Y)
@@ -175,13 +175,13 @@ def check_step(bench, urdf: str, starts: tuple[float, ...] = (0.0,), **options: 
         way = np.where(pose > 0, -STEP, STEP)
         robot.command(*(pose + way))
         done = (robot.run(WATCHED_S) - pose) / way
-        assert done.max() < 1 + MOST_OVERSHOOT
-        assert np.abs((done[-1] - 1) * way).max() < MOST_SAG
+        assert done.max() < 1 + MAX_OVERSHOOT
+        assert np.abs((done[-1] - 1) * way).max() < MAX_SAG
     assert robot.simulation.take_failures() == []
 
 
 def complete(urdf: str) -> str:
-    from arm_description.urdf import parse_urdf
+    from arm_description.urdf.parser import parse_urdf
 
     return with_hardware(urdf, parse_urdf(urdf))
 

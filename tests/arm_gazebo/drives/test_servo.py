@@ -1,4 +1,4 @@
-"""What the servos do with commands; simulation time only, so the same on every machine."""
+"""The servos' response to commands, in simulation time and so equal on every machine."""
 
 import math
 
@@ -324,7 +324,7 @@ def test_joint_too_weak_for_its_load_sinks_and_stays_finite(bench, parts, caplog
     assert "joint 'j': its effort limit of 2 is below the 4.905" in caplog.text
 
 
-def test_limp_arm_falls_as_its_links_do_however_strong_its_drives(bench, parts):
+def test_an_undriven_arm_falls_as_its_links_do_however_strong_its_drives(bench, parts):
     falls = []
     for effort in ("5", "300"):
         arm = bench(parts.arm(effort_limit=effort, j1_pos="0.5"), hold_joints=False)

@@ -10,7 +10,7 @@ PERIOD_S = 0.01
 
 
 def travel(setpoint, target, speed=2.0, acceleration=50.0, braking=10.0, ticks=1000):
-    """Approach a standing target; return the positions and velocities after every period."""
+    """Approach a fixed target; return the positions and velocities after every period."""
     positions, velocities = [], []
     for _ in range(ticks):
         setpoint.approach(target, 0.0, speed, acceleration, braking, PERIOD_S)
@@ -43,7 +43,7 @@ def test_speed_is_gained_by_acceleration_and_lost_by_braking():
     assert min(gains) >= -5.0 * PERIOD_S * 1.3
 
 
-def test_way_back_is_taken_after_braking():
+def test_it_brakes_before_it_reverses():
     setpoint = Setpoint(0.0, velocity=1.0)
     positions, _ = travel(setpoint, 0.0, acceleration=10.0, braking=10.0)
     assert max(positions) == pytest.approx(0.05, abs=0.01)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import CameraEnd, FeedEnd, ModelMessage
+from arm_gazebo.feed.channel import CameraEnd, CameraProgress, FeedEnd, ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
 
@@ -49,7 +49,7 @@ def test_snapshots_arrive_in_order(feed, camera):
     assert [message.time_s for message in camera.receive()] == [0.1, 0.2, 0.3]
 
 
-def test_a_model_arrives_as_a_file_of_its_own(feed, camera, memory_file):
+def test_a_model_arrives_as_a_separate_file(feed, camera, memory_file):
     assert feed.send_model(7, memory_file)
     (message,) = camera.receive()
     assert isinstance(message, ModelMessage)
@@ -102,11 +102,19 @@ def test_sending_after_the_end_is_refused(feed):
     assert not feed.send_snapshot(snapshot())
 
 
-def test_backends_are_told_to_the_simulation(feed, camera):
+def test_backends_are_announced_to_the_simulation(feed, camera):
     camera.tell_backend("egl")
     camera.tell_backend("osmesa")
-    assert feed.backends_tried() == ["egl", "osmesa"]
-    assert feed.backends_tried() == []
+    assert feed.answers().backends == ["egl", "osmesa"]
+    assert feed.answers().backends == []
+
+
+def test_the_latest_progress_of_each_camera_arrives(feed, camera):
+    camera.tell_progress([CameraProgress(0, 1, 0), CameraProgress()])
+    camera.tell_progress([CameraProgress(7, 5, 2), CameraProgress(3, 0, 1)])
+    feed.wait_for_answers(30.0)
+    assert feed.answers().progress == (CameraProgress(7, 5, 2), CameraProgress(3, 0, 1))
+    assert feed.answers().progress == ()
 
 
 def test_the_largest_message_fits(feed, camera):
@@ -116,8 +124,8 @@ def test_the_largest_message_fits(feed, camera):
     assert message.qpos.size == positions
 
 
-def test_a_descriptor_that_is_no_socket_is_refused(memory_file):
+def test_a_descriptor_that_is_not_a_socket_is_refused(memory_file):
     file = os.dup(memory_file)
-    with pytest.raises(CameraError, match=f"descriptor {file} is no socket"):
+    with pytest.raises(CameraError, match=f"descriptor {file} is not a simulation's socket"):
         CameraEnd(file)
     os.close(file)

@@ -5,7 +5,8 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_gazebo.feed.schedule import TOLERANCE_S, FrameDue, FrameSchedule
+from arm_control.loop.schedule import TOLERANCE_S
+from arm_gazebo.feed.schedule import FrameDue, FrameSchedule
 
 rates = st.one_of(st.sampled_from([5.0, 24.0, 29.97, 30.0, 60.0]), st.floats(0.5, 200.0))
 ticks = st.sampled_from([1 / 30, 1 / 100, 1 / 225, 1 / 500, 1 / 1000, 0.0123])
@@ -41,7 +42,7 @@ def test_a_frame_is_taken_at_the_first_tick_at_or_after_its_time(rate_hz, tick_s
 
 
 @given(tick_s=ticks, share=st.floats(0.01, 1.0))
-def test_no_frame_is_left_out_where_ticks_are_not_slower(tick_s, share):
+def test_no_frame_is_skipped_if_ticks_are_fast_enough(tick_s, share):
     times_s = summed(tick_s, 3000)
     taken = taken_at(FrameSchedule([share / tick_s]), times_s)
     assert [frame.number for _, frame in taken] == list(range(len(taken)))
@@ -55,7 +56,7 @@ def test_30_hz_at_100_hz_ticks():
     assert [round(time_s, 3) for time_s, _ in taken] == [0.0, 0.04, 0.07, 0.1]
 
 
-def test_serials_have_no_gaps_where_a_tick_passes_several_frames():
+def test_serials_have_no_gaps_if_a_tick_passes_several_frames():
     taken = [frame for _, frame in taken_at(FrameSchedule([30.0]), [0.0, 0.1, 0.2])]
     assert [frame.number for frame in taken] == [0, 3, 6]
     assert [frame.serial for frame in taken] == [0, 1, 2]
@@ -72,12 +73,12 @@ def test_cameras_of_different_rates_are_due_by_themselves():
     ]
 
 
-def test_a_frame_is_due_once_while_time_stands_still():
+def test_a_frame_is_due_once_while_time_is_paused():
     schedule = FrameSchedule([30.0])
     assert len(taken_at(schedule, [0.0, 0.0, 0.0])) == 1
 
 
-def test_time_that_jumps_back_starts_the_frames_anew():
+def test_time_that_jumps_back_restarts_the_frames():
     schedule = FrameSchedule([10.0])
     taken_at(schedule, summed(0.05, 100))
     assert not schedule.nothing_due(0.0)

@@ -26,7 +26,7 @@ def poses(count):
     qpos=hnp.arrays(np.float64, st.integers(0, 40)),
     mocaps=st.integers(0, 3),
 )
-def test_what_is_packed_comes_out_again(version, time_s, due, qpos, mocaps):
+def test_unpacking_restores_what_was_packed(version, time_s, due, qpos, mocaps):
     positions = np.arange(3.0 * mocaps).reshape(mocaps, 3)
     quaternions = np.arange(4.0 * mocaps).reshape(mocaps, 4) + 0.5
     packed = CameraSnapshot(version, time_s, due, qpos, positions, quaternions).pack()
@@ -45,7 +45,7 @@ def test_garbage_is_refused_or_is_a_snapshot_after_all(packed):
     assert found is None or found.pack() == packed
 
 
-def test_a_snapshot_with_fewer_positions_than_it_says_is_refused():
+def test_a_snapshot_with_too_few_positions_is_refused():
     packed = CameraSnapshot(1, 0.0, (), np.zeros(4), *poses(0)).pack()
     with pytest.raises(CameraError, match="3 numbers, not 4"):
         CameraSnapshot.unpack(packed[:-8])

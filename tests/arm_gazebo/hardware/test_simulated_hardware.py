@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from arm_control.hardware import HardwareReturn
-from arm_control.hardware_info import parse_hardware_info
+from arm_control.hardware.driver import HardwareReturn
+from arm_control.hardware.info import parse_hardware_info
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 
 
@@ -42,7 +42,7 @@ def test_effort_state_is_what_the_drive_exerts(bench, parts):
     assert pendulum.state("effort") == pytest.approx([-0.5 * 9.81], rel=1e-4)
 
 
-def test_commands_start_where_the_joints_are(bench, parts):
+def test_commands_start_at_the_joints_positions(bench, parts):
     arm = bench(parts.arm(j1_pos="0.5"))
     arm.claim()
     assert arm.commanded == pytest.approx([0, 0.5, 0, 0])
@@ -76,7 +76,7 @@ def test_released_joint_falls_again_without_hold_joints(bench, parts):
 
 
 @pytest.mark.parametrize("leave", ["on_deactivate", "on_cleanup", "on_shutdown"])
-def test_component_that_goes_inactive_lets_go(bench, parts, leave):
+def test_a_deactivated_component_releases_its_joints(bench, parts, leave):
     pendulum = bench(parts.pendulum(), hold_joints=False)
     pendulum.claim()
     pendulum.run(0.5)
@@ -149,14 +149,14 @@ def test_switching_modes_does_not_jerk_a_standing_joint(bench, parts, interface)
     assert np.abs(pendulum.run(0.2)).max() < 1e-4
 
 
-def test_position_counts_where_position_and_velocity_are_claimed(bench, parts):
+def test_position_takes_precedence_over_velocity(bench, parts):
     pendulum = bench(parts.pendulum())
     pendulum.hardware.perform_command_mode_switch(["j/velocity", "j/position"], [])
     pendulum.commands[:] = [0.4, 2.0, math.nan]
     assert pendulum.run(2.0)[-1] == pytest.approx([0.4], abs=1e-3)
 
 
-def test_nan_is_no_command(bench, parts):
+def test_nan_is_ignored(bench, parts):
     arm = bench(parts.arm())
     arm.claim()
     arm.command(0.2, 0, 0, 0)
@@ -186,7 +186,7 @@ def test_command_beyond_a_limit_is_explained(bench, parts, interface, value, sen
 
 @pytest.mark.parametrize("limit", ["", 'effort="2" velocity="0"', 'effort="0" velocity="1e12"'])
 @pytest.mark.parametrize("speed", [-15.0, 60.0])
-def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, parts, limit, speed):
+def test_a_wheel_without_a_velocity_limit_reaches_its_command(bench, parts, limit, speed):
     wheel = bench(parts.wheel(1.0, limit))
     wheel.claim("velocity")
     wheel.command(speed)
@@ -204,7 +204,7 @@ def test_a_wheel_without_a_velocity_limit_turns_as_fast_as_it_is_told(bench, par
 
 
 @pytest.mark.parametrize("rate_hz", [100, 500, 1000])
-def test_a_light_wheel_by_itself_is_turned_steadily_by_a_strong_drive(bench, parts, rate_hz):
+def test_a_strong_drive_turns_a_light_free_wheel_steadily(bench, parts, rate_hz):
     """MuJoCo keeps the inertia of such a joint from when the model was made."""
     wheel = bench(parts.wheel(0.6, 'effort="50" velocity="3"'), rate_hz)
     wheel.claim("velocity")
@@ -224,7 +224,7 @@ def test_command_beyond_a_limit_is_clamped(bench, parts):
     assert pendulum.run(2.0)[-1] == pytest.approx([1.0], abs=1e-3)
 
 
-def test_every_crossing_of_a_limit_is_told_once(bench, parts):
+def test_every_violation_of_a_limit_is_reported_once(bench, parts):
     pendulum = bench(parts.pendulum())
     pendulum.claim()
     told = []
@@ -252,7 +252,7 @@ def test_interface_that_does_not_exist_is_refused(bench, parts):
     assert not hardware.prepare_command_mode_switch(["j/acceleration"], [])
 
 
-def test_what_cannot_be_simulated_is_left_out_and_said(bench, parts, caplog):
+def test_interfaces_that_cannot_be_simulated_are_left_out_and_reported(bench, parts, caplog):
     urdf = parts.pendulum().replace(
         "</ros2_control>",
         '<sensor name="imu"><state_interface name="orientation.x"/></sensor>'
@@ -319,7 +319,7 @@ def test_slash_in_the_name_of_a_joint_is_part_of_it(bench, parts, caplog):
     assert "left out" not in caplog.text
 
 
-def test_a_weakened_drive_still_stops_where_it_is_told(bench, parts):
+def test_a_weakened_drive_still_stops_at_its_command(bench, parts):
     commands = ("position", "max_effort")
     pendulum = bench(
         parts.pendulum().replace(parts.ros2_control(["j"]), parts.ros2_control(["j"], commands))

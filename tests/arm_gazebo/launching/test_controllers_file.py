@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import fill_in, startable_controllers
 
 TYPES = frozenset({"a/Broadcaster", "a/Position", "a/Trajectory"})
@@ -26,7 +26,7 @@ def file(tmp_path):
     return tmp_path / "controllers.yaml"
 
 
-def test_controllers_whose_joints_are_free_start_in_order(file):
+def test_controllers_with_unclaimed_joints_start_in_order(file):
     file.write_text(CONTENT)
     assert startable_controllers(file, TYPES).names == ("states", "arm", "hand")
 
@@ -34,8 +34,8 @@ def test_controllers_whose_joints_are_free_start_in_order(file):
 def test_each_that_waits_is_named_with_the_reason(file):
     file.write_text(CONTENT)
     assert startable_controllers(file, TYPES).remarks == (
-        "position does not start: arm holds 'j1'",
-        "force does not start: its type b/Unheard is not known here",
+        "position does not start: arm claims 'j1'",
+        "force does not start: its type b/Unheard is unknown",
     )
 
 
@@ -43,6 +43,19 @@ def test_each_that_waits_is_named_with_the_reason(file):
 def test_a_namespace_before_the_managers_name_is_passed_over(file, key):
     file.write_text(f"{key}:\n  ros__parameters:\n    states.type: a/Broadcaster\n")
     assert startable_controllers(file, TYPES).names == ("states",)
+
+
+@pytest.mark.parametrize("key", ["arm", "/arm", "/left/arm", "/**/arm"])
+def test_a_type_may_stand_in_the_controller_s_own_section(file, key):
+    file.write_text(
+        f"{key}: {{ros__parameters: {{type: a/Trajectory, joints: [j0]}}}}\n"
+        "driver: {ros__parameters: {type: stepper}}\n"
+        "states: {ros__parameters: {type: b/Unheard}}\n"
+        "controller_manager: {ros__parameters: {states: {type: a/Broadcaster}}}\n"
+    )
+    found = startable_controllers(file, TYPES)
+    assert found.names == ("states", "arm")
+    assert not found.remarks
 
 
 NESTED = """
@@ -61,7 +74,7 @@ def test_namespaces_may_be_keys_above_the_nodes(file, namespace):
     file.write_text(NESTED % namespace)
     startable = startable_controllers(file, TYPES)
     assert startable.names == ("states", "arm")
-    assert startable.remarks == ("hand does not start: arm holds 'j0'",)
+    assert startable.remarks == ("hand does not start: arm claims 'j0'",)
 
 
 def test_a_controller_that_two_managers_have_starts_once(file):
@@ -89,13 +102,13 @@ def test_places_in_a_file_with_nested_namespaces_are_filled_node_by_node(file):
 )
 def test_a_file_without_controllers_is_refused(file, content, reason):
     file.write_text(content)
-    with pytest.raises(SettingsError, match=reason):
+    with pytest.raises(SimSettingsError, match=reason):
         startable_controllers(file, TYPES)
 
 
 def test_a_missing_file_is_named(file):
     sentence = f"cannot read the controllers' file {file}: No such file or directory$"
-    with pytest.raises(SettingsError, match=sentence):
+    with pytest.raises(SimSettingsError, match=sentence):
         startable_controllers(file, TYPES)
 
 
@@ -103,7 +116,7 @@ def test_a_single_joint_is_held_too(file):
     file.write_text(CONTENT + "force: {ros__parameters: {joint: finger}}\n")
     types = TYPES | {"b/Unheard"}
     assert startable_controllers(file, types).remarks[-1] == (
-        "force does not start: hand holds 'finger'"
+        "force does not start: hand claims 'finger'"
     )
 
 
@@ -115,7 +128,7 @@ def test_arguments_of_the_robot_take_their_places(file):
     assert startable_controllers(content, TYPES).names == ("states", "arm", "position", "hand")
 
 
-def test_var_stands_for_an_argument_of_the_robot_too(file):
+def test_var_is_replaced_by_an_argument_of_the_robot_as_well(file):
     """As in the files of real robots' drivers, which ROS 2's launch fills in."""
     file.write_text(CONTENT.replace("[j0, j1]", "[$(var prefix)j0, '$( var prefix )${tool}']"))
     content = fill_in(file, {"prefix": "left_", "tool": "gun"})
@@ -128,10 +141,14 @@ def test_a_file_without_places_stays_a_file(file):
     assert fill_in(file, {"prefix": "left_"}) == file
 
 
-def test_a_place_for_no_argument_is_refused_with_those_that_are(file):
+def test_a_placeholder_for_an_unknown_argument_is_refused_with_the_known_ones(file):
     file.write_text(CONTENT.replace("j0", "${side}j0"))
-    with pytest.raises(SettingsError, match=r"\$\{side\}, which is no argument .*; it has base, p"):
+    with pytest.raises(
+        SimSettingsError, match=r"\$\{side\}, which is not an argument .*; it has base, p"
+    ):
         fill_in(file, {"p": "", "base": "fixed"})
     file.write_text(CONTENT.replace("j0", "$(var side)j0"))
-    with pytest.raises(SettingsError, match=r"has \$\(var side\), which is no argument .*; it has"):
+    with pytest.raises(
+        SimSettingsError, match=r"has \$\(var side\), which is not an argument .*; it has"
+    ):
         fill_in(file, {"p": "", "base": "fixed"})

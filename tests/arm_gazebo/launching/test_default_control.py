@@ -1,9 +1,9 @@
-"""Hardware and controllers made up for a robot without."""
+"""Default hardware and controllers for a robot without any."""
 
 import pytest
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.launching.default_control import (
     HardwareJoints,
     commandable_joints,
@@ -35,7 +35,7 @@ URDF = (
 )
 
 
-def test_every_joint_that_can_move_by_itself_is_commanded():
+def test_every_independent_joint_is_commanded():
     robot = parse_urdf(URDF)
     assert commandable_joints(robot) == ("turn", "spin", "slide & co")
     [component] = parse_hardware_info(with_hardware(URDF, robot))
@@ -65,7 +65,7 @@ def test_lines_keep_their_numbers():
         (URDF.replace("</robot>", '<!-- a --><ros2_control name="x"/><!-- b --></robot>'), True),
     ],
 )
-def test_a_comment_is_no_hardware(text, has):
+def test_a_ros2_control_block_in_a_comment_does_not_count(text, has):
     assert has_hardware(text) is has
 
 
@@ -82,8 +82,8 @@ def test_parameters_have_the_form_of_a_file():
     ("joints", "names"),
     [
         (HardwareJoints(), []),
-        (HardwareJoints(shown=("turn",)), ["joint_state_broadcaster"]),
-        (HardwareJoints(positioned=("turn",)), ["position_controller"]),
+        (HardwareJoints(observed=("turn",)), ["joint_state_broadcaster"]),
+        (HardwareJoints(position_commanded=("turn",)), ["position_controller"]),
     ],
 )
 def test_a_controller_without_joints_is_not_made_up(joints, names):
@@ -104,11 +104,11 @@ def test_joints_are_parted_by_what_the_hardware_does_with_them():
     )
     hardware = parse_hardware_info(URDF.replace("</robot>", f"{block}</robot>"))
     assert hardware_joints(parse_urdf(URDF), hardware) == HardwareJoints(
-        shown=("spin", "finger"), positioned=("turn",), driven_otherwise=("spin",)
+        observed=("spin", "finger"), position_commanded=("turn",), otherwise_commanded=("spin",)
     )
 
 
-def test_a_joint_with_mimic_false_is_driven_by_itself():
+def test_a_joint_with_mimic_false_is_driven_independently():
     robot = parse_urdf(URDF)
     block = (
         '<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>'
@@ -117,7 +117,7 @@ def test_a_joint_with_mimic_false_is_driven_by_itself():
 
     def positioned(attribute):
         text = URDF.replace("</robot>", block.format(attribute))
-        return hardware_joints(robot, parse_hardware_info(text)).positioned
+        return hardware_joints(robot, parse_hardware_info(text)).position_commanded
 
     assert positioned("") == ()
     assert positioned(' mimic="false"') == ("finger",)

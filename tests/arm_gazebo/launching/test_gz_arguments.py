@@ -1,8 +1,8 @@
-"""Gazebo's words for what the launch arguments say."""
+"""Gazebo's options translated to launch arguments."""
 
 import pytest
 
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.gz_arguments import launch_arguments
 
 
@@ -16,13 +16,14 @@ from arm_gazebo.launching.gz_arguments import launch_arguments
         ("-v2 -r -s objects", {"log_level": "warn", "headless": "true", "world": "objects"}),
         ("-r --headless-rendering lab.xml", {"world": "lab.xml"}),
         ("-r 'my worlds/lab.xml'", {"world": "my worlds/lab.xml"}),
+        ("objects.sdf", {"world": "objects", "paused": "true"}),
     ],
 )
 def test_words_stand_for_launch_arguments(gz_args, meant):
     assert launch_arguments(gz_args) == meant
 
 
-def test_a_file_that_exists_is_meant_as_it_is(tmp_path):
+def test_an_existing_file_keeps_its_suffix(tmp_path):
     file = tmp_path / "lab.world"
     file.touch()
     assert launch_arguments(f"-r {file}") == {"world": str(file)}
@@ -31,8 +32,7 @@ def test_a_file_that_exists_is_meant_as_it_is(tmp_path):
 @pytest.mark.parametrize(
     ("gz_args", "said"),
     [
-        ("objects.sdf", "lacks -r"),
-        ("-r -g", "'-g'; the words known are -r, -s"),
+        ("-r -g", "'-g'; it takes -r, -s"),
         ("-r -v", "-v ''; it takes 0 to 4"),
         ("-r -v 7", "-v '7'; it takes 0 to 4"),
         ("-r empty.sdf objects.sdf", "two worlds, 'empty' and 'objects.sdf'"),
@@ -40,5 +40,5 @@ def test_a_file_that_exists_is_meant_as_it_is(tmp_path):
     ],
 )
 def test_what_means_nothing_here_is_refused(gz_args, said):
-    with pytest.raises(SettingsError, match=said):
+    with pytest.raises(SimSettingsError, match=said):
         launch_arguments(gz_args)

@@ -1,10 +1,11 @@
-"""A robot's description, controllers and folders, completed where they lack something."""
+"""A robot's description, controllers and folders, completed with defaults."""
 
 from pathlib import Path
 
 import pytest
 
 from arm_description.errors import ResourceNotFoundError, XacroError
+from arm_description.urdf.description_source import DescriptionSource, source_of
 from arm_gazebo.launching.default_control import has_hardware
 from arm_gazebo.launching.robot_setup import folders, set_up_robot
 
@@ -25,13 +26,13 @@ def bare(tmp_path, parts):
     return file
 
 
-def test_hardware_and_controllers_are_made_up_and_said(bare):
+def test_default_hardware_and_controllers_are_added_and_reported(bare):
     setup = set_up_robot(str(bare))
     assert has_hardware(setup.description)
     assert setup.spawn == ("joint_state_broadcaster", "position_controller")
     assert not isinstance(setup.controllers, Path)
     assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["j0", "j1"]
-    assert "no <ros2_control> block: one is made up that commands j0, j1" in setup.remarks[0]
+    assert "no <ros2_control> block: a default one commands j0, j1" in setup.remarks[0]
     assert "position_controller drives j0, j1" in setup.remarks[1]
 
 
@@ -44,8 +45,8 @@ def test_a_file_that_the_description_hands_to_gazebos_plugin_is_named(bare, tmp_
     )
     bare.write_text(bare.read_text().replace("</robot>", f"{plugins}</robot>"))
     *_, remark = set_up_robot(str(bare)).remarks
-    assert remark.endswith(f"to have them: controllers:={tmp_path}/own.yaml")
-    assert "made up" in set_up_robot(str(bare)).remarks[-2]
+    assert remark.endswith(f"to use it: controllers:={tmp_path}/own.yaml")
+    assert "the default is" in set_up_robot(str(bare)).remarks[-2]
 
 
 def test_made_up_controllers_leave_out_joints_that_cannot_be_commanded(tmp_path, parts):
@@ -141,7 +142,7 @@ def test_only_controllers_that_are_named_have_to_start(bare):
     assert set_up_robot(str(bare)).parameters()["spawn_required"] is False
 
 
-def test_who_can_move_joints_without_positions_is_said(tmp_path, parts):
+def test_joints_without_a_position_interface_are_reported(tmp_path, parts):
     file = tmp_path / "wheel.urdf"
     file.write_text(
         parts.robot(
@@ -163,13 +164,14 @@ def test_a_statue_needs_no_controllers(tmp_path, parts):
     setup = set_up_robot(str(file))
     assert setup.spawn == ()
     assert "no joint can be commanded" in setup.remarks[0]
-    assert setup.remarks[1] == "no controllers are given: none is made up"
+    assert setup.remarks[1] == "no controllers are given: there is no default for this robot"
 
 
 def test_files_beside_the_model_and_in_its_package_are_found(bare, tmp_path):
     setup = set_up_robot(str(bare), package_path=f"{tmp_path / 'x'}:{tmp_path / 'y'}")
-    assert setup.package_path[:2] == (tmp_path / "x", tmp_path / "y")
-    assert setup.package_path[2:] == (tmp_path, tmp_path.parent, tmp_path.parent.parent)
+    given = (tmp_path / "x", tmp_path / "y")
+    assert setup.package_path == given
+    assert source_of(setup.description) == DescriptionSource(bare, given)
 
 
 def test_the_robot_and_its_controllers_may_lie_in_a_package_of_the_folders_given(bare, tmp_path):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_gazebo.errors import SettingsError
+from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import controllers_below
 from arm_gazebo.launching.robots_file import RobotRequest, read_robots_file
 
@@ -54,7 +54,7 @@ def test_what_has_no_value_is_as_if_it_were_not_there(file):
         ("a: [", "is not YAML"),
         ("left: 1", "'left' has no model"),
         ("left: {}", "'left' has no model"),
-        ("a/b: {model: x}", "'a/b': no namespace"),
+        ("a/b: {model: x}", "'a/b': this is not a namespace"),
         ("left: {model: x, modelargs: y}", "has the key 'modelargs'; it takes model, model_args"),
         ("left: {model: x, pose: here}", "pose takes x y z roll pitch yaw, not 'here'"),
         ("left: {model: x, pose: [0, 1, 0]}", r"yaw, not \[0, 1, 0\]"),
@@ -63,15 +63,15 @@ def test_what_has_no_value_is_as_if_it_were_not_there(file):
         ("left: {model: x, base: [free]}", r"base takes a text, not \['free'\]"),
     ],
 )
-def test_nonsense_is_a_sentence(file, content, sentence):
+def test_invalid_input_is_reported_in_a_sentence(file, content, sentence):
     file.write_text(content)
-    with pytest.raises(SettingsError, match=sentence):
+    with pytest.raises(SimSettingsError, match=sentence):
         read_robots_file(file)
 
 
 def test_a_missing_file_is_named(file):
     sentence = f"cannot read the robots' file {file}: No such file or directory$"
-    with pytest.raises(SettingsError, match=sentence):
+    with pytest.raises(SimSettingsError, match=sentence):
         read_robots_file(file)
 
 

@@ -1,4 +1,4 @@
-"""Meshes kept for the next start."""
+"""The mesh cache."""
 
 import os
 from pathlib import Path
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from arm_description.mesh_data import MeshData
+from arm_description.mesh.data import MeshData
 from arm_gazebo.mesh import library
 from arm_gazebo.mesh.cache import MeshCache, cache_folder
 from arm_gazebo.mesh.part import MeshPart
@@ -32,7 +32,7 @@ def ball():
 
 @pytest.fixture
 def reads(monkeypatch):
-    """The mesh files that are read and not remembered."""
+    """The mesh files that are read instead of taken from the cache."""
     files = []
     read = library.read_mesh_file
 
@@ -88,7 +88,7 @@ def test_an_entry_of_triangles_without_vertices_is_refused(cache, ball):
     assert cache.load("k") is None
 
 
-def test_a_folder_that_cannot_be_made_is_no_error(tmp_path, ball):
+def test_a_folder_that_cannot_be_created_is_ignored(tmp_path, ball):
     (tmp_path / "file").touch()
     cache = MeshCache(tmp_path / "file" / "cache")
     cache.store("k", [ball])
@@ -108,7 +108,7 @@ def test_the_longest_unused_entries_make_room(cache, ball, tmp_path, monkeypatch
     cache.store("old", [ball])
     [entry] = entries(tmp_path / "cache")
     os.utime(entry, (1, 1))
-    monkeypatch.setattr("arm_gazebo.mesh.cache.LARGEST_BYTES", int(1.5 * entry.stat().st_size))
+    monkeypatch.setattr("arm_gazebo.mesh.cache.MAX_CACHE_BYTES", int(1.5 * entry.stat().st_size))
     cache.store("new", [ball])
     assert cache.load("old") is None
     assert cache.load("new") is not None
@@ -122,7 +122,7 @@ def test_the_same_content_is_read_once(parts, tmp_path, reads):
     assert reads == ["a.ply"]
 
 
-def test_changed_materials_are_read_anew(parts, tmp_path, reads):
+def test_changed_materials_are_read_again(parts, tmp_path, reads):
     (tmp_path / "a.obj").write_text(
         "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl m\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
     )
@@ -151,7 +151,7 @@ def test_the_model_is_the_same_from_the_cache(parts, tmp_path):
         assert np.array_equal(model.mesh_face, fresh.mesh_face)
 
 
-def test_the_folder_is_where_the_user_keeps_caches():
+def test_the_folder_is_in_the_users_cache_folder():
     assert cache_folder({"XDG_CACHE_HOME": "/c"}) == Path("/c/arm-suite/meshes")
     assert cache_folder({"XDG_CACHE_HOME": "relative"}) == cache_folder({})
     assert cache_folder({}).parts[-3:] == (".cache", "arm-suite", "meshes")

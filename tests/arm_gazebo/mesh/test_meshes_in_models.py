@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from arm_gazebo.errors import MeshError
+from arm_description import ResourceFinder
+from arm_gazebo.errors import MeshError, ModelError
+from arm_gazebo.mesh.part import MeshPart
 
 SIZE = (0.1, 0.2, 0.3)
 RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0)
@@ -118,7 +120,7 @@ def test_scale(parts, tmp_path, box):
 @pytest.mark.parametrize(
     ("scale", "reason"),
     [
-        ("1e9 1e9 1e9", "it reaches 1.5e+08 m far"),
+        ("1e9 1e9 1e9", "it extends 1.5e+08 m from its origin"),
         ("0 0 0", "only 0 m large"),
         ("1e-9 0 0", "only"),
     ],
@@ -161,12 +163,12 @@ def test_package_path_is_searched(parts, tmp_path, box):
     (tmp_path / "my_robot" / "meshes").mkdir(parents=True)
     box.export(tmp_path / "my_robot" / "meshes" / "box.stl")
     urdf = robot_with(shape("package://my_robot/meshes/box.stl"))
-    assert parts.build(urdf, package_path=(tmp_path,)).report.findings == ()
+    assert parts.build(urdf, resources=ResourceFinder(None, (tmp_path,))).report.findings == ()
 
 
-def test_missing_mesh_is_a_box_and_a_warning_that_says_where_it_was_sought(parts, tmp_path):
+def test_a_missing_mesh_becomes_a_box_and_a_warning_with_the_searched_paths(parts, tmp_path):
     urdf = robot_with(shape("package://my_robot/box.stl"))
-    built = parts.build(urdf, package_path=(tmp_path,))
+    built = parts.build(urdf, resources=ResourceFinder(None, (tmp_path,)))
     [warning] = [str(finding) for finding in built.report.warnings]
     assert "link 'base' (line 1): no file for 'package://my_robot/box.stl'" in warning
     assert str(tmp_path / "my_robot" / "box.stl") in warning
@@ -183,11 +185,11 @@ def test_missing_mesh_is_an_error_when_strict(parts):
     [
         ("a.stl", b"", "neither a text STL nor a complete binary one"),
         ("a.stl", b"\0" * 80 + struct.pack("<I", 100) + b"\0" * 20, "nor a complete binary one"),
-        ("a.stl", b"solid x\nvertex 1 2 3\nendsolid", "1 vertices"),
-        ("a.stl", b"solid x\nvertex 1 2 x\nvertex 1 2 3\nvertex 1 2 3\n", "no number"),
+        ("a.stl", b"solid x\nvertex 1 2 3\nendsolid", "vertices, 1, is not a multiple of 3"),
+        ("a.stl", b"solid x\nvertex 1 2 x\nvertex 1 2 3\nvertex 1 2 3\n", "invalid coordinate"),
         ("a.obj", b"v 1 2 3\n", ""),
         ("a.dae", b"<COLLADA", ""),
-        ("a.3mf", b"PK", "it is no ZIP file"),
+        ("a.3mf", b"PK", "it is not a ZIP file"),
         ("a.3mf", ZIP_OF_LATER, "zip file version 25.5"),
         ("a.step", b"ISO-10303", "'.step' is not one of .stl, .obj"),
     ],
@@ -227,6 +229,7 @@ def used(times, node):
         ('<instance_geometry url="#g"/>', 9, "it draws more than 10000 geometries"),
         ('<instance_geometry url="#g"/>', 2000, "its nodes use each other more than 100 deep"),
         (used(1, "n9"), 9, "uses itself"),
+        ("", 12, "its nodes are used more than 100000 times in all"),
     ],
 )
 def test_nodes_of_a_collada_file_do_not_multiply_either(parts, tmp_path, innermost, depth, reason):
@@ -243,7 +246,7 @@ def test_nodes_of_a_collada_file_do_not_multiply_either(parts, tmp_path, innermo
 
 
 def warning_of(parts, file):
-    """Return the one thing that is said of a mesh file that cannot be used."""
+    """Return the single finding about an unusable mesh file."""
     built = parts.build(robot_with(shape(file)))
     [warning] = [str(finding) for finding in built.report.warnings]
     assert f"cannot use the mesh {file}: " in warning
@@ -272,20 +275,23 @@ def test_nodes_of_a_gltf_file_do_not_multiply(parts, tmp_path, nodes, reason):
 @pytest.mark.parametrize(
     ("document", "reason"),
     [
-        ({"accessors": [{"count": 10**11}] * 2}, "200000000000 of its elements are without data"),
-        ({"buffers": [{"uri": "/dev/zero"}]}, "it names '/dev/zero', which is no file"),
-        ({"images": [{"uri": "a" * 5000}]}, "it names the file 'aaa"),
-        ([], "no glTF: its JSON is not an object"),
+        ({"accessors": [{"count": 10**11}] * 2}, "200000000000 of its elements have no data"),
+        (
+            {"buffers": [{"uri": "/dev/zero"}]},
+            "it names '/dev/zero': it is a device, not a regular file",
+        ),
+        ({"images": [{"uri": "a" * 5000}]}, "it names 'aaa"),
+        ([], "it is not glTF: its JSON is not an object"),
     ],
 )
-def test_a_gltf_file_that_asks_for_everything_is_not_read(parts, tmp_path, document, reason):
+def test_a_gltf_file_with_an_absurd_size_is_not_read(parts, tmp_path, document, reason):
     (tmp_path / "a.gltf").write_text(json.dumps(document))
     assert reason in warning_of(parts, tmp_path / "a.gltf")
 
 
 def test_brackets_of_a_gltf_file_that_never_end(parts, tmp_path):
     (tmp_path / "a.gltf").write_text("[" * 100_000)
-    assert "no glTF: " in warning_of(parts, tmp_path / "a.gltf")
+    assert "its JSON is nested too deep" in warning_of(parts, tmp_path / "a.gltf")
 
 
 def components(*ids):
@@ -313,14 +319,14 @@ def test_components_of_a_3mf_file_do_not_multiply(parts, tmp_path, objects, item
 
 
 def test_a_packed_mesh_that_unpacks_beyond_all_bounds_is_not_read(parts, tmp_path, monkeypatch):
-    monkeypatch.setattr("arm_description.mesh_file.LARGEST_BYTES", 100_000)
+    monkeypatch.setattr("arm_description.mesh.file.LARGEST_BYTES", 100_000)
     with zipfile.ZipFile(tmp_path / "a.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
         for name in ("a", "b"):
             archive.writestr(name, bytes(60_000))
     assert (tmp_path / "a.3mf").stat().st_size < 1_000
     built = parts.build(robot_with(shape(tmp_path / "a.3mf")))
     [warning] = [str(finding) for finding in built.report.warnings]
-    assert "it has 120000 bytes; at most 100000 are read" in warning
+    assert "it unpacks to 120000 bytes; at most 100000 are read" in warning
 
 
 def test_flat_visual_is_drawn(parts, tmp_path):
@@ -337,3 +343,55 @@ def test_flat_collision_becomes_a_thin_box(parts, tmp_path):
     assert "is flat; its bounding box is used" in str(built.report.warnings[0])
     assert built.model.geom_size[-1] == pytest.approx([0.5, 0.5, 1e-4])
     assert built.model.geom_pos[-1] == pytest.approx([0.5, 0.5, 0])
+
+
+def sheet(thickness, turned, offset):
+    """Return a sheet of 10 cm, turned out of the axes' planes or not."""
+    solid = trimesh.creation.box([0.1, 0.1, thickness])
+    if turned:
+        solid.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 2, 3]))
+    solid.apply_translation([offset] * 3)
+    return solid
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("offset", [0.0, 1.0, 10.0])
+@pytest.mark.parametrize("thickness", [1e-4, 1e-6, 1e-7, 1e-9, 0.0])
+def test_a_sheet_however_thin_can_be_touched(parts, tmp_path, thickness, offset, turned):
+    """MuJoCo refuses a whole world for one mesh without a convex hull."""
+    # A text format with all digits: binary STL would round them.
+    (tmp_path / "sheet.obj").write_text(
+        trimesh.exchange.obj.export_obj(sheet(thickness, turned, offset), digits=17)
+    )
+    built = parts.build(robot_with(shape(tmp_path / "sheet.obj", tag="collision")))
+    geom = built.model.ngeom - 1
+    # A turned sheet does not become a cube. MuJoCo turns the box around it as it likes.
+    thin, *sides = sorted(built.model.geom_aabb[geom, 3:])
+    assert thin < 1e-3
+    assert all(0.049 < side < 0.072 for side in sides)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_meshes_without_a_hull_are_found_before_mujoco_fails(parts, tmp_path, seed):
+    random = np.random.default_rng(seed)
+    shapes = []
+    for number in range(25):
+        vertices = random.uniform(-1, 1, (random.integers(4, 40), 3))
+        vertices *= 10.0 ** random.uniform(-9, 0, 3)
+        turn = trimesh.transformations.random_rotation_matrix(random.uniform(size=3))[:3, :3]
+        vertices = vertices @ turn.T + random.uniform(-1, 1, 3) * 10.0 ** random.uniform(-3, 2)
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+        (tmp_path / f"{number}.obj").write_text("\n".join([*lines, "f 1 2 3", "f 1 2 4"]))
+        shapes.append(shape(tmp_path / f"{number}.obj", tag="collision"))
+    built = parts.build(robot_with(*shapes))
+    assert built.model.ngeom >= len(shapes)
+
+
+def test_a_mesh_that_mujoco_refuses_is_named(parts, tmp_path, monkeypatch):
+    file = tmp_path / "sheet.obj"
+    sheet(0.0, True, 0.0).export(file)
+    monkeypatch.setattr(MeshPart, "is_flat", lambda _self: False)
+    with pytest.raises(
+        ModelError, match=rf"coplanar vertices.* file {file}, link 'base' \(line 1\)"
+    ):
+        parts.build(robot_with(shape(file, tag="collision")))

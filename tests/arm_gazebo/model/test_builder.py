@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_description.kinematics import forward_kinematics
-from arm_description.robot import Pose
-from arm_description.urdf import parse_urdf
+from arm_description.kinematics.forward import forward_kinematics
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Pose
 from arm_gazebo.errors import ModelError
 from arm_gazebo.sensors.camera import CameraSensor
 
@@ -34,7 +34,7 @@ def shaped(name, *shapes, mass=1.0):
     return f'<link name="{name}">{inertial}{"".join(shapes)}</link>'
 
 
-def test_every_link_is_a_body_where_kinematics_says(parts):
+def test_every_link_is_a_body_at_its_kinematic_pose(parts):
     urdf = parts.arm(j0_pos="0.3", j1_pos="0.5", j2_pos="-0.4", j3_pos="1.0")
     built = parts.build(urdf)
     data = state(built)
@@ -80,7 +80,7 @@ def test_floating_child_of_the_world_is_free(parts):
     assert model.qpos0[:3].tolist() == [1, 2, 3]
 
 
-def test_planar_joint_stands_still_as_in_tf_and_it_is_said(parts):
+def test_a_planar_joint_is_fixed_as_in_tf_and_reported(parts):
     urdf = parts.robot(
         parts.link("odom"),
         parts.link("base"),
@@ -148,7 +148,7 @@ def test_limits_and_dynamics_are_kept(parts):
 
 def test_limits_that_leave_no_room_lock_the_joint(parts):
     built = parts.build(parts.pendulum(limit='lower="0" upper="0" effort="7" velocity="2"'))
-    assert "leave it no way to move" in warnings(built)[0]
+    assert "leave it no room to move" in warnings(built)[0]
     assert np.ptp(built.model.jnt_range[0]) < 1e-3
 
 
@@ -172,19 +172,19 @@ def test_zero_effort_and_velocity_limits_are_taken_for_missing(parts):
     assert not built.model.actuator_forcelimited[0]
     assert built.joints["j"].velocity == 3
     assert built.joints["j"].velocity_limit == math.inf
-    said = "no velocity limit; it goes to positions at up to 3 rad/s"
+    said = "no velocity limit; it moves to positions at up to 3 rad/s"
     assert any(said in warning for warning in warnings(built))
     assert any("no effort limit" in warning for warning in warnings(built))
 
 
-def test_initial_value_outside_the_limits_is_moved_and_said(parts):
+def test_an_initial_value_outside_the_limits_is_clamped_and_reported(parts):
     urdf = parts.pendulum(limit='lower="-2" upper="-0.5" effort="7" velocity="2"')
     built = parts.build(urdf)
     assert built.qpos[0] == -0.5
     assert "its zero of 0 is outside its limits of -2 and -0.5" in warnings(built)[0]
 
 
-def test_hardware_joint_that_does_not_exist_is_left_out_and_said(parts):
+def test_an_unknown_hardware_joint_is_left_out_and_reported(parts):
     urdf = parts.pendulum().replace(
         "</ros2_control>",
         '<joint name="ghost"><command_interface name="position"/></joint></ros2_control>',
@@ -385,8 +385,8 @@ def test_a_thousand_links_without_mass_may_hang_below_each_other(parts):
     assert "it moves but has no mass" in str(built.report.findings[0])
 
 
-def test_links_deeper_than_mujoco_goes_are_refused(parts):
-    with pytest.raises(ModelError, match=r"'l1001' hangs on 'l0' over more than 1000 joints"):
+def test_link_chains_deeper_than_mujoco_supports_are_refused(parts):
+    with pytest.raises(ModelError, match=r"'l1001' is more than 1000 joints below 'l0'"):
         parts.build(chain(parts, "fixed", 1001))
 
 

@@ -1,20 +1,19 @@
-"""Several robots in one world: each by itself, and still in each other's way."""
+"""Several robots in one world are independent but collide with each other."""
 
 import mujoco
 import numpy as np
 import pytest
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.robot import Pose
-from arm_description.urdf import parse_urdf
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
+from arm_description.urdf.robot import Pose
 from arm_gazebo.errors import ModelError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
-from arm_gazebo.robot.part import RobotInWorld
+from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.robot.placed_description import placed
+from arm_gazebo.spec.physics_timing import physics_timing
 
 BALL = '<collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>'
 
@@ -46,7 +45,7 @@ def pair(parts):
     ]
 
 
-def test_each_has_its_joints_and_stands_where_it_is_put(pair):
+def test_each_robot_has_its_joints_and_its_own_pose(pair):
     built = build_world(pair)
     assert list(built.joints) == ["left_j", "right_j"]
     data = mujoco.MjData(built.model)
@@ -114,7 +113,7 @@ def test_they_touch_each_other(parts):
     assert touching(built) == {(built.bodies["left_bob"], built.bodies["right_bob"])}
 
 
-def test_robots_of_the_same_names_are_refused_with_a_way_out(parts):
+def test_robots_with_the_same_names_are_refused_with_advice(parts):
     same = entry(pendulum(parts, ""))
     with pytest.raises(ModelError, match=r"already has a body 'base'.*with a prefix"):
         build_world([same, same])

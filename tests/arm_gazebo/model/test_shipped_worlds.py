@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import yaml
 
+from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.model.world_file import load_world
-from arm_gazebo.model.world_path import find_world, shipped_worlds
 
-HOUSE = Path(__file__).parents[3] / "arm_gazebo" / "scripts" / "house"
+HOUSE = Path(__file__).parents[3] / "tools" / "house"
 
 GROCERIES = {
     "red_cylinder": ([0.22, 0.12, 0.175], 0.05, 0.8),
@@ -121,7 +121,7 @@ def test_shapes_are_one_of_each():
     assert model.body_mass[1:] == pytest.approx(np.ones(6))
 
 
-def test_house_is_what_its_script_makes(tmp_path):
+def test_the_house_is_what_make_house_writes(tmp_path):
     made = tmp_path / "house.xml"
     subprocess.run([sys.executable, HOUSE.parent / "make_house.py", "--output", made], check=True)
     assert made.read_text(encoding="utf-8") == find_world("house").read_text(encoding="utf-8")

@@ -1,10 +1,12 @@
+import os
+
 import mujoco
 import numpy as np
 import pytest
 
 from arm_gazebo.errors import ModelError, WorldError
+from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.model.world_file import load_world
-from arm_gazebo.model.world_path import find_world, shipped_worlds
 from arm_gazebo.sensors.camera_reader import parse_cameras
 
 FRONT_CAMERA_SEES = {
@@ -29,14 +31,21 @@ def test_own_world_is_found_by_its_path(tmp_path):
 
 
 def test_missing_world_is_named_with_those_that_exist(tmp_path):
-    with pytest.raises(WorldError, match=r"no world 'moon': .*/moon\).* empty, house, objects"):
+    with pytest.raises(WorldError, match=r"no world 'moon': .*/moon, and .* empty, house, objects"):
         find_world("moon")
+
+
+def test_what_is_not_a_regular_file_is_not_a_world(tmp_path):
+    os.mkfifo(tmp_path / "w.sdf")
+    for path, kind in ((tmp_path / "w.sdf", "FIFO"), (tmp_path, "folder")):
+        with pytest.raises(WorldError, match=f"cannot read the world {path}: it is a {kind}"):
+            find_world(path)
 
 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("no xml", "XML parse error"),
+        ("no xml", "broken.xml, line 1: not XML"),
         (
             "<mujoco><worldbody><geom typ='box'/></worldbody></mujoco>",
             "unrecognized attribute: 'typ'",

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_description.robot import Pose
+from arm_description.urdf.robot import Pose
 
 FLOOR = '<geom type="plane" size="0 0 1"/>'
 FAR_AWAY = '<geom type="box" size="0.1 0.1 0.1" pos="50 0 0.1"/>'

@@ -6,7 +6,7 @@ import pytest
 
 from arm_gazebo.errors import TimingError
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
+from arm_gazebo.spec.physics_timing import physics_timing
 
 
 @pytest.mark.parametrize("rate_hz", [30, 100, 225, 500, 1000])
@@ -69,6 +69,19 @@ def test_number_that_is_not_finite_does_not_end_the_run(bench, parts, field):
     [failure] = arm.simulation.take_failures()
     assert failure.startswith("the physics became unstable at 0.5")
     assert arm.simulation.take_failures() == []
+
+
+def test_numbers_that_are_not_finite_are_told_in_the_first_control_period_too(bench, parts):
+    arm = bench(parts.pendulum())
+    arm.simulation.reset()
+    arm.simulation.data.qvel[0] = math.nan
+    arm.simulation.advance()
+    [failure] = arm.simulation.take_failures()
+    assert failure.startswith("the physics became unstable at 0.000 s")
+    assert arm.simulation.time_s == pytest.approx(0.01)
+    arm.simulation.advance()
+    assert arm.simulation.take_failures() == []
+    assert np.isfinite(arm.simulation.data.qvel).all()
 
 
 def test_free_robot_stands_on_its_foot(bench, parts):

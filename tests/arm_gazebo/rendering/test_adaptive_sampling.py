@@ -1,4 +1,4 @@
-"""Pictures from few samples."""
+"""Images from few samples."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from arm_gazebo.rendering.adaptive_sampling import fill_picture
 
 
 class Source:
-    """A picture of which single pixels can be asked; counts how many were."""
+    """An image whose pixels can be sampled; counts the samples."""
 
     def __init__(self, picture: np.ndarray) -> None:
         # The picture goes on beyond its edges.

@@ -1,4 +1,4 @@
-"""Choice of the backend."""
+"""Selection of the render backend."""
 
 import logging
 
@@ -13,6 +13,9 @@ class Context:
     """Pretends to be an OpenGL context."""
 
     name = "egl"
+
+    def make_current(self) -> None:
+        pass
 
     def free(self) -> None:
         pass
@@ -73,5 +76,5 @@ def test_a_backend_that_draws_nothing_fails_the_self_test(monkeypatch):
 
     monkeypatch.setattr(module, "CONTEXTS", {"egl": Context})
     monkeypatch.setattr(module, "GlRenderer", Blind)
-    with pytest.raises(BackendError, match="egl draws an empty picture"):
+    with pytest.raises(BackendError, match="egl draws an empty image"):
         open_renderer(["egl", "raycast"], 64, 48)

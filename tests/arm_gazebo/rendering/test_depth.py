@@ -1,4 +1,4 @@
-"""Distances by every backend that this machine has, against rays and against plain geometry."""
+"""Depth from every backend of this machine, compared with rays and with plain geometry."""
 
 import ctypes
 import json
@@ -120,7 +120,7 @@ def test_what_is_too_near_is_minus_infinite(measure, backend):
 
 
 @all_backends
-def test_every_pixel_agrees_with_a_ray_of_its_own(measure, scene, backend):
+def test_every_pixel_agrees_with_its_own_ray(measure, scene, backend):
     model, data = scene
     depth = measure(backend)
     rotation = data.cam_xmat[0].reshape(3, 3)
@@ -145,7 +145,7 @@ def test_points_are_in_the_frame_of_their_header(measure):
     assert z == pytest.approx(-1.0, abs=1e-3)
 
 
-def test_points_lie_where_things_are_and_have_their_colours(measure):
+def test_points_are_on_the_objects_and_have_their_colours(measure):
     depth = measure("raycast")
     picture = np.zeros((EYE.height, EYE.width, 3), np.uint8)
     picture[MIDDLE] = (255, 16, 1)

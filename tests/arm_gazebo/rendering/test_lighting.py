@@ -1,4 +1,4 @@
-"""How bright surfaces are."""
+"""Brightness of surfaces."""
 
 import mujoco
 import numpy as np

@@ -1,4 +1,4 @@
-"""Pictures by every backend that this machine has: they show the same, at the right place."""
+"""All render backends of this machine draw the same image, with objects at the right places."""
 
 import ctypes
 import json
@@ -130,7 +130,7 @@ def test_a_picture_may_be_smaller_than_that_of_the_self_test(draw, backend):
 
 
 @all_backends
-def test_the_horizon_is_where_it_belongs(draw, backend):
+def test_the_horizon_is_at_the_right_height(draw, backend):
     picture = draw(backend, world(FLOOR), sensor())
     grey = np.ptp(picture.astype(int), axis=2) < 8
     assert not grey[:115].any()

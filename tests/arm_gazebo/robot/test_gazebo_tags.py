@@ -1,12 +1,12 @@
-"""`<gazebo>` tags about surfaces and looks, and what they make of a model."""
+"""`<gazebo>` tags for surfaces and colours, and their effect on the model."""
 
 import numpy as np
 import pytest
 
-from arm_description.urdf import parse_urdf
+from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.robot.build_options import BuildOptions
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.robot.part import BuildOptions
 
 ORANGE = (1.0, 0.51, 0.05, 1.0)
 BALL = (
@@ -50,10 +50,10 @@ def test_friction(text, friction):
 
 
 @pytest.mark.parametrize("text", ["nan", "-1", "", "much"])
-def test_friction_that_is_no_number_is_left_out(text):
+def test_an_invalid_friction_is_left_out(text):
     tags = tags_of(f'<gazebo reference="a"><mu1>{text}</mu1></gazebo>')
     assert tags.link("a").friction is None
-    assert "is no number" in str(tags.findings[0])
+    assert "is not a number" in str(tags.findings[0])
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def chain(tags):
         ('<gazebo reference="hand"><selfCollide>false</selfCollide></gazebo>', False),
     ],
 )
-def test_links_touch_where_one_of_them_says_so(tags, touching):
+def test_links_collide_if_one_of_them_sets_self_collide(tags, touching):
     import mujoco
 
     built = build(chain(tags))
@@ -165,7 +165,7 @@ def test_links_touch_where_one_of_them_says_so(tags, touching):
         ("gz-sim-joint-position-controller-system", "JointGroupPositionController moves joints"),
     ],
 )
-def test_a_plugin_that_does_something_else_is_left_out_and_said(plugin, said):
+def test_an_unsupported_plugin_is_left_out_and_reported(plugin, said):
     tags = tags_of(f'<gazebo>\n<plugin filename="{plugin}" name="p"/></gazebo>')
     (finding,) = tags.findings
     assert f"<plugin filename='{plugin}'> (line 2)" in str(finding)
@@ -184,10 +184,10 @@ def test_a_plugin_that_does_something_else_is_left_out_and_said(plugin, said):
         "gz-sim-joint-state-publisher-system",
     ],
 )
-def test_a_plugin_whose_work_is_done_anyway_is_not_missed(plugin):
+def test_a_plugin_that_is_not_needed_is_not_reported(plugin):
     assert tags_of(f'<gazebo><plugin filename="{plugin}" name="p"/></gazebo>').findings == ()
 
 
-def test_a_sensor_that_no_link_carries_is_said():
+def test_a_sensor_without_a_link_is_reported():
     (finding,) = tags_of('<gazebo><sensor name="eye" type="camera"/></gazebo>').findings
     assert "<sensor name='eye'> (line 1): no link carries it" in str(finding)

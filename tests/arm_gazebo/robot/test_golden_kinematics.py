@@ -1,4 +1,4 @@
-"""Where the physics puts every link, with yourdfpy as a second opinion."""
+"""Poses of all links in the physics, compared with yourdfpy."""
 
 import mujoco
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 import yourdfpy
 from lxml import etree
 
-from arm_description.urdf import parse_urdf
+from arm_description.urdf.parser import parse_urdf
 
 LIMIT = '<limit lower="-3" upper="3" effort="20" velocity="2"/>'
 

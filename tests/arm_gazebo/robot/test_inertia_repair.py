@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from arm_description.robot import Inertial, Pose
+from arm_description.urdf.robot import Inertial, Pose
 from arm_gazebo.robot.inertia_repair import missing_inertia, repair_inertia
 
 
@@ -36,11 +36,12 @@ def test_origin_turns_and_moves_the_inertia():
     assert inertia.position.tolist() == [0.1, 0.2, 0.3]
 
 
-def test_triangle_inequality_is_repaired_and_said():
+def test_a_violated_triangle_inequality_is_repaired_and_reported():
     inertia = repair_inertia(inertial(0.001, 0.001, 0.01))
     assert sorted(inertia.moments) == pytest.approx([0.005, 0.005, 0.01])
     assert (
-        "0.01 kg m2 about one principal axis is more than about the other two" in inertia.remarks[0]
+        "0.01 kg m2 about one principal axis exceeds the sum about the other two"
+        in inertia.remarks[0]
     )
 
 
@@ -70,7 +71,7 @@ def test_a_moment_that_is_missing_is_made_up():
         assert min(repair_inertia(missing).moments) == pytest.approx(1e-4, rel=0.01)
 
 
-def test_negative_moment_is_repaired_and_said():
+def test_a_negative_moment_is_repaired_and_reported():
     inertia = repair_inertia(inertial(-0.01, 0.01, 0.01))
     assert inertia.moments.min() > 0
     assert "below 0 (-0.01 kg m2)" in inertia.remarks[0]
@@ -80,19 +81,19 @@ def test_negative_moment_is_repaired_and_said():
     "nonsense",
     [inertial(0.01, 0.01, 0.01, iyz=1e308), inertial(1e308, 1e308, 0.01, ixy=1e308)],
 )
-def test_moments_that_no_float_can_add_up_are_repaired_and_said(nonsense):
+def test_moments_that_overflow_are_repaired_and_reported(nonsense):
     inertia = repair_inertia(nonsense)
     assert np.isfinite(inertia.moments).all()
     assert "its inertia is impossible" in inertia.remarks[-1]
 
 
-def test_no_inertia_at_all_is_said():
+def test_a_zero_inertia_is_reported():
     inertia = repair_inertia(inertial(0, 0, 0))
     assert inertia.moments.tolist() == [1e-6] * 3
     assert "it has no inertia" in inertia.remarks[0]
 
 
-def test_mass_of_zero_is_said():
+def test_a_zero_mass_is_reported():
     inertia = repair_inertia(inertial(0.01, 0.01, 0.01, mass=0.0))
     assert inertia.mass == 1e-3
     assert "a mass of 0 kg is not above 0" in inertia.remarks[0]
@@ -104,14 +105,14 @@ def test_inertia_in_the_wrong_unit_is_used_with_a_warning():
     assert "looks like a mesh in millimetres" in inertia.remarks[0]
 
 
-def test_inertia_in_the_wrong_unit_is_taken_from_the_shapes_where_there_are_any():
+def test_an_inertia_in_the_wrong_unit_is_replaced_from_the_shapes_if_there_are_any():
     box = np.array([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]])
     inertia = repair_inertia(inertial(1e8, 1e8, 1e8, mass=0.1), box)
     assert inertia.moments == pytest.approx([0.1 * 0.2**2 / 6] * 3)
-    assert "that of its bounding box is used" in inertia.remarks[0]
+    assert "its bounding box's inertia is used" in inertia.remarks[0]
 
 
-def test_inertia_of_a_huge_link_is_kept_where_its_shapes_have_room_for_it():
+def test_the_inertia_of_a_huge_link_is_kept_if_it_fits_its_shapes():
     """1000 kg, most of it at the ends of 20 m."""
     box = np.array([[-10.0, -0.5, -0.5], [10.0, 0.5, 0.5]])
     inertia = repair_inertia(inertial(500, 9e4, 9e4, mass=1000.0), box)
@@ -135,7 +136,7 @@ def test_tiny_rod_is_one_that_mujoco_takes(parts):
     assert built.model.body("rod").inertia == pytest.approx([1e-14] * 3, abs=0.0)
 
 
-def test_missing_mass_goes_by_size():
+def test_a_missing_mass_is_estimated_from_the_size():
     inertia = missing_inertia(np.array([[0, 0, 0], [0.1, 0.1, 1.0]]))
     assert inertia.mass == pytest.approx(3.0)
     assert inertia.position == pytest.approx([0.05, 0.05, 0.5])
@@ -155,7 +156,7 @@ def test_links_are_repaired_in_a_model(parts):
         '<link name="frame"/>',
         '<link name="tool"/>',
         parts.link("weight", 2.0),
-        parts.joint("j", "base", "moving"),
+        parts.joint("j", "base", "moving", xyz="0 0 1"),
         parts.joint("k", "moving", "frame"),
         parts.joint("l", "moving", "tool"),
         parts.joint("m", "tool", "weight", "fixed"),

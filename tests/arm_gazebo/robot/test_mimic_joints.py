@@ -84,7 +84,7 @@ def test_command_interface_on_a_follower_is_left_out(parts, chain):
     urdf = chain()
     block = parts.ros2_control(["b"]).replace('"sim"', '"other"')
     built = parts.build(urdf.replace("</robot>", f"{block}</robot>"))
-    assert "it mimics 'a' and cannot be commanded besides" in str(built.report.warnings[0])
+    assert "it mimics 'a' and cannot be commanded" in str(built.report.warnings[0])
     assert built.model.nu == 1
 
 

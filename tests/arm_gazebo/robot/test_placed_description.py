@@ -1,9 +1,12 @@
-"""Where the description of one of several robots has its root."""
+"""The root of a description that is placed among several robots."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from arm_description.urdf import parse_urdf
+from arm_description.urdf.description_source import source_of, with_source
+from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.robot.placed_description import placed
 
 BASE = "<link name='base'/>"
@@ -13,14 +16,16 @@ POSE = (0.0, 2.0, 0.5, 0.0, 0.0, np.pi / 2)
 
 
 def test_a_root_is_fixed_to_the_world():
-    robot = parse_urdf(placed(f"<robot name='r'>{BASE}</robot>", POSE))
+    text = with_source(f"<robot name='r'>{BASE}</robot>", Path("/a.urdf"), [Path("/b")])
+    assert source_of(placed(text, POSE)) == source_of(text)
+    robot = parse_urdf(placed(text, POSE))
     (joint,) = robot.children("world")
     assert (robot.root, joint.child, joint.type) == ("world", "base", "fixed")
     assert joint.origin.xyz == pytest.approx((0.0, 2.0, 0.5))
     assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2))
 
 
-def test_what_stands_on_a_world_of_its_own_is_moved_with_it():
+def test_a_robot_on_its_own_world_link_moves_with_it():
     (joint,) = parse_urdf(placed(ON_WORLD, POSE)).children("world")
     assert joint.origin.xyz == pytest.approx((0.0, 3.0, 0.5))
     assert joint.origin.rpy == pytest.approx((0.0, 0.0, np.pi / 2 + 0.5))
@@ -52,7 +57,7 @@ def test_what_is_in_a_namespace_is_moved_too():
     assert joint.origin.xyz == pytest.approx((0.0, 3.0, 0.5))
 
 
-def test_without_a_pose_it_stands_where_it_says():
+def test_without_a_pose_it_keeps_its_own_origin():
     (joint,) = parse_urdf(placed(ON_WORLD, ())).children("world")
     assert joint.origin.xyz == pytest.approx((1.0, 0.0, 0.0))
     assert joint.origin.rpy == pytest.approx((0.0, 0.0, 0.5))

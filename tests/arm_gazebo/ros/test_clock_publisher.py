@@ -1,4 +1,4 @@
-"""The publisher of /clock: when it publishes, what it says of others that publish the time."""
+"""The publisher of /clock: when it publishes, and its warnings about other publishers."""
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -7,7 +7,7 @@ from builtin_interfaces.msg import Time
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
-from arm_control.outbox import Outbox
+from arm_control.loop.outbox import Outbox
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 
 
@@ -20,10 +20,11 @@ class FakeNode:
     subscribers: int = 1
 
     def create_publisher(self, _type: type, topic: str, _qos: object) -> SimpleNamespace:
-        handle = SimpleNamespace(
-            publish_raw=self.sent.append, get_subscription_count=lambda: self.subscribers
+        return SimpleNamespace(
+            topic_name=topic,
+            publish=self.sent.append,
+            get_subscription_count=lambda: self.subscribers,
         )
-        return SimpleNamespace(topic_name=topic, handle=handle)
 
     def count_publishers(self, topic: str) -> int:
         assert topic == "/clock"
@@ -38,13 +39,13 @@ class FakeNode:
         ]
 
 
-def test_the_only_clock_says_nothing():
+def test_a_single_clock_causes_no_warning():
     node = FakeNode()
     clock = RosClockPublisher(node, Outbox())
     assert clock.take_warning() is None
 
 
-def test_a_time_goes_out_with_the_rest_of_the_tick():
+def test_a_time_is_published_with_the_rest_of_the_tick():
     node = FakeNode()
     outbox = Outbox()
     clock = RosClockPublisher(node, outbox)
@@ -57,7 +58,7 @@ def test_a_time_goes_out_with_the_rest_of_the_tick():
     ]
 
 
-def test_a_time_that_nobody_listens_to_is_not_written():
+def test_a_time_without_subscribers_is_not_serialised():
     node = FakeNode(subscribers=0)
     outbox = Outbox()
     clock = RosClockPublisher(node, outbox)
@@ -67,7 +68,7 @@ def test_a_time_that_nobody_listens_to_is_not_written():
     assert clock.now_s() == 1.5
 
 
-def test_before_its_own_publisher_is_known_it_says_nothing():
+def test_there_is_no_warning_before_its_own_publisher_is_discovered():
     node = FakeNode(publishers=[])
     clock = RosClockPublisher(node, Outbox())
     assert clock.take_warning() is None
@@ -75,13 +76,13 @@ def test_before_its_own_publisher_is_known_it_says_nothing():
     assert clock.take_warning() is None
 
 
-def test_each_further_clock_is_said_once_and_again_when_it_comes_back():
+def test_each_additional_clock_is_reported_once_and_again_after_it_returns():
     node = FakeNode()
     clock = RosClockPublisher(node, Outbox())
     node.publishers = ["/arm_gazebo", "/other/player"]
     assert clock.take_warning() == (
-        "/clock has 2 publishers: /arm_gazebo, /other/player; time jumps to and fro. Does another "
-        "simulation run? End it, or give one of them another ROS_DOMAIN_ID"
+        "/clock has 2 publishers: /arm_gazebo, /other/player; time jumps back and forth. Is "
+        "another simulation running? End it, or give one of them another ROS_DOMAIN_ID"
     )
     assert clock.take_warning() is None
     node.publishers = ["/arm_gazebo"]

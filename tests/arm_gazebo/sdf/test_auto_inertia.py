@@ -1,13 +1,13 @@
-"""Mass and inertia that go by the collisions and their densities."""
+"""Mass and inertia computed from collisions and their densities."""
 
 import math
 
 import numpy as np
 import pytest
 
-from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
 from arm_gazebo.sdf.world import read_sdf_world
+from arm_gazebo.spec.report import BuildReport
 
 CUBE = "<box><size>1 1 1</size></box>"
 CORNERS = "v 0 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 0\n"
@@ -58,7 +58,7 @@ def mesh(name):
     return f"<mesh><uri>{name}.obj</uri></mesh>"
 
 
-def test_a_cube_weighs_what_its_density_says(link):
+def test_the_mass_of_a_cube_follows_from_its_density(link):
     body, report = link(collision("<box><size>.1 .1 .1</size></box>", 2000))
     assert body.mass[0] == pytest.approx(2.0)
     assert body.inertia == pytest.approx(2.0 * 0.01 / 6)
@@ -102,13 +102,15 @@ def test_a_stated_mass_scales_and_a_stated_density_is_for_all_collisions(link):
 
 
 @pytest.mark.parametrize("collisions", ["", collision(mesh("flat"))])
-def test_without_a_volume_it_is_the_usual_one_and_said(link, collisions):
+def test_a_link_without_a_volume_gets_the_default_inertia_and_a_warning(link, collisions):
     body, report = link(collisions)
     assert (body.mass[0], body.inertia[0]) == (1.0, 1.0)
-    assert "no collision with a volume; 1 kg and 1 kg m2 are used" in str(report.warnings[0])
+    assert "needs a collision with a volume, and it has none; 1 kg and 1 kg m2 are used" in str(
+        report.warnings[0]
+    )
 
 
-def test_what_stands_still_needs_none(link):
+def test_a_static_model_needs_no_inertia(link):
     assert link(static=True)[1].warnings == ()
 
 

@@ -130,12 +130,12 @@ def test_points_know_how_their_frame_looks(frame, axes, origin):
     np.testing.assert_allclose(optics[:, 3], origin, atol=1e-4)
 
 
-def test_noise_of_type_none_is_none():
+def test_noise_of_type_none_is_zero():
     found = camera("<camera><noise><type>none</type><stddev>0.1</stddev></noise></camera>")
     assert found.noise_stddev == 0.0
 
 
-def test_a_name_that_is_no_topic_becomes_one():
+def test_a_name_that_is_not_a_valid_topic_is_converted():
     (found,) = parse_cameras(robot(sensor(name="front-camera 1")))
     assert found.image_topics == ("front_camera_1",)
 
@@ -175,7 +175,7 @@ def test_an_rgbd_camera_has_gazebos_topics_below_its_own():
     )
 
 
-def test_each_topic_of_an_rgbd_camera_may_have_a_name_of_its_own():
+def test_each_topic_of_an_rgbd_camera_may_have_its_own_name():
     names = ("image_topic", "depth_image_topic", "points_topic", "camera_info_topic")
     tags = "".join(f"<{name}>/d435/{name}</{name}>" for name in names)
     (found,) = parse_cameras(robot(sensor(tags).replace('"camera">', '"rgbd_camera">')))
@@ -255,7 +255,7 @@ def on_two_links(left: str = "", right: str = "") -> str:
     )
 
 
-def test_cameras_of_one_name_on_several_links_are_told_apart_by_their_links():
+def test_cameras_of_one_name_on_several_links_get_their_links_as_prefix():
     cameras = parse_cameras(on_two_links("<topic>left/image</topic>", "<topic>right/image</topic>"))
     assert [(c.name, c.link) for c in cameras] == [
         ("base_link/camera", "base_link"),

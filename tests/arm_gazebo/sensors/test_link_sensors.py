@@ -1,4 +1,4 @@
-"""What sensors read, against what mechanics says they must."""
+"""Sensor readings compared with mechanics."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from arm_control.hardware_info import parse_hardware_info
-from arm_description.urdf import parse_urdf
-from arm_gazebo.hardware.instrument import Instrument
+from arm_control.hardware.info import parse_hardware_info
+from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.robot.build_options import BuildOptions
+from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
+from arm_gazebo.spec.physics_timing import physics_timing
 
 RATE_HZ = 100.0
 G = 9.81
@@ -34,7 +34,7 @@ def with_tags(urdf: str, *tags: str) -> str:
 
 
 class Lab:
-    """A robot with sensors in a simulation, without anybody who drives it."""
+    """A robot with sensors in a simulation, without controllers."""
 
     def __init__(
         self, urdf: str, hold_joints: bool = True, seed: int = 0, world="empty", **options
@@ -50,9 +50,9 @@ class Lab:
             sensors=sensors,
         )
         self.simulation = Simulation(built, timing, hold_joints)
-        self.instruments = {s.name: Instrument(self.simulation, s, seed) for s in sensors}
+        self.sensors = {s.name: SimulatedSensor(self.simulation, s, seed) for s in sensors}
         self.hardware = [
-            SimulatedHardware(self.simulation, info, list(self.instruments.values()))
+            SimulatedHardware(self.simulation, info, list(self.sensors.values()))
             for info in hardware
         ]
 
@@ -62,9 +62,9 @@ class Lab:
 
     def read(self, name: str = "s") -> dict[str, np.ndarray]:
         """Return a reading by the part of its channels' names before the dot."""
-        instrument = self.instruments[name]
+        sensor = self.sensors[name]
         values: dict[str, list[float]] = {}
-        for channel, value in zip(instrument.sensor.channels, instrument.read(), strict=True):
+        for channel, value in zip(sensor.description.channels, sensor.read(), strict=True):
             values.setdefault(channel.partition(".")[0], []).append(value)
         return {vector: np.array(numbers) for vector, numbers in values.items()}
 
@@ -185,7 +185,7 @@ def test_a_box_in_the_air_touches_nothing_and_on_the_floor_bears_its_weight(box)
     # It sleeps a little before all is still.
     assert reading["force"] == pytest.approx([0, 0, 3 * G], abs=0.3)
     assert reading["torque"] == pytest.approx([0, 0, 0], abs=0.02)
-    assert lab.instruments["s"].sensor.topic == "bumper"
+    assert lab.sensors["s"].description.topic == "bumper"
 
 
 def test_contact_forces_are_in_the_links_axes(box):
@@ -196,7 +196,7 @@ def test_contact_forces_are_in_the_links_axes(box):
     assert lab.read()["force"] == pytest.approx([0, 3 * G, 0], abs=0.3)
 
 
-def test_who_listens_does_not_change_the_run(parts):
+def test_subscribers_do_not_change_the_run(parts):
     urdf = with_tags(parts.pendulum(), gazebo("bob", "imu"))
     heard, unheard = Lab(urdf, False), Lab(urdf, False)
     for _ in range(50):
@@ -257,7 +257,7 @@ def test_what_is_put_into_the_air_at_rest_falls(box, tmp_path):
     assert fallen == pytest.approx(G * 0.1**2 / 2, abs=2e-3)
 
 
-def test_what_slept_is_felt_where_it_is_put(box, tmp_path):
+def test_contact_with_a_sleeping_body_that_was_moved_is_measured(box, tmp_path):
     world = tmp_path / "sleeper.xml"
     world.write_text(SLEEPER)
     lab = Lab(box, base="free", world=world)
@@ -291,7 +291,7 @@ NOISY = (
 )
 
 
-def test_noise_has_the_spread_and_the_bias_that_are_asked_for_and_comes_again(still):
+def test_noise_has_the_requested_spread_and_bias_and_is_reproducible(still):
     runs = []
     for seed in (1, 1, 2):
         lab = Lab(still(gazebo("load", "imu", NOISY)), seed=seed)
@@ -311,7 +311,7 @@ def test_noise_has_the_spread_and_the_bias_that_are_asked_for_and_comes_again(st
 def test_one_state_gives_one_reading(still):
     lab = Lab(still(gazebo("load", "imu", NOISY)))
     lab.run(0.01)
-    np.testing.assert_array_equal(lab.instruments["s"].read(), lab.instruments["s"].read())
+    np.testing.assert_array_equal(lab.sensors["s"].read(), lab.sensors["s"].read())
 
 
 BLOCK = (

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from arm_description.urdf import parse_urdf
+from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.errors import SensorError
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.force_torque import ForceTorqueSensor
@@ -140,7 +140,7 @@ def test_cameras_and_unknown_sensors_are_left_to_others():
     assert sensors(("hand", "camera", ""), ("hand", "sonar", "")) == ()
 
 
-def test_sensors_of_one_name_on_several_links_are_told_apart_by_their_links():
+def test_sensors_of_one_name_on_several_links_get_their_links_as_prefix():
     one, other, third = sensors(
         ("base", "imu", "<topic>b</topic>"),
         ("hand", "imu", "<topic>h</topic>"),

@@ -1,4 +1,4 @@
-"""Whether a window can open, told before anything starts."""
+"""Whether a window can open is checked before anything starts."""
 
 import socket
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ def refusal(environ: dict[str, str]) -> str:
 
 
 @pytest.mark.parametrize("environ", [{}, {"DISPLAY": ""}, {"WAYLAND_DISPLAY": ""}])
-def test_no_display_is_refused_and_the_way_out_named(environ):
+def test_a_missing_display_is_refused_with_advice(environ):
     said = refusal(environ)
     assert "DISPLAY is not set" in said
     assert "Xvfb" in said

@@ -15,7 +15,7 @@ MJCF = "<mujoco><worldbody><body><joint/><geom size='0.1'/></body></worldbody></
 
 
 class Child:
-    """Stands for a window's process: a real end of the socket, read by the test."""
+    """Replaces a window process: a real end of the socket that the test reads."""
 
     pid = 1
 
@@ -101,10 +101,10 @@ def test_the_window_knows_the_display_and_does_not_speak_for_the_simulation(worl
 @pytest.mark.parametrize(
     ("code", "said"),
     [
-        (EXIT_CLOSED, "the window was closed; the simulation goes on"),
-        (EXIT_FAILED, "there is no window; the simulation goes on"),
-        (1, "the window ended with exit code 1; the simulation goes on"),
-        (-11, "the window ended (Segmentation fault); the simulation goes on"),
+        (EXIT_CLOSED, "the window was closed; the simulation continues"),
+        (EXIT_FAILED, "there is no window; the simulation continues"),
+        (1, "the window ended with exit code 1; the simulation continues"),
+        (-11, "the window ended (Segmentation fault); the simulation continues"),
     ],
 )
 def test_a_window_that_is_gone_stays_away_and_gets_nothing_more(world, caplog, code, said):
@@ -116,17 +116,17 @@ def test_a_window_that_is_gone_stays_away_and_gets_nothing_more(world, caplog, c
     world.feed.supervise()
     assert len(world.children) == 1
     assert world.children[0].receive() is None
-    assert caplog.text.count("the simulation goes on") == 1
+    assert caplog.text.count("the simulation continues") == 1
 
 
-def test_a_window_whose_model_is_old_opens_anew(world):
+def test_a_window_with_an_old_model_reopens(world):
     world.end_child(EXIT_NEW_MODEL)
     assert len(world.children) == 2
     world.publish(1.0)
     assert world.children[1].receive() == ["model", "1"]
 
 
-def test_a_window_that_cannot_be_started_is_no_harm(caplog):
+def test_a_window_that_cannot_start_does_no_harm(caplog):
     def no_memory(*_arguments: object, **_options: object) -> None:
         raise OSError("Cannot allocate memory")
 

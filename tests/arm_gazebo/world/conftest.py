@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from arm_gazebo.world.keeper import SpawnRequest, WorldKeeper
+from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource
 
 URDF = """<robot name="crate"><link name="base">
@@ -51,11 +51,11 @@ class Things:
 
 
 class KeptWorld:
-    """An arm in a world, and the keeper of that world; the loop is called straight away."""
+    """An arm in a world, and the editor of that world; the loop is called straight away."""
 
     def __init__(self, bench, arm: str, world: str, rate_hz: float = 100.0, **options) -> None:
         self.arm = bench(arm, rate_hz, world, **options)
-        self.keeper = WorldKeeper(
+        self.editor = WorldEditor(
             self.arm.simulation,
             lambda function: function(),
             [self.arm.hardware],
@@ -64,14 +64,19 @@ class KeptWorld:
         )
 
     def spawn(self, name: str, text: str, pose: np.ndarray, frame: str = "", **more) -> str:
-        return self.keeper.spawn(SpawnRequest(name, "", text, pose, frame, **more))
+        return self.editor.spawn(SpawnRequest(name, "", text, pose, frame, **more))
+
+    def reset(self, spawned: bool) -> None:
+        """Return everything to its start; without spawned things if they are to go as well."""
+        simulation = self.arm.simulation
+        self.editor.undo(spawned, True, lambda: simulation.reset(simulation.time_s))
 
     def names(self) -> list[str]:
-        return [entity.name for entity in self.keeper.entities]
+        return [entity.name for entity in self.editor.entities]
 
     def where(self, entity: str) -> np.ndarray:
         """Return where an entity is now, shape (3,)."""
-        return self.keeper.motions().of(self.keeper.entities.find(entity)).pose[:3, 3]
+        return self.editor.motions().of(self.editor.entities.find(entity)).pose[:3, 3]
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@ import pytest
 
 from arm_gazebo.world.entity import Category
 from arm_gazebo.world.entity_filter import EntityFilter, Volume
-from arm_gazebo.world.refusal import RefusedError
+from arm_gazebo.world.refusal import RequestError
 
 
 @pytest.fixture
@@ -12,7 +12,7 @@ def choose(kept, parts, things):
     world.spawn("post_1", things.post, things.at(5, 5, 5))
 
     def names(**filters) -> set[str]:
-        chosen = EntityFilter(**filters).choose(world.keeper.entities, world.keeper.motions())
+        chosen = EntityFilter(**filters).choose(world.editor.entities, world.editor.motions())
         return {entity.name for entity in chosen}
 
     return names
@@ -31,8 +31,8 @@ def test_names_by_regular_expression(choose, pattern, expected):
 
 
 @pytest.mark.parametrize("pattern", ["(", "[", "*", "(?P<a", "a" * 201])
-def test_what_is_no_regular_expression_is_refused(choose, pattern):
-    with pytest.raises(RefusedError):
+def test_an_invalid_regular_expression_is_refused(choose, pattern):
+    with pytest.raises(RequestError):
         choose(pattern=pattern)
 
 

@@ -1,4 +1,4 @@
-"""A running simulation goes on in another model as if nothing had happened."""
+"""A running simulation continues in another model without any disturbance."""
 
 import math
 import resource
@@ -16,7 +16,7 @@ def moving(kept):
     world = kept()
     world.arm.claim()
     world.arm.command(0.5, 0.6, -0.4, 0.3)
-    world.keeper.place("coke_can", None, "", np.array([0.3, 0.1, 1.0, 0.0, 2.0, 1.0]))
+    world.editor.place("coke_can", None, "", np.array([0.3, 0.1, 1.0, 0.0, 2.0, 1.0]))
     world.arm.run(0.15)
     return world
 
@@ -44,7 +44,7 @@ def test_gains_and_rotors_are_carried_over(moving, things):
     simulation = moving.arm.simulation
     model = simulation.model
     moving.spawn("crate", things.crate, things.at(3, 3, 1))
-    moving.keeper.delete("mustard")
+    moving.editor.delete("mustard")
     for name in moving.arm.built.joints:
         before, after = model.actuator(name), simulation.model.actuator(name)
         assert after.gainprm.tolist() == before.gainprm.tolist()
@@ -53,7 +53,7 @@ def test_gains_and_rotors_are_carried_over(moving, things):
         assert simulation.model.dof_armature[here] == model.dof_armature[there]
 
 
-def test_a_wheel_by_itself_keeps_its_rotor(kept, parts, things):
+def test_a_free_wheel_keeps_its_rotor(kept, parts, things):
     """MuJoCo keeps the inertia of such a joint from when the model was made."""
     world = kept("empty", robot=parts.wheel(0.6, 'effort="50" velocity="3"'))
     world.arm.claim("velocity")
@@ -66,7 +66,7 @@ def test_a_wheel_by_itself_keeps_its_rotor(kept, parts, things):
 
 
 @pytest.mark.parametrize("rate_hz", [30, 100, 500])
-def test_the_arm_goes_on_its_way(kept, things, rate_hz):
+def test_the_arm_continues_its_motion(kept, things, rate_hz):
     """The same motion with and without three swaps in the middle of it."""
     disturbed, undisturbed = kept("house", rate_hz), kept("house", rate_hz)
     ways = []
@@ -83,7 +83,7 @@ def test_the_arm_goes_on_its_way(kept, things, rate_hz):
             if swaps and tick == round(0.6 * rate_hz):
                 world.spawn("post", things.post, things.at(4, 4, 0.05))
             if swaps and tick == round(0.9 * rate_hz):
-                world.keeper.delete("crate")
+                world.editor.delete("crate")
         ways.append(way)
     assert np.abs(np.array(ways[0]) - ways[1]).max() < 2e-4
     assert disturbed.arm.simulation.time_s == undisturbed.arm.simulation.time_s
@@ -114,7 +114,7 @@ def test_a_deleted_support_lets_fall_what_slept_on_it(kept, things):
     world.spawn("crate", things.crate, things.at(3, 3, 0.151))
     world.arm.run(2.0)
     assert world.where("crate")[2] == pytest.approx(0.15, abs=2e-3)
-    world.keeper.delete("post")
+    world.editor.delete("post")
     world.arm.run(1.0)
     assert world.where("crate")[2] == pytest.approx(0.05, abs=2e-3)
 
@@ -124,7 +124,7 @@ def test_the_base_stays_as_it_is(kept, things):
     base = world.arm.built
     bodies = [body.name for body in base.spec.bodies]
     world.spawn("crate", things.crate, things.at(3, 3, 1))
-    world.keeper.delete("red_cylinder")
+    world.editor.delete("red_cylinder")
     assert [body.name for body in base.spec.bodies] == bodies
 
 
@@ -132,7 +132,7 @@ def test_pictures_are_clipped_as_before(kept, things):
     world = kept()
     before = world.arm.built.model
     world.spawn("crate", things.crate, things.at(100, 0, 1))
-    after = world.keeper.model
+    after = world.editor.model
     assert after.stat.extent == before.stat.extent
     assert (after.vis.map.znear, after.vis.map.zfar) == (before.vis.map.znear, before.vis.map.zfar)
 
@@ -159,14 +159,14 @@ def test_a_world_that_changes_all_the_time_needs_no_more_memory(kept, parts, thi
     world = kept("empty", robot=parts.pendulum())
     for _ in range(10):
         world.spawn("crate", things.chest, things.at(3, 3, 1))
-        world.keeper.delete("crate")
+        world.editor.delete("crate")
     before_kb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for _ in range(50):
         world.spawn("crate", things.chest, things.at(3, 3, 1))
         world.arm.tick()
-        world.keeper.delete("crate")
+        world.editor.delete("crate")
     grown_kb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before_kb
-    assert world.keeper.model.nbody == world.arm.built.model.nbody
+    assert world.editor.model.nbody == world.arm.built.model.nbody
     # One set of MuJoCo's arrays is 0.5 MB and more.
     assert grown_kb < 20_000
 
@@ -176,5 +176,5 @@ def test_sleep_is_left_to_what_lies_still(kept, things):
     world.spawn("crate", things.crate, things.at(3, 3, 0.05))
     world.arm.run(3.0)
     data = world.arm.simulation.data
-    assert mujoco.mj_name2id(world.keeper.model, mujoco.mjtObj.mjOBJ_BODY, "crate::base") > 0
+    assert mujoco.mj_name2id(world.editor.model, mujoco.mjtObj.mjOBJ_BODY, "crate::base") > 0
     assert (data.tree_asleep[1:] >= 0).sum() >= 4

@@ -1,4 +1,4 @@
-"""Which names a regular expression is found in, and which expressions are none."""
+"""Names that a regular expression matches, and invalid expressions."""
 
 import re
 
@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_gazebo.world.name_pattern import NamePattern
-from arm_gazebo.world.refusal import RefusedError
+from arm_gazebo.world.entity_filter import NamePattern
+from arm_gazebo.world.refusal import RequestError
 
 ITEMS = st.sampled_from(["a", "b", ".", "^", "$", "[ab]", "[^a]", r"\w", r"\b", ""])
 TIMES = st.sampled_from(["*", "+", "?", "{2}", "{1,2}", "{2,}", "*?"])
@@ -54,8 +54,8 @@ def test_posix_expressions_with_escapes(pattern, name, found):
         *("(?=a)", r"(a)\1", "\\", "[b-a]", "[[:letter:]]", r"\q", "a" * 201, "(" * 200, "\ud800"),
     ],
 )
-def test_what_is_no_expression_is_refused(pattern):
-    with pytest.raises(RefusedError, match="the filter"):
+def test_an_invalid_expression_is_refused(pattern):
+    with pytest.raises(RequestError, match="the filter"):
         NamePattern(pattern)
 
 
@@ -70,5 +70,5 @@ def test_what_is_no_expression_is_refused(pattern):
         "^((a{1,30}){1,30})!",
     ],
 )
-def test_patterns_that_fit_in_too_many_ways_to_try_them_come_to_an_end(pattern):
+def test_patterns_with_exponential_backtracking_terminate(pattern):
     assert not NamePattern(pattern).is_in("a" * 100)

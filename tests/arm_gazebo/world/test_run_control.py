@@ -1,8 +1,8 @@
 import pytest
 
-from arm_control.control_loop import ControlLoop
-from arm_control.pacer import Pacer
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.pacer import Pacer
+from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.run_control import RunControl, RunState
 
 
@@ -22,7 +22,7 @@ class Run:
         self.ticks += 1
 
     def refusal(self, action) -> Refusal:
-        with pytest.raises(RefusedError) as caught:
+        with pytest.raises(RequestError) as caught:
             action()
         assert str(caught.value)
         return caught.value.refusal
@@ -45,7 +45,7 @@ def test_playing_pausing_and_stopping(run):
     assert run.did == ["reset"]
 
 
-def test_whoever_pauses_the_loop_counts(run):
+def test_the_loops_own_pause_is_authoritative(run):
     run.control.go_to(RunState.PLAYING)
     run.loop.pause().result(30.0)
     assert run.control.state is RunState.PAUSED
@@ -57,7 +57,7 @@ def test_a_state_that_is_there_is_refused(run):
 
 
 def test_without_a_world_nothing_plays(run):
-    run.control.stand(RunState.NO_WORLD)
+    run.control.pause_as(RunState.NO_WORLD)
     kind = run.refusal(lambda: run.control.go_to(RunState.PLAYING))
     assert kind is Refusal.INCORRECT_TRANSITION
     assert run.refusal(lambda: run.control.step(1)) is Refusal.INCORRECT_STATE
@@ -66,15 +66,15 @@ def test_without_a_world_nothing_plays(run):
 @pytest.mark.parametrize("before", [RunState.PLAYING, RunState.PAUSED])
 def test_a_world_that_is_refused_leaves_the_state_as_it_was(run, before):
     def refuse() -> None:
-        with run.control.to_stand(RunState.NO_WORLD):
+        with run.control.paused_as(RunState.NO_WORLD):
             assert run.control.state is RunState.NO_WORLD
-            raise RefusedError(Refusal.FAILED, "the world cannot be like that")
+            raise RequestError(Refusal.FAILED, "the world cannot be changed")
 
     if before is RunState.PLAYING:
         run.control.go_to(before)
     assert run.refusal(refuse) is Refusal.FAILED
     assert run.control.state is before
-    with run.control.to_stand(RunState.STOPPED):
+    with run.control.paused_as(RunState.STOPPED):
         pass
     assert run.control.state is RunState.STOPPED
 
@@ -106,3 +106,23 @@ def test_no_steps_while_time_runs(run):
 
 def test_no_steps_are_no_number_of_steps(run):
     assert run.refusal(lambda: run.control.step(0)) is Refusal.FAILED
+
+
+def test_single_steps_go_on_until_somebody_changes_the_state(run):
+    with run.control.run_of_steps(100) as goes_on:
+        assert run.control.step(1).result(30.0) == 1
+        assert goes_on()
+        # Between two steps the loop stands still, but the run of steps can be ended.
+        run.control.go_to(RunState.PAUSED)
+        assert not goes_on()
+    assert run.refusal(lambda: run.control.go_to(RunState.PAUSED)) is Refusal.ALREADY_THERE
+
+
+def test_a_run_of_steps_is_refused_like_steps(run):
+    def begin(count: int) -> None:
+        with run.control.run_of_steps(count):
+            pass
+
+    assert run.refusal(lambda: begin(0)) is Refusal.FAILED
+    run.control.go_to(RunState.PLAYING)
+    assert run.refusal(lambda: begin(1)) is Refusal.INCORRECT_STATE

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from arm_gazebo.world.shapes import MOST_TRIANGLES, Solid, WorldShapes
+from arm_gazebo.world.shapes import MAX_TRIANGLES, Solid, WorldShapes
 
 
 def shapes_of(world) -> WorldShapes:
-    return WorldShapes(world.keeper.model, world.keeper.entities)
+    return WorldShapes(world.editor.model, world.editor.entities)
 
 
 @pytest.fixture
@@ -30,7 +30,7 @@ def test_every_kind_of_shape_is_drawn(world):
 
 def test_sizes_and_places(world):
     shapes = shapes_of(world)
-    rows = shapes.poses(*world.keeper.motions().geom_poses)
+    rows = shapes.poses(*world.editor.motions().geom_poses)
     found = {shape.key: (shape, row) for shape, row in zip(shapes.shapes, rows, strict=True)}
     box, row = found["box", 0]
     assert box.size == (1.0, 1.0, 1.0)
@@ -40,13 +40,13 @@ def test_sizes_and_places(world):
     assert sorted(end[0] for end in ends) == pytest.approx([1.7, 2.3], abs=1e-6)
 
 
-def test_triangles_lie_where_the_mesh_is(world):
+def test_triangles_are_at_the_meshs_pose(world):
     shapes = shapes_of(world)
-    rows = shapes.poses(*world.keeper.motions().geom_poses)
+    rows = shapes.poses(*world.editor.motions().geom_poses)
     cone, row = next(
         (shape, row) for shape, row in zip(shapes.shapes, rows, strict=True) if shape.corners.size
     )
-    assert 0 < len(cone.corners) <= 3 * MOST_TRIANGLES
+    assert 0 < len(cone.corners) <= 3 * MAX_TRIANGLES
     data = world.arm.simulation.data
     rotation = data.geom_xmat[cone.geom].reshape(3, 3)
     corners = cone.corners @ rotation.T + row[:3]
@@ -59,7 +59,7 @@ def test_triangles_lie_where_the_mesh_is(world):
 def test_keys_stay_when_the_world_changes(world, things):
     before = {shape.key: shape.size for shape in shapes_of(world).shapes}
     world.spawn("crate", things.crate, things.at(5, 5, 1))
-    world.keeper.delete("capsule")
+    world.editor.delete("capsule")
     after = {shape.key: shape.size for shape in shapes_of(world).shapes}
     assert after == {
         **{key: size for key, size in before.items() if key[0] != "capsule"},
@@ -67,7 +67,7 @@ def test_keys_stay_when_the_world_changes(world, things):
     }
 
 
-def test_robots_are_left_to_who_knows_them(kept):
+def test_robots_are_left_out(kept):
     assert {shape.owner for shape in shapes_of(kept("empty")).shapes} == {"world"}
 
 

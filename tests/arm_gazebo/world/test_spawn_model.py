@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from arm_gazebo.world.refusal import Refusal, RefusedError
+from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 
 SOURCE = ModelSource(0.002)
@@ -21,7 +21,7 @@ WORDS = re.compile(r"""(?<=")[^"<>]*(?=")|(?<=<)/?[\w:]+|(?<=>)[^<>]+(?=<)|[<>/=
 
 
 def refused(text: str) -> tuple[Refusal, str]:
-    with pytest.raises(RefusedError) as caught:
+    with pytest.raises(RequestError) as caught:
         SOURCE.read("", text)
     return caught.value.refusal, str(caught.value)
 
@@ -34,6 +34,19 @@ def test_each_format_is_known_by_its_root_element(things, name, format_, root):
     model = SOURCE.read("", getattr(things, name))
     assert (model.format, model.root) == (format_, root)
     assert model.spec.copy().compile().nq == 7
+
+
+def test_a_model_in_a_model_is_spawned_as_one_or_refused(things):
+    inner = things.ball[things.ball.index("<model") : things.ball.index("</sdf>")]
+    outer = '<sdf version="1.9"><model name="outer">{}</model></sdf>'
+    model = SOURCE.read("", outer.format(inner))
+    assert (model.root, model.spec.copy().compile().nv) == ("outer", 6)
+    kind, words = refused(outer.format(f'<link name="plate"/>{inner}'))
+    assert kind is Refusal.UNREADABLE
+    assert "exactly one top-level body" in words
+    joint = "<joint name='j' type='fixed'><parent>plate</parent><child>ball::body</child></joint>"
+    tied = SOURCE.read("", outer.format(f'<link name="plate"/>{inner}{joint}'))
+    assert tied.root == "outer"
 
 
 def test_joints_of_a_urdf_move(things):
@@ -86,7 +99,7 @@ def test_the_door_of_a_spawned_cupboard_swings_freely():
         ("<gazebo reference='stop'><selfCollide>true</selfCollide></gazebo>", True),
     ],
 )
-def test_links_of_a_spawned_thing_touch_each_other_only_where_it_says_so(tag, touch):
+def test_links_of_a_spawned_model_collide_only_with_self_collide(tag, touch):
     """A door against a stop on another joint, neither its neighbour nor overlapping at first."""
     stop = (
         link("stop", "0.1 0.1 0.1", "0.35 -0.1 0")
@@ -100,7 +113,7 @@ def test_links_of_a_spawned_thing_touch_each_other_only_where_it_says_so(tag, to
     assert bool(data.joint("hinge").qpos[0] < 0.3) is touch
 
 
-def test_a_urdf_with_a_world_link_stands_still():
+def test_a_urdf_with_a_world_link_is_static():
     text = (
         "<robot name='r'><link name='world'/><link name='post'/><joint name='j' type='fixed'>"
         "<parent link='world'/><child link='post'/></joint></robot>"
@@ -115,12 +128,16 @@ def test_a_urdf_with_a_world_link_stands_still():
     [
         ("", Refusal.NO_RESOURCE, "neither uri nor resource_string"),
         ("no xml", Refusal.UNREADABLE, "resource_string"),
-        ("<a/>", Refusal.UNSUPPORTED_FORMAT, "<a> is none of"),
+        ("<a/>", Refusal.UNSUPPORTED_FORMAT, "<a> is not one of"),
         ("<robot/>", Refusal.UNREADABLE, "needs the attribute 'name'"),
         ("<sdf/>", Refusal.UNREADABLE, "LoadWorld"),
         ("<sdf><world name='w'/></sdf>", Refusal.UNREADABLE, "LoadWorld"),
-        ("<mujoco/>", Refusal.UNREADABLE, "one body"),
-        ("<mujoco><worldbody><body/><body/></worldbody></mujoco>", Refusal.UNREADABLE, "thing_2"),
+        ("<mujoco/>", Refusal.UNREADABLE, "one top-level body"),
+        (
+            "<mujoco><worldbody><body/><body/></worldbody></mujoco>",
+            Refusal.UNREADABLE,
+            "thing_2",
+        ),
         (
             "<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>",
             Refusal.UNREADABLE,
@@ -133,7 +150,7 @@ def test_a_urdf_with_a_world_link_stands_still():
         ),
     ],
 )
-def test_what_cannot_be_spawned_is_refused_with_the_reason(text, refusal, words):
+def test_an_invalid_model_is_refused_with_the_reason(text, refusal, words):
     kind, message = refused(text)
     assert kind is refusal
     assert words in message
@@ -169,8 +186,8 @@ def test_entities_of_xml_are_not_expanded():
         ("\x00", Refusal.NO_RESOURCE),
     ],
 )
-def test_files_that_are_none_are_refused(uri, refusal):
-    with pytest.raises(RefusedError) as caught:
+def test_invalid_files_are_refused(uri, refusal):
+    with pytest.raises(RequestError) as caught:
         SOURCE.read(uri, "")
     assert caught.value.refusal is refusal
 
@@ -213,7 +230,7 @@ def test_an_mjcf_file_brings_its_meshes(tmp_path):
 def test_an_mjcf_file_reads_nothing_from_elsewhere(tmp_path, name):
     file = tmp_path / "thing.xml"
     file.write_text(f"<mujoco><asset><mesh file='{name}'/></asset></mujoco>")
-    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+    with pytest.raises(RequestError, match="outside the folder of the MJCF file"):
         SOURCE.read(str(file), "")
 
 
@@ -221,7 +238,7 @@ def test_an_mjcf_file_reads_nothing_from_elsewhere(tmp_path, name):
 def test_the_sides_of_a_texture_are_files_too(tmp_path, side):
     file = tmp_path / "thing.xml"
     file.write_text(f"<mujoco><asset><texture file{side}='../x.png'/></asset></mujoco>")
-    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+    with pytest.raises(RequestError, match="outside the folder of the MJCF file"):
         SOURCE.read(str(file), "")
 
 
@@ -235,7 +252,7 @@ def test_what_an_mjcf_file_includes_reads_nothing_from_elsewhere_either(tmp_path
         "in/b.xml": "<include file='in/a.xml'/>",
     }.items():
         (tmp_path / name).write_text(f"<mujoco>{content}</mujoco>")
-    with pytest.raises(RefusedError, match="neither beside the MJCF file nor below it"):
+    with pytest.raises(RequestError, match="outside the folder of the MJCF file"):
         SOURCE.read(str(tmp_path / "thing.xml"), "")
 
 
@@ -253,6 +270,6 @@ def test_spoilt_texts_are_refused_or_can_be_simulated(things, data):
     mass = np.zeros(1)
     try:
         mass = SOURCE.read("", text).spec.copy().compile().body_mass
-    except RefusedError as error:
+    except RequestError as error:
         message = str(error)
     assert message.strip() or np.isfinite(mass).all()

@@ -10,7 +10,7 @@ from rclpy.task import Future
 PERIOD_S = 0.02
 
 
-class Follower:
+class TrajectoryClient:
     """Runs one goal; ticks come from a timer, so that cancelling gets its turn between them."""
 
     def __init__(self, node: Node, goal: ServerGoalHandle) -> None:
@@ -41,7 +41,7 @@ def create(node: Node) -> ActionServer:
     """Serve the action of a joint trajectory controller."""
 
     async def execute(goal: ServerGoalHandle) -> FollowJointTrajectory.Result:
-        return await Follower(node, goal).ended
+        return await TrajectoryClient(node, goal).ended
 
     return ActionServer(
         node,

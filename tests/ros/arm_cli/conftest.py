@@ -1,4 +1,4 @@
-"""One simulation for the tests of a file, and `arm` command lines, as a shell runs them."""
+"""One simulation for the tests of a file, and `arm` command lines run by a shell."""
 
 import os
 import signal
@@ -11,16 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from launch_py.supervision.shared_memory import SharedMemoryLedger
+from launch_py.fast_dds.shared_memory import SharedMemoryLedger
 
 TIMEOUT_S = 120.0
 END_TIMEOUT_S = 15.0
 FOREIGN = "RTPS_TRANSPORT_SHM"
-"""What Fast DDS's own complaints about shared memory have in common."""
+"""The common part of Fast DDS's own errors about shared memory."""
 
 
 class CommandLine:
-    """A line in a shell, such as a tutorial prints, while it runs."""
+    """A running command line in a shell, such as a tutorial prints."""
 
     def __init__(self, line: str, folder: Path) -> None:
         search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
@@ -46,12 +46,12 @@ class CommandLine:
 
     @property
     def out(self) -> str:
-        """What has come on stdout so far."""
+        """The output on stdout so far."""
         return self._texts["out"]
 
     @property
     def err(self) -> str:
-        """What has come on stderr so far."""
+        """The output on stderr so far."""
         return self._texts["err"]
 
     def _read(self, name: str, stream) -> None:
@@ -74,7 +74,7 @@ class CommandLine:
                 self._changed.wait(min(left, 0.2))
 
     def wait_until(self, condition: Callable[[], bool], what: str) -> None:
-        """Block until a condition holds that the running command brings about."""
+        """Block until the running command makes a condition true."""
         deadline = time.monotonic() + TIMEOUT_S
         with self._changed:
             while not condition():
@@ -98,7 +98,7 @@ class CommandLine:
         return self.wait()
 
     def kill(self) -> None:
-        """Kill it, so that it cannot tidy up; the middleware's files are removed for it."""
+        """Kill the command, so that it cannot clean up; remove the middleware's files for it."""
         ledger = SharedMemoryLedger(lambda pid: pid == self.process.pid)
         ledger.observe()
         self.process.kill()
@@ -106,7 +106,7 @@ class CommandLine:
         ledger.sweep()
 
     def close(self) -> None:
-        """End it, whatever the test did.
+        """End the command, whatever the test did.
 
         Killed, it might hold a lock in the shared memory of others, who would then hang.
         """
@@ -124,7 +124,7 @@ class CommandLine:
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Callable[[str], CommandLine]]:
-    """Start a command line; it is ended with the test at the latest."""
+    """Start a command line, which ends with the test at the latest."""
     yield from _starter(tmp_path)
 
 
@@ -132,7 +132,7 @@ def start(tmp_path: Path) -> Iterator[Callable[[str], CommandLine]]:
 def start_for_file(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[Callable[[str], CommandLine]]:
-    """Start a command line; it is ended with the last test of the file at the latest."""
+    """Start a command line, which ends with the last test of the file at the latest."""
     yield from _starter(tmp_path_factory.mktemp("commands"))
 
 
@@ -150,7 +150,7 @@ def _starter(folder: Path) -> Iterator[Callable[[str], CommandLine]]:
 
 @pytest.fixture
 def run(start: Callable[[str], CommandLine]) -> Callable[..., str]:
-    """Run a command line to its end, which must have the exit code; return what it printed."""
+    """Run a command line to its end, check its exit code and return its output."""
 
     def finish(line: str, code: int = 0) -> str:
         command = start(line)

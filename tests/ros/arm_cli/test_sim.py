@@ -1,4 +1,4 @@
-"""`arm sim` beside a running simulation: what it holds, what comes and goes, and its time."""
+"""`arm sim` beside a running simulation: its contents, spawned entities and time."""
 
 import json
 import re
@@ -16,7 +16,7 @@ def entities(text: str) -> dict[str, dict]:
     return {entity["name"]: entity for entity in json.loads(text)["entities"]}
 
 
-def test_a_thing_comes_and_goes(run_until, tmp_path):
+def test_an_entity_is_spawned_and_deleted(run_until, tmp_path):
     (tmp_path / "can.sdf").write_text(CAN)
     # Whether or not an answer is lost on a busy machine, it is done.
     spawn = "arm sim spawn can.sdf --name can --pose 0.3 0 0.5 0 0 0 >&2; arm sim info --json"
@@ -31,6 +31,16 @@ def test_a_thing_comes_and_goes(run_until, tmp_path):
     delete = "arm sim delete can; arm sim info --json"
     run_until(delete, lambda text: entities(text).keys() == {"arm"})
     run_until("arm sim delete can", lambda text: "'can'" in text, code=1)
+
+
+def test_a_state_is_saved_by_name_and_in_a_file_and_restored(run_until):
+    saved = "arm sim save a >&2; arm sim save b.snapshot >&2; arm sim list"
+    run_until(saved, lambda text: re.fullmatch(r"a: \d+\.\d{3} s in the world empty\n", text))
+    for name in ("a", "b.snapshot"):
+        run_until(f"arm sim restore {name}", lambda text: " s in the world empty" in text)
+    run_until("arm sim restore c", lambda text: "no snapshot 'c'" in text, code=1)
+    text = run_until("arm sim remove a >&2; arm sim list --json", lambda text: bool(text))
+    assert json.loads(text) == {}
 
 
 def test_time_stands_still_and_goes_on(run_until):

@@ -1,4 +1,4 @@
-"""A controller manager over fake hardware in a process of its own."""
+"""A controller manager with fake hardware in a separate process."""
 
 import os
 import signal
@@ -31,7 +31,7 @@ PARAMETERS = {
 
 
 class Program:
-    """A child process whose output is read as it comes."""
+    """A child process whose output is read continuously."""
 
     def __init__(self, arguments: Sequence[str], log_directory: Path) -> None:
         self.lines: list[str] = []
@@ -93,7 +93,7 @@ class Program:
         return code
 
     def succeed(self) -> str:
-        """Wait for its end, which must be a good one; return what it printed."""
+        """Wait for it to exit successfully; return its output."""
         assert self.wait() == 0, self.output
         assert "Traceback" not in self.output
         return self.output
@@ -157,7 +157,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
 
 @pytest.fixture(scope="module")
 def run_manager(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Return a function that starts a manager and, unless told not to, waits until it serves."""
+    """Return a function that starts a manager and, by default, waits until it serves."""
 
     def start(
         *arguments: str,
@@ -185,13 +185,13 @@ def manager(run_manager: Run) -> Program:
 @pytest.fixture
 def spawn(run: Run) -> Run:
     """Return a function that starts a spawner."""
-    return lambda *arguments: run("-m", "arm_control.spawner_node", *arguments)
+    return lambda *arguments: run("-m", "arm_control.spawner.spawner_node", *arguments)
 
 
 @pytest.fixture
 def unspawn(run: Run) -> Run:
     """Return a function that starts an unspawner."""
-    return lambda *arguments: run("-m", "arm_control.unspawner_node", *arguments)
+    return lambda *arguments: run("-m", "arm_control.spawner.unspawner_node", *arguments)
 
 
 @pytest.fixture
@@ -222,7 +222,7 @@ SERVICES = {
 
 
 class Control:
-    """What a client says to a controller manager."""
+    """A client of a controller manager."""
 
     def __init__(self, client: Any, namespace: str = "") -> None:
         self._client = client
@@ -261,7 +261,7 @@ class Control:
             )
         for service, client in self._services.items():
             self._client.wait_until(client.service_is_ready, f"{self._prefix}/{service}")
-        # Where the server does not know of its client yet, the answer is lost. It hears of them in
+        # If the server has not discovered its client yet, the answer is lost. It discovers them in
         # their order, so one who answers the last, which is asked again, knows all.
         self.call(last)
 

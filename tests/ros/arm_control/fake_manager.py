@@ -4,7 +4,7 @@
 
 Writes "ready" on standard output once the services are there. A line on its standard input acts
 on it: "pause", "resume", "block" and "unblock" (the loop thread), and what the hardware does next:
-"fail read", "fail write", "deactivate", "recover".
+"fail read", "fail write", "deactivate", "recover", "unmeasure STATE" and "measure".
 """
 
 import argparse
@@ -14,11 +14,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 
-from arm_control.control_loop import ControlLoop
-from arm_control.controller_manager import ControllerManager
 from arm_control.errors import ArmControlError
-from arm_control.hardware import HardwareReturn
-from arm_control.pacer import Pacer
+from arm_control.hardware.driver import HardwareReturn
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.pacer import Pacer
+from arm_control.manager.controller_manager import ControllerManager
 from arm_control.testing import FakeHardware, fake_hardware
 from arm_node.process import NodeProcess, run_process
 
@@ -52,7 +52,7 @@ class Ticks:
 
 
 def obey(loop: ControlLoop, hardware: FakeHardware) -> None:
-    """Do what the lines on standard input say, and say when it is done."""
+    """Execute the commands on standard input, and confirm each."""
     unblocked = threading.Event()
     for line in sys.stdin:
         match line.split():
@@ -71,6 +71,10 @@ def obey(loop: ControlLoop, hardware: FakeHardware) -> None:
                 hardware.write_result = HardwareReturn.ERROR
             case ["deactivate"]:
                 hardware.write_result = HardwareReturn.DEACTIVATE
+            case ["unmeasure", state]:
+                hardware.unmeasured = {state}
+            case ["measure"]:
+                hardware.unmeasured = set()
             case ["recover"]:
                 hardware.read_result = hardware.write_result = HardwareReturn.OK
         sys.stdout.write(f"{line.strip()} done\n")
@@ -82,15 +86,15 @@ def application(
     argv: Sequence[str], start: Sequence[str], paused: bool, process: NodeProcess
 ) -> Iterator[None]:
     """Run the manager over fake hardware, with these controllers active."""
-    from arm_control.ros.configured_manager import bring_up, configured_manager
-    from arm_control.ros.controller_manager_node import ControllerManagerNode
-    from arm_control.ros.controller_manager_server import ControllerManagerServer
+    from arm_control.manager.configured_manager import bring_up, configured_manager
+    from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+    from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 
     node = ControllerManagerNode(argv)
     hardware = fake_hardware(
         JOINTS, command_interfaces=("position", "velocity"), name="HardwareInterface"
     )
-    manager = configured_manager([hardware], node, URDF)
+    manager = configured_manager([hardware], node.settings, URDF, node.get_fully_qualified_name())
     bring_up(manager, node.settings)
     period_s = 1.0 / node.settings.update_rate
     loop = ControlLoop(

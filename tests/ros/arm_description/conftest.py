@@ -88,7 +88,7 @@ class NodeProcess:
         """Wait for the end and return the exit code."""
         code = self.process.wait(WAIT_TIMEOUT_S)
         self._reader.join(WAIT_TIMEOUT_S)
-        print(self.output)  # For whoever reads of a failure.
+        print(self.output)  # Shown if the test fails.
         return code
 
     def close(self) -> None:

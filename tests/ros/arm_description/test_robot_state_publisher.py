@@ -166,7 +166,7 @@ def test_bytes_that_are_no_joint_state_are_ignored(tf, send):
     send(1.0, b"\x00\x01\x00\x00 nonsense, far too short to be one")
     node.wait_for("ignored a JointState whose bytes cannot be read")
     send(1.0, turn=0.0)
-    collector.wait_for()
+    assert children(collector.wait_for()[0]) == {"arm"}
 
 
 def test_the_topics_have_upstreams_quality_of_service(client, tf):
@@ -189,10 +189,11 @@ def test_the_topics_have_upstreams_quality_of_service(client, tf):
         ("/tf_static", (reliable, latched)),
         ("/robot_description", (reliable, latched)),
     ):
-        client.wait_until(lambda t=topic, e=expected: policies(find(t)) == {e}, f"QoS of {topic}")
+        offered = client.wait_until(lambda t=topic: policies(find(t)), f"a publisher of {topic}")
+        assert offered == {expected}, topic
     find = client.node.get_subscriptions_info_by_topic
-    expected = (ReliabilityPolicy.BEST_EFFORT, volatile)
-    client.wait_until(lambda: policies(find("/joint_states")) == {expected}, "QoS of joint_states")
+    asked = client.wait_until(lambda: policies(find("/joint_states")), "its subscription")
+    assert asked == {(ReliabilityPolicy.BEST_EFFORT, volatile)}
 
 
 def test_the_parameters_are_upstreams(client, tf):
@@ -228,17 +229,17 @@ def test_the_quality_of_service_may_be_overridden(client, start, urdf):
     topics = {"/joint_states": {"subscription": {"reliability": "reliable"}}}
     start(MODULE, robot_description=urdf, qos_overrides=topics)
 
-    def reliable() -> bool:
-        infos = client.node.get_subscriptions_info_by_topic("/joint_states")
-        return [i.qos_profile.reliability for i in infos] == [ReliabilityPolicy.RELIABLE]
-
-    client.wait_until(reliable, "a reliable subscription to /joint_states")
+    subscriptions = client.wait_until(
+        lambda: client.node.get_subscriptions_info_by_topic("/joint_states"),
+        "a subscription to /joint_states",
+    )
+    assert [each.qos_profile.reliability for each in subscriptions] == [ReliabilityPolicy.RELIABLE]
 
 
 @pytest.mark.parametrize(
     ("parameters", "sentence"),
     [
-        ({}, "Empty URDF is not allowed: give the parameter robot_description the URDF's text"),
+        ({}, "Empty URDF is not allowed: set the parameter robot_description to the URDF's text"),
         ({"robot_description": ""}, "Empty URDF is not allowed"),
         ({"robot_description": "no robot"}, "robot_description, line 1: not XML: "),
         ({"robot_description": "<robot name='r'/>"}, "robot_description, the robot has no links"),

@@ -43,11 +43,11 @@ def test_the_frequency_changes_at_once(tf, send, set_parameters):
 
 def test_a_frequency_out_of_range_is_refused(tf, set_parameters):
     tf()
-    reason = "publish_frequency must be between 0 and 1000 Hz, not 1001"
+    reason = "publish_frequency must be between 0 and 1000 Hz, not 1001.0"
     assert set_parameters(NODE, publish_frequency=1001.0) == reason
 
 
-def test_time_that_moves_back_starts_anew(client, tf, send, latched, set_parameters):
+def test_time_that_is_set_back_starts_again(client, tf, send, latched, set_parameters):
     from tf2_msgs.msg import TFMessage
 
     node, collector = tf(use_sim_time=True)

@@ -44,7 +44,7 @@ def node():
 
 @pytest.fixture
 def observer(node):
-    from arm_viewer.ros.topic_observer import TopicObserver
+    from arm_viewer.ros.graph_observer import TopicObserver
 
     made = TopicObserver(node, node)
     made.measure(True)

@@ -27,7 +27,34 @@ def test_robots_are_found_in_every_namespace(client, viewer, latched):
     assert "no links" in right.problem
 
 
-def test_transforms_are_kept_and_those_that_are_none_left_out(client, viewer):
+def test_each_robots_meshes_are_found_where_its_description_comes_from(
+    client, viewer, latched, tmp_path
+):
+    from std_msgs.msg import String
+
+    from arm_description.urdf.description_source import with_source
+
+    uris = ("../meshes/a.stl", "package://arm_description/meshes/a.stl")
+    shapes = "".join(
+        f"<visual><geometry><mesh filename='{uri}'/></geometry></visual>" for uri in uris
+    )
+    text = f"<robot name='r'><link name='base'>{shapes}</link></robot>"
+    for namespace in ("west", "east"):
+        package = tmp_path / namespace
+        (package / "meshes").mkdir(parents=True)
+        (package / "meshes/a.stl").touch()
+        (package / "package.xml").write_text("<package><name>arm_description</name></package>")
+        publisher = client.node.create_publisher(String, f"/{namespace}/robot_description", latched)
+        publisher.publish(String(data=with_source(text, package / "urdf/arm.urdf")))
+    for namespace in ("west", "east"):
+        seen = viewer.seen(
+            lambda s, topic=f"/{namespace}/robot_description": s.descriptions.get(topic)
+        )
+        meshes = {visual.geometry.uri for visual in seen.robot.links[0].visuals}
+        assert meshes == {str(tmp_path / namespace / "meshes/a.stl")}
+
+
+def test_transforms_are_kept_and_invalid_ones_left_out(client, viewer):
     from geometry_msgs.msg import TransformStamped
     from tf2_msgs.msg import TFMessage
 
@@ -39,7 +66,7 @@ def test_transforms_are_kept_and_those_that_are_none_left_out(client, viewer):
     publisher = client.node.create_publisher(TFMessage, "/tf", 10)
     message = TFMessage(transforms=[broken, good])
     arm = viewer.seen(lambda s: s.transforms.get("arm"), lambda: publisher.publish(message))
-    assert (arm.parent, arm.position) == ("base", (0.0, 0.0, 0.5))
+    assert (arm.parent, arm.pose.position) == ("base", (0.0, 0.0, 0.5))
     assert "finger" not in viewer.node.latest().transforms
 
 
@@ -150,9 +177,126 @@ def test_markers_come_and_go(client, viewer, latched):
     assert markers.keys() == {"/world_markers/crate/1", "/world_markers/crate/2"}
     marker = markers["/world_markers/crate/1"]
     assert (marker.look.shape, marker.look.scale) == (MarkerShape.BOX, (1.0, 2.0, 3.0))
-    assert marker.rotation == (0.0, 0.0, 0.0, 1.0)
+    assert marker.pose.rotation == (0.0, 0.0, 0.0, 1.0)
     publisher.publish(MarkerArray(markers=[box(1, Marker.DELETE)]))
     viewer.seen(lambda s: s.markers.keys() == {"/world_markers/crate/2"})
+
+
+def transform(child, parent="base"):
+    from geometry_msgs.msg import TransformStamped
+
+    stamped = TransformStamped(child_frame_id=child)
+    stamped.header.frame_id = parent
+    return stamped
+
+
+def test_data_without_a_publisher_is_removed(client, viewer, latched):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import String
+    from tf2_msgs.msg import TFMessage
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    marker = Marker(ns="crate", type=Marker.CUBE)
+    marker.header.frame_id = "world"
+    states = JointState(name=["turn"], position=[1.0])
+    said = {
+        "/gone/robot_description": (String, String(data=URDF), latched),
+        "/gone/joint_states": (JointState, states, 10),
+        "/gone/world_markers": (MarkerArray, MarkerArray(markers=[marker]), latched),
+        "/tf": (TFMessage, TFMessage(transforms=[transform("gone_arm")]), 10),
+        "/tf_static": (TFMessage, TFMessage(transforms=[transform("gone_base")]), latched),
+    }
+    publishers = {
+        topic: client.node.create_publisher(message_class, topic, qos)
+        for topic, (message_class, _, qos) in said.items()
+    }
+
+    def say() -> None:
+        for topic, publisher in publishers.items():
+            publisher.publish(said[topic][1])
+
+    def is_shown(snapshot) -> list[bool]:
+        return [
+            "/gone/robot_description" in snapshot.descriptions,
+            "/gone/joint_states" in snapshot.joint_states,
+            "/gone/world_markers/crate/0" in snapshot.markers,
+            "gone_arm" in snapshot.transforms,
+            "gone_base" in snapshot.transforms,
+        ]
+
+    viewer.seen(lambda s: all(is_shown(s)), say)
+    for publisher in publishers.values():
+        client.node.destroy_publisher(publisher)
+    viewer.seen(lambda s: not any(is_shown(s)))
+    assert {"/gone/robot_description", "/gone/joint_states"} <= viewer.node.latest().lost
+
+
+def test_what_others_still_publish_stays_when_one_goes(client, viewer, latched):
+    from sensor_msgs.msg import JointState
+    from tf2_msgs.msg import TFMessage
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    def markers(name):
+        marker = Marker(ns=name, type=Marker.CUBE)
+        marker.header.frame_id = "world"
+        return MarkerArray(markers=[marker])
+
+    def joint_states(name):
+        return JointState(name=[name], position=[1.0])
+
+    def static(name):
+        return TFMessage(transforms=[transform(name)])
+
+    made = {
+        "/shared/world_markers": (MarkerArray, markers, latched),
+        "/shared/joint_states": (JointState, joint_states, 10),
+        "/tf_static": (TFMessage, static, latched),
+    }
+    publishers = {
+        (name, topic): client.node.create_publisher(message_class, topic, qos)
+        for topic, (message_class, _, qos) in made.items()
+        for name in ("stays", "goes")
+    }
+    for (name, topic), publisher in publishers.items():
+        publisher.publish(made[topic][1](name))
+
+    def go_on(*names) -> None:
+        for name in names:
+            publishers[name, "/shared/joint_states"].publish(joint_states(name))
+
+    def shown(snapshot) -> set[str]:
+        joints = snapshot.joint_states.get("/shared/joint_states")
+        return {
+            *(name.split("/")[3] for name in snapshot.markers if "/shared/" in name),
+            *(f"{name} joint" for name in (joints.joints if joints else ())),
+            *(f"{name} frame" for name in snapshot.transforms if name in ("stays", "goes")),
+        }
+
+    stays = {"stays", "stays joint", "stays frame"}
+    goes = {"goes", "goes joint", "goes frame"}
+    viewer.seen(lambda s: shown(s) == stays | goes, lambda: go_on("stays", "goes"))
+    for topic in made:
+        client.node.destroy_publisher(publishers["goes", topic])
+    viewer.seen(lambda s: shown(s) == stays, lambda: go_on("stays"))
+    assert shown(viewer.node.latest()) == stays
+
+
+def test_frames_of_a_former_description_are_forgotten(client, viewer, latched):
+    from std_msgs.msg import String
+    from tf2_msgs.msg import TFMessage
+
+    statics = client.node.create_publisher(TFMessage, "/tf_static", latched)
+    descriptions = client.node.create_publisher(String, "/changed/robot_description", latched)
+    statics.publish(TFMessage(transforms=[transform("old_link"), transform("kept_link")]))
+    descriptions.publish(String(data=URDF))
+    viewer.seen(
+        lambda s: "old_link" in s.transforms and "/changed/robot_description" in s.descriptions
+    )
+    statics.publish(TFMessage(transforms=[transform("kept_link"), transform("new_link")]))
+    descriptions.publish(String(data=URDF.replace("name='r'", "name='other'")))
+    viewer.seen(lambda s: {"kept_link", "new_link"} <= s.transforms.keys())
+    viewer.seen(lambda s: "old_link" not in s.transforms)
+    assert {"kept_link", "new_link"} <= viewer.node.latest().transforms.keys()
 
 
 def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, latched):
@@ -172,3 +316,31 @@ def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, la
         lambda s: (t := s.joint_states.get("/joint_states")) and t.joints["turn"].position == 0.25
     )
     assert shown
+
+
+def test_without_joint_states_positions_come_from_the_controller_manager(client, viewer):
+    from pal_statistics_msgs.msg import Statistic, Statistics
+    from sensor_msgs.msg import JointState
+
+    publisher = client.node.create_publisher(
+        Statistics, "/limp/controller_manager/introspection_data/full", 10
+    )
+    values = {
+        "state_interface.j0/position": 0.5,
+        "state_interface.j0/velocity": 0.1,
+        "state_interface.j1/position": float("nan"),
+        "command_interface.j0/position": 0.0,
+    }
+    message = Statistics(statistics=[Statistic(name=n, value=v) for n, v in values.items()])
+    read = viewer.seen(
+        lambda s: s.hardware_positions.get("/limp"), lambda: publisher.publish(message)
+    )
+    assert read == {"j0": 0.5}
+    states = client.node.create_publisher(JointState, "/limp/joint_states", 10)
+    viewer.seen(lambda s: "/limp" not in s.hardware_positions)
+    client.node.destroy_publisher(states)
+
+
+def test_the_arm_without_controllers_falls_and_is_seen_to(launch, viewer):
+    launch("arm_gazebo", "arm_world.launch.py", "camera:=none", "namespace:=fallen")
+    assert viewer.seen(lambda s: s.hardware_positions.get("/fallen", {}).get("j1", 0.0) > 1.2)

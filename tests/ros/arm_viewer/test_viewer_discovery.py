@@ -65,11 +65,12 @@ def test_rates_are_measured_beside_a_topic_of_another_type(client, stranger, vie
         for publisher, message in publishers.values():
             publisher.publish(message)
 
-    viewer.seen(
-        lambda s: {topic.name for topic in s.topics if topic.rate_hz > 0.0} >= publishers.keys(),
-        publish,
-    )
+    def rates(snapshot) -> dict[str, float]:
+        return {topic.name: topic.rate_hz for topic in snapshot.topics if topic.rate_hz > 0.0}
+
+    viewer.seen(lambda s: rates(s).keys() >= publishers.keys(), publish)
     viewer.node.send(MeasureRates(False))
+    assert viewer.seen(lambda s: not rates(s))
 
 
 def test_an_observer_that_fails_stops_no_other_and_is_named_once(

@@ -61,12 +61,19 @@ def result_of(client: Any) -> Iterator[Callable[..., Any]]:
         waited(client.executor.create_task(action.destroy))
 
 
+def prefixed(joint: str, prefix: str) -> str:
+    """Return the name of a joint with the prefix before the names of both links."""
+    return prefix + joint.replace("_to_", f"_to_{prefix}")
+
+
 def trajectory(positions: tuple[float, ...], seconds: int, prefix: str) -> Any:
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
     point = JointTrajectoryPoint(positions=positions)
     point.time_from_start.sec = seconds
-    return JointTrajectory(joint_names=[prefix + name for name in ARM_JOINTS], points=[point])
+    return JointTrajectory(
+        joint_names=[prefixed(name, prefix) for name in ARM_JOINTS], points=[point]
+    )
 
 
 def positions_of(message: Any) -> dict[str, float]:
@@ -92,14 +99,16 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
     publisher = client.publisher(JointTrajectory, "/arm_controller/joint_trajectory")
 
     publisher.publish(trajectory(TARGET, 1, "left_"))
-    wait_for_pose(states, {f"left_{n}": q for n, q in zip(ARM_JOINTS, TARGET, strict=True)})
+    wait_for_pose(
+        states, {prefixed(n, "left_"): q for n, q in zip(ARM_JOINTS, TARGET, strict=True)}
+    )
 
     follow = "/arm_controller/follow_joint_trajectory"
     goal = FollowJointTrajectory.Goal(trajectory=trajectory(HOME, 1, "left_"))
     followed = result_of(FollowJointTrajectory, follow, goal)
     assert followed.status == GoalStatus.STATUS_SUCCEEDED
     assert followed.result.error_code == FollowJointTrajectory.Result.SUCCESSFUL
-    wait_for_pose(states, {f"left_{name}": 0.0 for name in ARM_JOINTS})
+    wait_for_pose(states, {prefixed(name, "left_"): 0.0 for name in ARM_JOINTS})
 
     close = GripperCommand.Goal()
     close.command.position, close.command.max_effort = -0.7, 5.0
@@ -107,7 +116,7 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
     assert gripped.status == GoalStatus.STATUS_SUCCEEDED
     assert gripped.result.reached_goal
     assert gripped.result.position == pytest.approx(-0.7, abs=0.011)
-    wait_for_pose(states, {f"left_{name}": -0.7 * k for name, k in FOLLOWERS.items()})
+    wait_for_pose(states, {prefixed(name, "left_"): -0.7 * k for name, k in FOLLOWERS.items()})
 
 
 def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
@@ -122,7 +131,7 @@ def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
     states = client.subscribe(JointState, "/joint_states").wait_for(1)
     frames = client.subscribe(TFMessage, "/tf").wait_for(1)
 
-    joints = {f"left_{name}" for name in ARM_JOINTS}
+    joints = {prefixed(name, "left_") for name in ARM_JOINTS}
     assert set(states[0].name) == joints
     children = {transform.child_frame_id for transform in frames[0].transforms}
     assert children == {*(f"left_link{n}" for n in range(2, 7)), "left_link6_flange"}

@@ -7,6 +7,9 @@ import sys
 
 import pytest
 
+from arm_gazebo.recording.replay import Replay
+from arm_gazebo.recording.run_file import RunFile
+
 pytestmark = pytest.mark.ros
 
 CONTROLLERS = ("joint_state_broadcaster", "arm_controller", "gripper_action_controller")
@@ -15,8 +18,12 @@ PICK_TIMEOUT_S = 150.0
 
 
 @pytest.mark.timeout(400)
-def test_controllers_are_loaded_one_after_the_other_and_the_cylinder_is_picked(launch):
-    launch("mycobot", "load_controllers:=false", "real_time_factor:=3").wait_until_ready()
+def test_controllers_are_loaded_one_after_the_other_and_the_cylinder_is_picked(launch, tmp_path):
+    recording = tmp_path / "pick.run"
+    running = launch(
+        "mycobot", "load_controllers:=false", "real_time_factor:=3", f"record_run:={recording}"
+    )
+    running.wait_until_ready()
     loading = launch("mycobot_moveit_config", "load_ros2_controllers.launch.py")
     for name in CONTROLLERS:
         loading.wait_for_line(f"spawner_{name} ended with exit code 0")
@@ -34,6 +41,13 @@ def test_controllers_are_loaded_one_after_the_other_and_the_cylinder_is_picked(l
     assert nothing.returncode == 1, nothing.stderr
     assert "there is nothing between the fingers" in nothing.stderr
     assert "Traceback" not in picked.stderr + nothing.stderr
+
+    # Goals, switches, friction and contact: all of it repeats to the last bit.
+    assert running.stop() == 0
+    replayed = Replay(RunFile(recording)).run()
+    assert replayed.difference is None
+    assert replayed.time_s > 10.0
+    assert not replayed.is_cut_off
 
 
 def pick(*parameters: str) -> subprocess.CompletedProcess[str]:

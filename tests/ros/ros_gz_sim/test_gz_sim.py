@@ -27,3 +27,14 @@ def test_the_camera_sees_box_cylinder_and_sphere(launch, client):
     assert (image.width, image.height) == (640, 480)
     for shape, channel in CHANNELS.items():
         assert pixels_of(image, channel) > FEWEST_PIXELS, shape
+
+
+def test_the_camera_looks_over_the_walls_of_the_house(launch, client):
+    from sensor_msgs.msg import Image
+
+    launch("ros_gz_sim", "gz_sim.launch.py", "gz_args:=house.world").wait_until_ready()
+    image = client.subscribe(Image, "/videocamera").wait_for(1)[-1]
+    pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3).astype(int)
+    saturation = pixels.max(axis=2) - pixels.min(axis=2)
+    # Walls are grey; floors and furniture are not.
+    assert (saturation > 25).mean() > 0.3

@@ -40,10 +40,10 @@ def pytest_report_header() -> str:
 
 
 class Visitor:
-    """Somebody who looks at the page, and clicks.
+    """A user of the page.
 
     Attributes:
-        page: playwright's, for whatever else is to be done with it.
+        page: playwright's page, for everything else.
         requests: the addresses of all that the page fetched.
         errors: what the page's scripts failed at.
     """
@@ -62,11 +62,11 @@ class Visitor:
         self.page.get_by_role("tab", name="Robot").wait_for(state="attached")
 
     def open_tab(self, name: str) -> None:
-        """Bring a tab to the front."""
+        """Select a tab."""
         self.page.get_by_role("tab", name=name, exact=True).click()
 
     def tick(self, label: str) -> None:
-        """Change a box to tick."""
+        """Toggle a checkbox."""
         self.page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
 
     def button(self, label: str):
@@ -85,6 +85,22 @@ class Visitor:
     def slider_value(self, label: str) -> float:
         """Return what a slider shows."""
         return float(self.slider(label).get_attribute("aria-valuenow"))
+
+    def type_number(self, label: str, text: str, end: str = "", press: bool = False) -> None:
+        """Type into the field beside a slider, and press a key at the end.
+
+        Args:
+            label: of the slider.
+            text: what is typed.
+            end: the last key; without it the field is left as it is.
+            press: whether `text` is the name of a key to be pressed.
+        """
+        field = f"//label[.='{label}']/following::input[contains(@class, 'NumberInput')][1]"
+        # With force: over a field that is being typed into lies that of the page's script.
+        self.page.locator(f"xpath={field}").click(click_count=3, force=True)
+        (self.page.keyboard.press if press else self.page.keyboard.type)(text)
+        if end:
+            self.page.keyboard.press(end)
 
     def step_back(self) -> None:
         """See more of the 3D view's surroundings."""
@@ -107,7 +123,7 @@ class Visitor:
         return np.array(read)
 
     def wait_until(self, condition: Callable[[], object], what: str) -> None:
-        """Wait for what is to be seen on the page."""
+        """Wait for something on the page."""
         deadline = time.monotonic() + TIMEOUT_S
         while not condition():
             if time.monotonic() > deadline:

@@ -74,6 +74,77 @@ def test_a_slider_follows_when_somebody_else_moves_the_arm(visitor, command):
         return visitor.slider_value("j0") < -0.9 and visitor.slider_value("j1") > 0.4
 
     visitor.wait_until(followed, "the sliders of j0 and j1 follow")
+    assert visitor.slider_value("j0") == pytest.approx(-1.0, abs=0.1)
+
+
+@pytest.fixture
+def commands(client, visitor, positions):
+    """Return the commands that the page sends from now on, once it can drive the arm."""
+    from std_msgs.msg import Float64MultiArray
+
+    heard = client.subscribe(Float64MultiArray, "/position_controller/commands")
+
+    def moved() -> bool:
+        visitor.slider("j0").press("End")
+        visitor.slider("j0").press("Home")
+        return bool(heard.messages) and positions()["j0"] < -2.4
+
+    visitor.wait_until(moved, "the page drives the arm, and is heard")
+    # Nothing else is where one step from the end is: what was pressed before has been heard.
+    visitor.slider("j0").press("ArrowRight")
+    visitor.wait_until(lambda: -2.5695 < heard.messages[-1].data[0] < 0.0, "the last command")
+    heard.clear()
+    return heard
+
+
+def test_a_typed_number_is_sent_when_complete_and_as_typed(visitor, positions, commands):
+    visitor.type_number("j0", "-0.5", "Enter")
+    visitor.wait_until(lambda: abs(positions()["j0"] + 0.5) < 0.01, "j0 goes to -0.5")
+    visitor.wait_until(lambda: len(commands.messages) > 0, "the command is heard")
+    assert [message.data[0] for message in commands.messages] == [-0.5]
+    visitor.type_number("j1", "1e-2", "Tab")
+    visitor.wait_until(lambda: len(commands.messages) == 2, "Tab sends the number of j1")
+    assert commands.messages[-1].data[1] == 0.01
+
+
+def test_two_numbers_typed_in_succession_both_arrive(visitor, commands):
+    visitor.type_number("j1", "0.12345")
+    visitor.type_number("j2", "-0.25", "Enter")
+    visitor.wait_until(lambda: len(commands.messages) == 2, "two commands")
+    assert commands.messages[0].data[1] == 0.12345
+    assert list(commands.messages[1].data[1:3]) == [0.12345, -0.25]
+
+
+def test_a_number_is_pasted(visitor, commands):
+    visitor.type_number("j1", "0.4321", "Enter")
+    # What was entered is marked.
+    visitor.page.keyboard.press("Control+C")
+    visitor.type_number("j2", "Control+V", "Enter", press=True)
+    visitor.wait_until(lambda: len(commands.messages) == 2, "two commands")
+    assert list(commands.messages[1].data[1:3]) == [0.4321, 0.4321]
+
+
+def test_an_invalid_position_is_refused_with_a_sentence(visitor, commands):
+    visitor.type_number("j1", "-", "Enter")
+    visitor.page.get_by_text("'-' is not a number").wait_for()
+    visitor.type_number("j1", "7", "Enter")
+    visitor.page.get_by_text("'j1' goes from -3.14").wait_for()
+    visitor.type_number("j1", "0.2", "Escape")
+    visitor.type_number("j1", "0.1", "Enter")
+    visitor.wait_until(lambda: len(commands.messages) > 0, "a command")
+    assert [message.data[1] for message in commands.messages] == [0.1]
+
+
+def test_the_tab_of_the_browser_bears_the_projects_name_and_icon(visitor):
+    assert visitor.page.title() == "Arm suite"
+    icon = visitor.page.locator("link[rel=icon]").get_attribute("href")
+    assert icon.startswith("data:image/svg+xml,")
+    assert visitor.page.evaluate(
+        "(icon) => new Promise((say) => { const image = new Image();"
+        " image.onload = () => say(image.naturalWidth > 0); image.onerror = () => say(false);"
+        " image.src = icon; })",
+        icon,
+    )
 
 
 def test_the_camera_panel_shows_the_arm_move(visitor, command):
@@ -84,6 +155,7 @@ def test_the_camera_panel_shows_the_arm_move(visitor, command):
         return np.count_nonzero(np.abs(visitor.camera_pixels() - before) > 40) > 20
 
     visitor.wait_until(moved, "the image shows another pose")
+    assert visitor.camera_pixels().shape == before.shape
 
 
 def test_the_frustum_of_the_camera_can_be_hidden(visitor):
@@ -95,6 +167,7 @@ def test_the_frustum_of_the_camera_can_be_hidden(visitor):
     visitor.wait_until(seen, "its edges are drawn")
     visitor.tick("Cameras")
     visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no edges are drawn")
+    assert nothing_but_faces_is_drawn(visitor)
 
 
 def test_the_collision_switch_shows_wire_frames(visitor):
@@ -103,6 +176,7 @@ def test_the_collision_switch_shows_wire_frames(visitor):
     visitor.wait_until(lambda: visitor.drawn()["instances"] > before, "wire frames are drawn")
     visitor.tick("Collision")
     visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no wire frames are drawn")
+    assert nothing_but_faces_is_drawn(visitor)
 
 
 def nothing_but_faces_is_drawn(visitor) -> bool:
@@ -146,6 +220,7 @@ def test_time_rates_and_the_node_graph_are_shown(visitor):
     node.wait_for()
     visitor.tick("Node graph")
     node.wait_for(state="hidden")
+    assert not node.is_visible()
     visitor.open_tab("Robot")
 
 
@@ -159,13 +234,15 @@ def test_a_page_of_another_origin_is_refused(visitor, browser, page_url):
     foreign.close()
 
 
-def test_the_page_goes_on_when_the_simulation_returns(visitor, simulation, launch_for_file, client):
+def test_the_page_continues_when_the_simulation_restarts(
+    visitor, simulation, launch_for_file, client
+):
     from sensor_msgs.msg import JointState
 
     banner = visitor.page.get_by_role("alert")
     banner.wait_for(state="hidden")
     assert simulation.stop() == 0, simulation.output
-    banner.get_by_text("The simulation went away").wait_for()
+    banner.get_by_text("The simulation has ended").wait_for()
     launch_for_file("camera:=none").wait_until_ready()
     banner.wait_for(state="hidden")
     states = client.subscribe(JointState, "/joint_states")
@@ -176,3 +253,38 @@ def test_the_page_goes_on_when_the_simulation_returns(visitor, simulation, launc
         return states.wait_for()[-1].position[0] < -2.4
 
     visitor.wait_until(moved, "a slider moves the arm again")
+
+
+def test_a_saved_configuration_is_opened_again(visitor, tmp_path):
+    visitor.open_tab("Robot")
+    collision = visitor.page.get_by_role("checkbox", name="Collision", exact=True)
+    collision.wait_for(state="attached")
+    shown = collision.is_checked()
+    with visitor.page.expect_download() as started:
+        visitor.button("Save Config As").dispatch_event("click")
+    path = tmp_path / "page.rviz"
+    started.value.save_as(path)
+    assert f"Collision Enabled: {str(shown).lower()}" in path.read_text()
+    assert "Distance" in path.read_text()
+    visitor.tick("Collision")
+    visitor.wait_until(lambda: collision.is_checked() != shown, "the switch is the other way")
+    with visitor.page.expect_file_chooser() as chooser:
+        visitor.button("Open Config").dispatch_event("click")
+    chooser.value.set_files(path)
+    visitor.wait_until(lambda: collision.is_checked() == shown, "the switch is as it was saved")
+
+
+def test_an_address_opens_the_page_with_its_view(visitor):
+    base = visitor.page.url.partition("?")[0]
+    visitor.visit(f"{base}?initialCameraPosition=2,3,2.5&initialCameraLookAt=0,0,0.25")
+    visitor.open_tab("Robot")
+    visitor.page.get_by_role("checkbox", name="Collision", exact=True).wait_for(state="attached")
+    link = visitor.page.locator("a[href*='initialCameraPosition']")
+
+    def address() -> str:
+        visitor.button("Link to View").dispatch_event("click")
+        return link.get_attribute("href") if link.count() else ""
+
+    visitor.wait_until(address, "a link")
+    assert address() == "?initialCameraPosition=2,3,2.5&initialCameraLookAt=0,0,0.25"
+    visitor.visit(base)

@@ -11,7 +11,7 @@ POSE = [1.5, 0.9, 0.9, 0.5]
 
 
 def settled_picture(client, display) -> np.ndarray:
-    """Wait until the window shows something that stands still; return the picture."""
+    """Wait until the window's image no longer changes; return it."""
     pictures = [display.picture().astype(int)]
 
     def settled() -> bool:
@@ -39,7 +39,7 @@ def test_the_window_shows_the_arm_and_closing_it_ends_nothing_else(launch, clien
     assert display.close_windows() >= 1
     _, alive = psutil.wait_procs([window], timeout=TIMEOUT_S)
     assert alive == []
-    launched.wait_for_line("the window was closed; the simulation goes on")
+    launched.wait_for_line("the window was closed; the simulation continues")
     client.subscribe(JointState, "/joint_states").wait_for(100)
     assert launched.stop() == 0, launched.output
 

@@ -101,7 +101,7 @@ def test_servos_that_were_unplugged_are_used_again(
     client.wait_until(lambda: servos(control).state.label == "unconfigured", "the servos are gone")
     assert set(control.states().values()) == {"inactive"}
 
-    # The launcher starts the fake anew: somebody has plugged the servos in.
+    # The launcher restarts the fake servos, as if they were plugged in again.
     client.wait_until(
         lambda: (
             control.call(

@@ -1,0 +1,124 @@
+"""Sends a goal and prints its progress and result as ros2 does."""
+
+import time
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from rclpy.action.client import ActionClient, ClientGoalHandle
+from rclpy.task import Future
+
+from arm_cli.errors import StoppedError, UnansweredError
+from arm_cli.messages.filling import FilledMessage
+from arm_cli.messages.text import to_yaml
+from arm_cli.output import say, say_document
+from arm_cli.ros.session import CommandSession
+from arm_node.testing import DiscoveryCheck
+
+CANCEL_TIMEOUT_S = 5.0
+KNOWN_TIMEOUT_S = 3.0
+
+_STATUS_NAMES = {
+    GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
+    GoalStatus.STATUS_EXECUTING: "EXECUTING",
+    GoalStatus.STATUS_CANCELING: "CANCELING",
+    GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
+    GoalStatus.STATUS_CANCELED: "CANCELED",
+    GoalStatus.STATUS_ABORTED: "ABORTED",
+}
+
+
+class GoalSender:
+    """Sends goals to one action.
+
+    Attributes:
+        name: the action's name.
+    """
+
+    def __init__(self, session: CommandSession, action_class: Any, name: str) -> None:
+        """Create the action client on the session's node."""
+        self.name = name
+        self._session = session
+        self._client = ActionClient(session.node, action_class, name)
+
+    def close(self) -> None:
+        """Destroy the action client, because its node does not."""
+        self._client.destroy()
+
+    def is_ready(self) -> bool:
+        """Return whether the action has a server."""
+        return self._client.server_is_ready()
+
+    def wait_until_known(self, timeout_s: float = KNOWN_TIMEOUT_S) -> None:
+        """Wait until the server has discovered this client.
+
+        An answer that a server sends earlier is lost, and a goal must not be sent twice. A server
+        that does not answer the question is sent the goal all the same.
+        """
+        check = DiscoveryCheck.with_server(self._session.node, f"{self.name}/_action/send_goal")
+        try:
+            self._session.wait_until(lambda: check.complete, timeout_s=timeout_s)
+        finally:
+            check.close()
+
+    def send(
+        self, goal: FilledMessage, with_feedback: bool, timeout_s: float | None = None
+    ) -> None:
+        """Send a goal, wait for its result and print both; a signal or the timeout cancels it.
+
+        Raises:
+            UnansweredError: the server does not answer, does not cancel the goal, or has no result
+                before the timeout.
+            StoppedError: a signal arrived, and the goal was cancelled.
+        """
+        goal.stamp(self._session.node.get_clock().now().to_msg())
+        say_document(f"Sending goal:\n     {to_yaml(goal.message)}")
+        feedback = _print_feedback if with_feedback else None
+        sent = self._client.send_goal_async(goal.message, feedback)
+        try:
+            if self._wait_for_result(sent, timeout_s):
+                return
+        except StoppedError:
+            self._cancel(sent)
+            raise
+        self._cancel(sent)
+        raise UnansweredError(f"no result from {self.name} within {timeout_s:g} s")
+
+    def _wait_for_result(self, sent: Future, timeout_s: float | None) -> bool:
+        """Print the progress and result of a goal; return whether it ended before the timeout."""
+        start_s = time.monotonic()
+        handle: ClientGoalHandle | None = self._session.result(
+            sent, timeout_s, lambda: f"waiting for {self.name} to accept the goal..."
+        )
+        if handle is None:
+            return False
+        if not handle.accepted:
+            say("Goal was rejected.")
+            return True
+        say_document(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+        left_s = None if timeout_s is None else timeout_s - (time.monotonic() - start_s)
+        answer = self._session.result(
+            handle.get_result_async(), left_s, lambda: f"waiting for the result of {self.name}..."
+        )
+        if answer is None:
+            return False
+        say_document(f"Result:\n    {to_yaml(answer.result)}")
+        say(f"Goal finished with status: {_STATUS_NAMES.get(answer.status, 'UNKNOWN')}")
+        return True
+
+    def _cancel(self, sent: Future) -> None:
+        # The server may have accepted the goal although its response has not arrived yet.
+        self._session.clear_stop()
+        handle: ClientGoalHandle | None = self._session.result(sent, CANCEL_TIMEOUT_S)
+        if handle is None:
+            raise UnansweredError(f"{self.name} did not answer; an accepted goal is still running")
+        if not handle.accepted:
+            return
+        say("Canceling goal...")
+        answer = self._session.result(handle.cancel_goal_async(), CANCEL_TIMEOUT_S)
+        if answer is None or not answer.goals_canceling:
+            raise UnansweredError(f"{self.name} did not cancel the goal")
+        say("Goal canceled.")
+
+
+def _print_feedback(message: Any) -> None:
+    say_document(f"Feedback:\n    {to_yaml(message.feedback)}")

@@ -1,0 +1,82 @@
+"""Converts quality of service between rclpy and bags."""
+
+from collections.abc import Iterable, Sequence
+
+from rclpy.duration import Duration
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from arm_cli.bag.offered_qos import INFINITE_NS, OfferedQos
+from arm_cli.ros.qos import matching_profile
+
+RECORDING_DEPTH = 5000
+"""Ten seconds of a fast topic, in case the recorder stalls. Memory is allocated as needed."""
+PLAYING_DEPTH = 10
+"""The minimum depth of a player's publisher, as in rosbag2."""
+
+
+def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
+    """Return the QoS that a publisher offers."""
+    profile = publisher.qos_profile
+    return OfferedQos(
+        history=profile.history.short_key,
+        depth=profile.depth,
+        reliability=profile.reliability.short_key,
+        durability=profile.durability.short_key,
+        deadline_ns=profile.deadline.nanoseconds,
+        lifespan_ns=profile.lifespan.nanoseconds,
+        liveliness=profile.liveliness.short_key,
+        lease_ns=profile.liveliness_lease_duration.nanoseconds,
+        avoid_ros_namespace_conventions=profile.avoid_ros_namespace_conventions,
+    )
+
+
+def recording_profile(
+    publishers: Sequence[TopicEndpointInfo], override: OfferedQos | None = None
+) -> QoSProfile:
+    """Return the strictest profile of a subscription that matches all publishers.
+
+    Args:
+        publishers: the publishers of the topic.
+        override: the user's QoS, which replaces the matching one.
+    """
+    profile = matching_profile(publishers) if override is None else playing_profile([override])
+    profile.depth = RECORDING_DEPTH
+    return profile
+
+
+def playing_profile(offers: Sequence[OfferedQos]) -> QoSProfile:
+    """Return a publisher's profile that matches every subscription of the recorded publishers.
+
+    For one offer, or several equal ones, it is that offer. For different offers it takes the
+    stronger policy of each kind, which matches every subscription that the weaker one matches.
+    """
+    depth = max([PLAYING_DEPTH, *(offer.depth for offer in offers)])
+    profile = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth)
+    if not offers:
+        return profile
+    if any(offer.history == "keep_all" for offer in offers):
+        profile.history = HistoryPolicy.KEEP_ALL
+    reliable = any(offer.reliability != "best_effort" for offer in offers)
+    latched = any(offer.durability == "transient_local" for offer in offers)
+    profile.reliability = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+    profile.durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+    if any(offer.liveliness == "manual_by_topic" for offer in offers):
+        profile.liveliness = LivelinessPolicy.MANUAL_BY_TOPIC
+    profile.deadline = _shortest(offer.deadline_ns for offer in offers)
+    profile.liveliness_lease_duration = _shortest(offer.lease_ns for offer in offers)
+    longest_ns = max(offer.lifespan_ns for offer in offers)
+    profile.lifespan = _shortest([longest_ns])
+    return profile
+
+
+def _shortest(durations_ns: Iterable[int]) -> Duration:
+    shortest_ns = min(durations_ns)
+    # Zero means "no limit" in rclpy.
+    return Duration(nanoseconds=0 if shortest_ns >= INFINITE_NS else shortest_ns)

@@ -1,0 +1,262 @@
+"""The verbs of `arm control` that change controllers or hardware components."""
+
+import argparse
+from typing import TYPE_CHECKING
+
+from arm_cli.command_parser import positive_number
+from arm_cli.control.manager import (
+    add_controller_argument,
+    add_manager_arguments,
+    ask_manager,
+    hardware_components,
+    loadable_controllers,
+    loaded_controllers,
+    refuse,
+    suggestion,
+)
+from arm_cli.output import complain, say, say_document
+from arm_cli.verb import VerbFunctions
+from arm_cli.word_completion import complete_with
+
+if TYPE_CHECKING:
+    from arm_node.controller_manager import ControllerManagerClient
+
+DEFAULT, BEST_EFFORT, STRICT = 0, 1, 2
+"""Strictness as in controller_manager_msgs/srv/SwitchController; 0 leaves it to the manager."""
+_FAILING = {  # The words of ros2 control, which calls every step to inactive "stopping".
+    "unconfigured": "cleaning up",
+    "inactive": "stopping",
+    "active": "activating",
+}
+
+
+def add_load_controller_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("controller_name", help="a controller in the manager's parameters"),
+        loadable_controllers,
+    )
+    parser.add_argument(
+        "--set-state", choices=("inactive", "active"), help="also bring it to this state"
+    )
+    add_manager_arguments(parser)
+
+
+def load_controller(options: argparse.Namespace) -> int:
+    """Load the controller; the exit code is 1 if a step fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    name, state = options.controller_name, options.set_state
+    with ask_manager(options) as manager:
+        if name in manager.states():
+            say(f"Controller : {name} already loaded, skipping load_controller!")
+        elif manager.load(name):
+            say(f"Successfully loaded controller {name}")
+        else:
+            hint = suggestion(name, manager.loadable())
+            return refuse(f"Failed loading controller {name} check controller_manager logs{hint}")
+        if state is None:
+            return 0
+        if not manager.configure(name):
+            return refuse(f"Error configuring controller : {name}")
+        if state == "active" and not manager.switch(activate=[name]).ok:
+            return refuse(f"Error activating controller : {name}, check controller_manager logs")
+    say(f"Successfully loaded controller {name} into state {state}")
+    return 0
+
+
+def add_unload_controller_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_controller_argument(parser)
+    add_manager_arguments(parser)
+
+
+def unload_controller(options: argparse.Namespace) -> int:
+    """Unload the controller; the exit code is 1 if that fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    name = options.controller_name
+    with ask_manager(options) as manager:
+        if not manager.unload(name):
+            hint = suggestion(name, manager.states())
+            return refuse(f"Error unloading controller {name}, check controller_manager logs{hint}")
+    say(f"Successfully unloaded controller {name}")
+    return 0
+
+
+def add_cleanup_controller_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_controller_argument(parser)
+    add_manager_arguments(parser)
+
+
+def cleanup_controller(options: argparse.Namespace) -> int:
+    """Clean up the controller; the exit code is 1 if that fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    name = options.controller_name
+    with ask_manager(options) as manager:
+        if not manager.cleanup(name):
+            hint = suggestion(name, manager.states())
+            return refuse(
+                f"Error cleaning up controller {name}, check controller_manager logs{hint}"
+            )
+    say(f"Successfully cleaned up controller {name}")
+    return 0
+
+
+def add_set_controller_state_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_controller_argument(parser)
+    parser.add_argument("state", choices=("unconfigured", "inactive", "active"))
+    add_manager_arguments(parser)
+
+
+def set_controller_state(options: argparse.Namespace) -> int:
+    """Bring the controller to the state; the exit code is 1 if that fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    name = options.controller_name
+    with ask_manager(options) as manager:
+        states = manager.states()
+        if name not in states:
+            hint = suggestion(name, states)
+            return refuse(f"controller {name} does not seem to be loaded{hint}")
+        return _step(manager, name, states[name], options.state)
+
+
+def _step(manager: "ControllerManagerClient", name: str, current: str, wanted: str) -> int:
+    match current, wanted:
+        case "inactive", "unconfigured":
+            failing, done, ok = "cleaning up", "cleaned up", manager.cleanup(name)
+        case "unconfigured", "inactive":
+            failing, done, ok = "configuring", "configured", manager.configure(name)
+        case "active", "inactive":
+            failing, done, ok = "stopping", "deactivated", manager.switch(deactivate=[name]).ok
+        case "inactive", "active":
+            failing, done, ok = "activating", "activated", manager.switch(activate=[name]).ok
+        case _:
+            return refuse(_impossible(name, current, wanted))
+    if not ok:
+        return refuse(f"Error {failing} controller, check controller_manager logs")
+    say(f"Successfully {done} {name}")
+    return 0
+
+
+def _impossible(name: str, current: str, wanted: str) -> str:
+    action = {"unconfigured": f"cleanup {name}", "active": f"activate {name}"}.get(
+        wanted, f"put {name} in 'inactive' state"
+    )
+    return f"cannot {action} from its current state {current}"
+
+
+def add_switch_controllers_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    for option in ("--deactivate", "--activate"):
+        complete_with(
+            parser.add_argument(option, nargs="*", default=[], metavar="CONTROLLER"),
+            loaded_controllers,
+        )
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("--strict", action="store_true", help="all or nothing")
+    group.add_argument("--best-effort", action="store_true", help="as many as possible")
+    parser.add_argument(
+        "--activate-asap", action="store_true", help="passed on to the controller manager"
+    )
+    parser.add_argument("--switch-timeout", type=positive_number, default=5.0, metavar="SECONDS")
+    add_manager_arguments(parser)
+
+
+def switch_controllers(options: argparse.Namespace) -> int:
+    """Switch controllers; the exit code is 1 if the manager refuses.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    strictness = STRICT if options.strict else BEST_EFFORT if options.best_effort else DEFAULT
+    with ask_manager(options) as manager:
+        response = manager.switch(
+            options.activate,
+            options.deactivate,
+            strictness=strictness,
+            asap=options.activate_asap,
+            timeout_s=options.switch_timeout,
+        )
+        if not response.ok:
+            loaded = manager.states()
+            hints = [suggestion(name, loaded) for name in (*options.activate, *options.deactivate)]
+            for hint in filter(None, hints):
+                complain(f"arm control switch_controllers{hint.replace(';', ':', 1)}")
+    outcome = "Successfully switched controllers!" if response.ok else "Error switching controllers"
+    say_document(response.message or outcome)
+    return 0 if response.ok else 1
+
+
+def add_reload_controller_libraries_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "--force-kill", action="store_true", help="deactivate and unload controllers first"
+    )
+    add_manager_arguments(parser)
+
+
+def reload_controller_libraries(options: argparse.Namespace) -> int:
+    """Reload the controllers' code; the exit code is 1 if that fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    with ask_manager(options) as manager:
+        if not manager.reload_libraries(options.force_kill):
+            return refuse("Error reloading libraries, check controller_manager logs")
+    say("Reload successful")
+    return 0
+
+
+def add_set_hardware_component_state_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("hardware_component_name", help="as list_hardware_components lists it"),
+        hardware_components,
+    )
+    parser.add_argument("state", choices=tuple(_FAILING))
+    add_manager_arguments(parser)
+
+
+def set_hardware_component_state(options: argparse.Namespace) -> int:
+    """Set the component's state; the exit code is 1 if that fails.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    name, state = options.hardware_component_name, options.state
+    with ask_manager(options) as manager:
+        response = manager.set_component_state(name, state)
+        if not response.ok:
+            hint = suggestion(name, [c.name for c in manager.hardware_components()])
+            return refuse(
+                f"Error {_FAILING[state]} hardware component, check controller_manager logs{hint}"
+            )
+    say(f"Successfully set {name} to state {response.state}")
+    return 0
+
+
+LOAD_CONTROLLER = VerbFunctions(add_load_controller_arguments, load_controller)
+UNLOAD_CONTROLLER = VerbFunctions(add_unload_controller_arguments, unload_controller)
+CLEANUP_CONTROLLER = VerbFunctions(add_cleanup_controller_arguments, cleanup_controller)
+SET_CONTROLLER_STATE = VerbFunctions(add_set_controller_state_arguments, set_controller_state)
+SWITCH_CONTROLLERS = VerbFunctions(add_switch_controllers_arguments, switch_controllers)
+RELOAD_CONTROLLER_LIBRARIES = VerbFunctions(
+    add_reload_controller_libraries_arguments, reload_controller_libraries
+)
+SET_HARDWARE_COMPONENT_STATE = VerbFunctions(
+    add_set_hardware_component_state_arguments, set_hardware_component_state
+)

@@ -1,0 +1,211 @@
+"""`arm control list_*`: controllers and hardware, with their types, states and interfaces."""
+
+import argparse
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from arm_cli.control.manager import (
+    ACTIVE,
+    OTHER,
+    UNCONFIGURED,
+    add_manager_arguments,
+    ask_manager,
+    plain,
+    state_colour,
+)
+from arm_cli.output import add_json_argument, colour, print_json, say, say_coloured
+from arm_cli.verb import VerbFunctions
+from arm_node.printable import printable
+
+_PARTS: dict[str, tuple[str, Callable[[Any], Iterable[str]]]] = {
+    "claimed_interfaces": ("claimed interfaces", lambda c: c.claimed_interfaces),
+    "required_command_interfaces": (
+        "required command interfaces",
+        lambda c: c.required_command_interfaces,
+    ),
+    "required_state_interfaces": (
+        "required state interfaces",
+        lambda c: c.required_state_interfaces,
+    ),
+    "chained_interfaces": (
+        "chained to interfaces",
+        lambda c: (name for chain in c.chain_connections for name in chain.reference_interfaces),
+    ),
+    "reference_interfaces": ("exported reference interfaces", lambda c: c.reference_interfaces),
+    "exported_interfaces": ("exported state interfaces", lambda c: c.exported_state_interfaces),
+}
+"""Parts listed below a controller, by option: title, and a getter on the ControllerState."""
+
+TYPE_WIDTH = 70
+INACTIVE = 95
+GOOD = 94
+_COLOURS = {"active": ACTIVE, "inactive": INACTIVE, "unconfigured": UNCONFIGURED}
+
+
+def add_list_controllers_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("-v", "--verbose", action="store_true", help="show all of the following")
+    for option, (title, _) in _PARTS.items():
+        parser.add_argument(f"--{option.replace('_', '-')}", action="store_true", help=title)
+    add_json_argument(parser)
+    add_manager_arguments(parser)
+
+
+def list_controllers(options: argparse.Namespace) -> None:
+    """Print the controllers, newest first.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    with ask_manager(options) as manager:
+        controllers = manager.controllers()
+    if options.json:
+        print_json(plain(controllers))
+    elif not controllers:
+        say("No controllers are currently loaded!")
+    else:
+        for line in _controller_lines(controllers, options):
+            say_coloured(line)
+
+
+def _controller_lines(controllers: list[Any], options: argparse.Namespace) -> Iterable[str]:
+    name_width, type_width, state_width = (
+        max(len(getattr(controller, column)) for controller in controllers)
+        for column in ("name", "type", "state")
+    )
+    for controller in controllers:
+        shade = state_colour(controller.state)
+        name = colour(shade, f"{controller.name:<{name_width}}")
+        state = colour(shade, f"{controller.state:<{state_width}}")
+        yield f"{name} {printable(f'{controller.type:<{type_width}}')}  {state}"
+        if options.verbose:
+            yield f"\tupdate_rate: {controller.update_rate} Hz"
+            yield f"\tis_async: {controller.is_async}"
+        for option, (title, names) in _PARTS.items():
+            if _is_wanted(option, options):
+                yield f"\t{title}:"
+                yield from (f"\t\t{printable(interface)}" for interface in names(controller))
+
+
+def _is_wanted(part: str, options: argparse.Namespace) -> bool:
+    # As in ros2 control, exported states are listed together with the references.
+    with_references = part == "exported_interfaces" and options.reference_interfaces
+    return options.verbose or with_references or getattr(options, part)
+
+
+def add_list_controller_types_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_json_argument(parser)
+    add_manager_arguments(parser)
+
+
+def list_controller_types(options: argparse.Namespace) -> None:
+    """Print the types and their base classes.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    with ask_manager(options) as manager:
+        types = manager.controller_types()
+    if options.json:
+        print_json([{"type": name, "base_class": base} for name, base in types])
+        return
+    for name, base in types:
+        say(f"{name:<{TYPE_WIDTH}} {base}")
+
+
+def add_list_hardware_components_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="also show state interfaces and data types"
+    )
+    add_json_argument(parser)
+    add_manager_arguments(parser)
+
+
+def list_hardware_components(options: argparse.Namespace) -> None:
+    """Print the components.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    with ask_manager(options) as manager:
+        components = manager.hardware_components()
+    if options.json:
+        print_json(plain(components))
+        return
+    for number, component in enumerate(components, start=1):
+        say(f"Hardware Component {number}")
+        for line in _component_lines(component, options.verbose):
+            say_coloured(f"\t{line}")
+
+
+def _component_lines(component: Any, verbose: bool) -> Iterator[str]:
+    shade = _COLOURS.get(component.state.label, OTHER)
+    yield f"name: {colour(shade, component.name)}"
+    yield f"type: {printable(component.type)}"
+    yield f"plugin name: {printable(component.plugin_name)}"
+    yield f"state: id={component.state.id} label={colour(shade, component.state.label)}"
+    yield f"read/write rate: {component.rw_rate} Hz"
+    yield f"is_async: {component.is_async}"
+    yield "command interfaces"
+    for interface in component.command_interfaces:
+        yield f"\t{_describe(interface, verbose)} {claimed(interface)}"
+    if verbose:
+        yield "state interfaces"
+        for interface in component.state_interfaces:
+            yield f"\t{_describe(interface, verbose)}"
+
+
+def _describe(interface: Any, verbose: bool) -> str:
+    data_type = f" [{printable(interface.data_type)}]" if verbose else ""
+    return f"{printable(interface.name)}{data_type} {available(interface)}"
+
+
+def available(interface: Any) -> str:
+    """Return the mark that says whether an interface is available."""
+    if interface.is_available:
+        return colour(GOOD, "[available]")
+    return colour(UNCONFIGURED, "[unavailable]")
+
+
+def claimed(interface: Any) -> str:
+    """Return the mark that says whether an interface is claimed."""
+    return colour(GOOD, "[claimed]") if interface.is_claimed else "[unclaimed]"
+
+
+def add_list_hardware_interfaces_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_json_argument(parser)
+    add_manager_arguments(parser)
+
+
+def list_hardware_interfaces(options: argparse.Namespace) -> None:
+    """Print the interfaces, sorted.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+    """
+    with ask_manager(options) as manager:
+        interfaces = manager.hardware_interfaces()
+    if options.json:
+        from arm_cli.messages.text import to_plain
+
+        print_json(to_plain(interfaces))
+        return
+    say("command interfaces")
+    for interface in sorted(interfaces.command_interfaces, key=lambda i: i.name):
+        say_coloured(f"\t{printable(interface.name)} {available(interface)} {claimed(interface)}")
+    say("state interfaces")
+    for interface in sorted(interfaces.state_interfaces, key=lambda i: i.name):
+        say(f"\t{interface.name}")
+
+
+LIST_CONTROLLERS = VerbFunctions(add_list_controllers_arguments, list_controllers)
+LIST_CONTROLLER_TYPES = VerbFunctions(add_list_controller_types_arguments, list_controller_types)
+LIST_HARDWARE_COMPONENTS = VerbFunctions(
+    add_list_hardware_components_arguments, list_hardware_components
+)
+LIST_HARDWARE_INTERFACES = VerbFunctions(
+    add_list_hardware_interfaces_arguments, list_hardware_interfaces
+)

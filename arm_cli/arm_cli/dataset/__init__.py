@@ -1,0 +1,1 @@
+"""Demonstrations for learning: the verbs of `arm dataset`."""

@@ -1,0 +1,109 @@
+"""`arm dataset convert` and `arm dataset check`: bags to a dataset of demonstrations."""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arm_cli.bag.info import existing_path
+from arm_cli.dataset.selection import Asked, add_selection_arguments, asked, choose
+from arm_cli.errors import ArmCliError, BagError
+from arm_cli.output import complain, say
+from arm_cli.verb import VerbFunctions
+
+if TYPE_CHECKING:
+    from arm_sim.dataset import DatasetWriter
+
+
+def add_dataset_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the verbs that write datasets share."""
+    parser.add_argument(
+        "--task", required=True, metavar="TEXT", help="what the demonstrations show, in words"
+    )
+    parser.add_argument("--robot", default="arm", metavar="NAME", help="name of the robot (arm)")
+    add_selection_arguments(parser)
+
+
+def _add_convert_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "bags", nargs="+", type=existing_path, metavar="BAG", help="a bag; each is one episode"
+    )
+    parser.add_argument(
+        "-o", "--output", required=True, type=Path, metavar="DIR", help="folder to create"
+    )
+    add_dataset_arguments(parser)
+
+
+def _convert(options: argparse.Namespace) -> None:
+    write_dataset(options.bags, options.output, options.task, options.robot, asked(options))
+
+
+def write_dataset(bags: Sequence[Path], output: Path, task: str, robot: str, wanted: Asked) -> None:
+    """Write bags as the episodes of a dataset, and say how its rows use their messages.
+
+    Raises:
+        BagError: a bag cannot be read, or has not what a dataset needs.
+        ArmCliError: the extra is not installed, or the dataset cannot be written.
+    """
+    from arm_sim.errors import ArmSimError
+
+    try:
+        from arm_sim.dataset import DatasetWriter, check_dataset
+
+        with DatasetWriter(output, robot) as writer:
+            for bag in bags:
+                # All episodes of a dataset have the rate of the first one.
+                wanted = replace(wanted, fps=_add_bag(writer, bag, task, wanted))
+            writer.finish()
+        faults = check_dataset(output)
+    except ArmSimError as error:
+        raise ArmCliError(str(error)) from error
+    if faults:
+        raise ArmCliError(f"{output} was written, but {faults[0]}")
+    say(f"wrote {output}: {len(bags)} episodes")
+
+
+def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: Asked) -> int:
+    """Add a bag as an episode; return its rows a second."""
+    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.dataset.ros_streams import EpisodeReader
+    from arm_sim.dataset import align
+
+    with BagReader(bag) as reader:
+        unfinished = describe_unfinished(reader)
+        if unfinished is not None:
+            complain(f"arm dataset: {unfinished}")
+        chosen = choose(wanted, dict(reader.metadata.topics))
+        episode = EpisodeReader(reader, chosen, wanted)
+        streams, reference = episode.streams()
+        rows = align(streams, reference, wanted.fps)
+        writer.add_episode(streams, rows, task, {"bag": bag.name})
+    jitter_ms = rows.jitter_s * 1e3
+    say(
+        f"{bag}: {rows.length} rows, {rows.fps} a second, up to {jitter_ms:.1f} ms from equal steps"
+    )
+    for line in (*episode.remarks, *map(str, rows.uses)):
+        say(f"  {line}")
+    return rows.fps
+
+
+def _add_check_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, metavar="DIR", help="a dataset in LeRobot's format")
+
+
+def _check(options: argparse.Namespace) -> int:
+    from arm_sim.errors import ArmSimError
+
+    try:
+        from arm_sim.dataset import check_dataset
+
+        faults = check_dataset(options.folder)
+    except ArmSimError as error:
+        raise BagError(str(error)) from error
+    say(*(faults or [f"{options.folder} keeps LeRobot's format v3.0"]))
+    return 1 if faults else 0
+
+
+CONVERT = VerbFunctions(_add_convert_arguments, _convert)
+CHECK = VerbFunctions(_add_check_arguments, _check)

@@ -1,1 +1,0 @@
-"""Coordinate frames as /tf and /tf_static tell them. Knows no rclpy."""

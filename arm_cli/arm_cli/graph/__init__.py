@@ -1,0 +1,1 @@
+"""The verbs that show the ROS graph: topics, services, actions and nodes."""

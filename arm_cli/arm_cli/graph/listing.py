@@ -1,0 +1,217 @@
+"""`list`, `find` and `type` of `arm topic`, `arm service` and `arm action`."""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.output import add_json_argument, print_json, say
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.verb import VerbFunctions
+from arm_cli.word_completion import Completer, complete_with, message_names
+
+if TYPE_CHECKING:
+    from arm_cli.ros.graph import Graph
+
+
+@dataclass(frozen=True, slots=True)
+class EntityKind:
+    """How topics, services and actions differ in these verbs.
+
+    Attributes:
+        noun: the noun, such as "topic".
+        type_kind: the kind of their types: "msg", "srv" or "action".
+        example: an example of a name, for the help.
+        example_type: an example of a type, for the help.
+        can_be_hidden: whether lists leave out hidden names by default.
+        types: returns the names with their types; the second argument includes hidden names.
+        find: returns the types of a name, or raises a NoSuchNameError.
+        complete: completes a name.
+        complete_type: completes a type; None if there is no completion.
+    """
+
+    noun: str
+    type_kind: str
+    example: str
+    example_type: str
+    can_be_hidden: bool
+    types: Callable[["Graph", bool], dict[str, list[str]]]
+    find: Callable[["Graph", str], list[str]]
+    complete: Completer
+    complete_type: Completer | None = None
+
+
+TOPICS = EntityKind(
+    noun="topic",
+    type_kind="msg",
+    example="/joint_states",
+    example_type="sensor_msgs/msg/Image",
+    can_be_hidden=True,
+    types=lambda graph, hidden: graph.topics(hidden),
+    find=lambda graph, name: graph.find_topic(name),
+    complete=completers.topics,
+    complete_type=message_names,
+)
+SERVICES = EntityKind(
+    noun="service",
+    type_kind="srv",
+    example="/controller_manager/list_controllers",
+    example_type="std_srvs/srv/Trigger",
+    can_be_hidden=True,
+    types=lambda graph, hidden: graph.services(hidden),
+    find=lambda graph, name: graph.find_service(name),
+    complete=completers.services,
+)
+ACTIONS = EntityKind(
+    noun="action",
+    type_kind="action",
+    example="/gripper_action_controller/gripper_cmd",
+    example_type="control_msgs/action/GripperCommand",
+    can_be_hidden=False,
+    types=lambda graph, hidden: graph.actions(),
+    find=lambda graph, name: graph.find_action(name),
+    complete=completers.actions,
+)
+
+
+def add_name_argument(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
+    """Add the argument for a name."""
+    complete_with(
+        parser.add_argument(f"{kind.noun}_name", help=f"such as {kind.example}"), kind.complete
+    )
+
+
+def add_list_arguments(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `list`."""
+    parser.add_argument("-t", "--show-types", action="store_true", help="also show their types")
+    _add_count_argument(kind, parser)
+    add_json_argument(parser)
+    if kind.can_be_hidden:
+        _add_hidden_argument(kind, parser, "--all")
+
+
+def list_entities(kind: EntityKind, options: argparse.Namespace) -> None:
+    """Print all names, or their number."""
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(session)
+        graph.settle()
+        found = kind.types(graph, kind.can_be_hidden and options.hidden)
+        if getattr(options, "verbose", False) and not (options.json or options.count):
+            _print_endpoints(graph, found)
+            return
+    if options.json:
+        print_json([{"name": name, "types": types} for name, types in found.items()])
+    elif options.count:
+        say(len(found))
+    else:
+        for name, types in found.items():
+            say(f"{name} [{', '.join(types)}]" if options.show_types else name)
+
+
+def add_topic_list_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `arm topic list`."""
+    add_list_arguments(TOPICS, parser)
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="show numbers of publishers and subscribers"
+    )
+
+
+def add_find_arguments(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `find`."""
+    wanted = parser.add_argument(f"{kind.noun}_type", help=f"such as {kind.example_type}")
+    if kind.complete_type is not None:
+        complete_with(wanted, kind.complete_type)
+    _add_count_argument(kind, parser)
+    if kind.can_be_hidden:
+        _add_hidden_argument(kind, parser)
+
+
+def find_entities(kind: EntityKind, options: argparse.Namespace) -> None:
+    """Print the names that have one type, or their number.
+
+    Raises:
+        NoSuchNameError: there is no such type.
+    """
+    type_name = getattr(options, f"{kind.noun}_type")
+    wanted = InterfaceIndex().find(type_name, (kind.type_kind,)).full_name
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(session)
+        graph.settle()
+        found = kind.types(graph, kind.can_be_hidden and options.hidden)
+    names = [name for name, types in found.items() if wanted in types]
+    if options.count:
+        say(len(names))
+    else:
+        say(*names)
+
+
+def print_type(kind: EntityKind, options: argparse.Namespace) -> None:
+    """Print the type of a name.
+
+    Raises:
+        NoSuchNameError: nothing has this name.
+    """
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        say(*kind.find(Graph(session), getattr(options, f"{kind.noun}_name")))
+
+
+def _print_endpoints(graph: "Graph", topics: dict[str, list[str]]) -> None:
+    for title, noun, ask in (
+        ("Published topics:", "publisher", graph.publishers),
+        ("Subscribed topics:", "subscriber", graph.subscriptions),
+    ):
+        say(title)
+        for name, types in topics.items():
+            count = len(ask(name))
+            if count:
+                plural = "s" if count > 1 else ""
+                say(f" * {name} [{', '.join(types)}] {count} {noun}{plural}")
+        say("")
+
+
+def _add_count_argument(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "-c",
+        f"--count-{kind.noun}s",
+        dest="count",
+        action="store_true",
+        help="print only their number",
+    )
+
+
+def _add_hidden_argument(kind: EntityKind, parser: argparse.ArgumentParser, *flags: str) -> None:
+    parser.add_argument(
+        "-a",
+        *flags,
+        f"--include-hidden-{kind.noun}s",
+        dest="hidden",
+        action="store_true",
+        help=f"include hidden {kind.noun}s",
+    )
+
+
+def _list(kind: EntityKind) -> VerbFunctions:
+    return VerbFunctions(partial(add_list_arguments, kind), partial(list_entities, kind))
+
+
+def _find(kind: EntityKind) -> VerbFunctions:
+    return VerbFunctions(partial(add_find_arguments, kind), partial(find_entities, kind))
+
+
+def _type(kind: EntityKind) -> VerbFunctions:
+    return VerbFunctions(partial(add_name_argument, kind), partial(print_type, kind))
+
+
+TOPIC_LIST = VerbFunctions(add_topic_list_arguments, partial(list_entities, TOPICS))
+SERVICE_LIST, ACTION_LIST = _list(SERVICES), _list(ACTIONS)
+TOPIC_FIND, SERVICE_FIND, ACTION_FIND = _find(TOPICS), _find(SERVICES), _find(ACTIONS)
+TOPIC_TYPE, SERVICE_TYPE, ACTION_TYPE = _type(TOPICS), _type(SERVICES), _type(ACTIONS)

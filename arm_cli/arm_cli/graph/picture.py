@@ -1,0 +1,64 @@
+"""`arm graph`: draws the nodes and topics."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arm_cli.graph_files import to_dot, to_mermaid, write_text
+from arm_cli.output import say_document
+from arm_cli.ros.connection import connect
+from arm_node.drawing.node_graph import NodeTopics, node_graph
+from arm_node.drawing.svg import to_svg
+
+if TYPE_CHECKING:
+    from arm_cli.ros.graph import Graph
+
+WRITERS = {"svg": to_svg, "mermaid": to_mermaid, "dot": to_dot}
+SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".md": "mermaid", ".dot": "dot", ".gv": "dot"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "-f",
+        "--format",
+        choices=tuple(WRITERS),
+        help="default: from the file's suffix (.svg, .mmd, .dot), or mermaid without a file",
+    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: print it")
+    parser.add_argument(
+        "-a",
+        "--all",
+        action="store_true",
+        help="include hidden nodes and topics, /rosout and /parameter_events",
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print or write the graph.
+
+    Raises:
+        CommandUsageError: the file cannot be written.
+    """
+    suffix = Path(options.output).suffix if options.output else ""
+    write = WRITERS[options.format or SUFFIXES.get(suffix, "mermaid")]
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(session)
+        graph.settle()
+        text = write(node_graph(topics_by_node(graph), options.all))
+    if options.output:
+        write_text(Path(options.output), f"```mermaid\n{text}```\n" if suffix == ".md" else text)
+    else:
+        say_document(text, end="")
+
+
+def topics_by_node(graph: "Graph") -> list[NodeTopics]:
+    """Return all nodes, including hidden ones, with one entry for each name."""
+    return [
+        NodeTopics(
+            node.full_name, tuple(graph.published_by(node)), tuple(graph.subscribed_by(node))
+        )
+        for node in dict.fromkeys(graph.nodes(hidden=True))
+    ]

@@ -1,0 +1,1 @@
+"""`arm gz`: Gazebo's commands for this simulation, with the output format of Gazebo."""

@@ -1,1 +1,0 @@
-"""Rates, bandwidths and delays over windows of messages. Knows no rclpy."""

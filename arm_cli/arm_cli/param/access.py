@@ -1,0 +1,260 @@
+"""The verbs of `arm param` that list, read, describe, set and delete parameters."""
+
+import argparse
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from arm_cli.errors import UnansweredError
+from arm_cli.output import add_json_argument, complain, print_json, say, say_document
+from arm_cli.parameter_values import LABELS, TYPE_NAMES, content_of, read_value
+from arm_cli.ros import completers
+from arm_cli.ros.connection import connect
+from arm_cli.verb import VerbFunctions
+from arm_cli.word_completion import complete_with
+
+if TYPE_CHECKING:
+    from arm_cli.ros.parameters import NodeParameters
+
+
+def add_node_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the node's name."""
+    complete_with(
+        parser.add_argument("node_name", help="such as /arm_controller_node"), completers.nodes
+    )
+    # Accepted because command lines for ros2 use it. A named node may always be hidden here.
+    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
+
+
+def add_parameter_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the parameter's name."""
+    complete_with(
+        parser.add_argument("parameter_name", help="such as desired_param"), completers.parameters
+    )
+
+
+@contextmanager
+def open_parameters(node_name: str) -> Iterator["NodeParameters"]:
+    """Yield the parameters of a node.
+
+    Raises:
+        NoSuchNameError: there is no such node.
+    """
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+        from arm_cli.ros.parameters import NodeParameters
+
+        yield NodeParameters(session, Graph(session).find_node(node_name))
+
+
+def add_list_parameters_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    complete_with(
+        parser.add_argument("node_name", nargs="?", help="default: every node"),
+        completers.nodes,
+    )
+    parser.add_argument(
+        "--include-hidden-nodes", dest="hidden", action="store_true", help="include hidden nodes"
+    )
+    parser.add_argument(
+        "--param-prefixes", nargs="+", default=[], help="only parameters with these prefixes"
+    )
+    parser.add_argument(
+        "--filter",
+        type=_pattern,
+        default=".*",
+        metavar="REGEX",
+        help="only parameters whose names it matches at their start",
+    )
+    parser.add_argument("--param-type", action="store_true", help="also print their types")
+    add_json_argument(parser)
+
+
+def _pattern(text: str) -> re.Pattern[str]:
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a regular expression: {error}"
+        ) from error
+
+
+def list_parameters(options: argparse.Namespace) -> None:
+    """Print the names of the parameters.
+
+    Raises:
+        NoSuchNameError: there is no such node.
+        UnansweredError: the named node does not answer.
+    """
+    found: dict[str, dict[str, str]] = {}
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+        from arm_cli.ros.parameters import NodeParameters
+
+        graph = Graph(session)
+        if options.node_name:
+            nodes = [graph.find_node(options.node_name)]
+        else:
+            graph.settle()
+            serving = graph.services()
+            nodes = [
+                node
+                for node in graph.nodes(options.hidden)
+                if f"{node.full_name}/list_parameters" in serving
+            ]
+        for node in nodes:
+            parameters = NodeParameters(session, node)
+            try:
+                names = list(filter(options.filter.match, parameters.names(options.param_prefixes)))
+                types = [d.type for d in parameters.descriptors(names)] if names else []
+            except UnansweredError as error:
+                if options.node_name:
+                    raise
+                complain(f"arm param list: {error}")
+                continue
+            found[node.full_name] = {n: TYPE_NAMES[t] for n, t in zip(names, types, strict=True)}
+    if options.json:
+        print_json(found)
+        return
+    for full_name, parameter_types in found.items():
+        if not options.node_name:
+            say(f"{full_name}:")
+        for name, type_ in parameter_types.items():
+            say(f"  {name} (type: {type_})" if options.param_type else f"  {name}")
+
+
+def add_get_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    add_parameter_argument(parser)
+    parser.add_argument("--hide-type", action="store_true", help="print only the value")
+    add_json_argument(parser)
+
+
+def get(options: argparse.Namespace) -> None:
+    """Print the value.
+
+    Raises:
+        NoSuchNameError: there is no such node, or it has no such parameter.
+        UnansweredError: the node does not answer.
+    """
+    with open_parameters(options.node_name) as parameters:
+        value = parameters.value(options.parameter_name)
+    content = content_of(value)
+    if options.json:
+        print_json(read_value(value))
+    elif options.hide_type:
+        say_document(str(content))
+    else:
+        words = [LABELS[value.type]] if content is None else [LABELS[value.type], content]
+        say_document(" ".join(map(str, words)))
+
+
+def add_describe_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    complete_with(
+        parser.add_argument("parameter_names", nargs="+", help="such as desired_param"),
+        completers.parameters,
+    )
+
+
+def describe(options: argparse.Namespace) -> None:
+    """Print the descriptions of parameters.
+
+    Raises:
+        NoSuchNameError: there is no such node, or it has no such parameter.
+        UnansweredError: the node does not answer.
+    """
+    with open_parameters(options.node_name) as parameters:
+        parameters.check_known(*options.parameter_names)
+        descriptors = parameters.descriptors(options.parameter_names)
+    for descriptor in descriptors:
+        _print(descriptor)
+
+
+def _print(descriptor: Any) -> None:
+    say(f"Parameter name: {descriptor.name}")
+    say(f"  Type: {TYPE_NAMES[descriptor.type]}")
+    if descriptor.description:
+        say(f"  Description: {descriptor.description}")
+    say("  Constraints:")
+    if descriptor.read_only:
+        say("    Read only: true")
+    for limits in (*descriptor.floating_point_range, *descriptor.integer_range):
+        say(f"    Min value: {limits.from_value}")
+        say(f"    Max value: {limits.to_value}")
+        if limits.step:
+            say(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        say(f"    Additional constraints: {descriptor.additional_constraints}")
+
+
+def add_set_parameter_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    add_parameter_argument(parser)
+    complete_with(
+        parser.add_argument("value", help="as YAML, such as '[1.0, 0.5, 0.1, 0.5]'"),
+        completers.parameter_values,
+    )
+
+
+def set_parameter(options: argparse.Namespace) -> int:
+    """Set the value; the exit code is 1 if the node refuses it.
+
+    Raises:
+        NoSuchNameError: there is no such node, or it has no such parameter.
+        UnansweredError: the node does not answer.
+    """
+    with open_parameters(options.node_name) as parameters:
+        from rcl_interfaces.msg import ParameterValue
+
+        from arm_cli.parameter_values import write_value
+
+        value = ParameterValue()
+        write_value(value, options.value)
+        (result,) = parameters.set({options.parameter_name: value})
+        if not result.successful:
+            parameters.check_known(options.parameter_name)
+    reason = f": {result.reason}" if result.reason else ""
+    if result.successful:
+        say(f"Set parameter successful{reason}")
+        return 0
+    complain(f"Setting parameter failed{reason}")
+    return 1
+
+
+def add_delete_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    add_parameter_argument(parser)
+
+
+def delete(options: argparse.Namespace) -> int:
+    """Remove the parameter; the exit code is 1 if the node refuses.
+
+    Raises:
+        NoSuchNameError: there is no such node, or it has no such parameter.
+        UnansweredError: the node does not answer.
+    """
+    with open_parameters(options.node_name) as parameters:
+        from rcl_interfaces.msg import ParameterValue
+
+        (result,) = parameters.set({options.parameter_name: ParameterValue()})
+        if not result.successful:
+            parameters.check_known(options.parameter_name)
+    reason = f": {result.reason}" if result.reason else ""
+    if result.successful:
+        say(f"Deleted parameter successfully{reason}")
+        return 0
+    complain(f"Deleting parameter failed{reason}")
+    return 1
+
+
+LIST_PARAMETERS = VerbFunctions(add_list_parameters_arguments, list_parameters)
+GET = VerbFunctions(add_get_arguments, get)
+DESCRIBE = VerbFunctions(add_describe_arguments, describe)
+SET_PARAMETER = VerbFunctions(add_set_parameter_arguments, set_parameter)
+DELETE = VerbFunctions(add_delete_arguments, delete)

@@ -1,0 +1,162 @@
+"""`arm param dump` and `load`: save and set a node's parameters as YAML."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError
+from arm_cli.names import absolute_name
+from arm_cli.output import add_json_argument, complain, print_json, say, say_document
+from arm_cli.param.access import add_node_argument, open_parameters
+from arm_cli.parameter_values import read_value
+from arm_cli.verb import VerbFunctions
+from arm_node.limited_yaml import YamlError, load_yaml
+from arm_node.user_file import read_text
+
+PARAMETERS = "ros__parameters"
+
+
+def add_dump_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    # Accepted because command lines for older ROS use it.
+    parser.add_argument("--print", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument(
+        "--output-dir",
+        metavar="DIR",
+        help="write them to a file in this folder, named after the node",
+    )
+    add_json_argument(parser)
+
+
+def dump(options: argparse.Namespace) -> None:
+    """Print the parameters in the form that `arm param load` and launch files read.
+
+    Raises:
+        NoSuchNameError: there is no such node.
+        UnansweredError: the node does not answer.
+        CommandUsageError: the file cannot be written.
+    """
+    with open_parameters(options.node_name) as parameters:
+        names = parameters.names()
+        values = [read_value(value) for value in parameters.values(names)] if names else []
+    content = {
+        absolute_name(options.node_name): {
+            "ros__parameters": nest(dict(zip(names, values, strict=True)))
+        }
+    }
+    if options.json:
+        print_json(content)
+        return
+    import yaml
+
+    text = yaml.safe_dump(content, default_flow_style=False)
+    if options.output_dir is None:
+        say_document(text)
+    else:
+        _save(text, Path(options.output_dir), absolute_name(options.node_name))
+
+
+def _save(text: str, folder: Path, node: str) -> None:
+    path = folder / f"{node.strip('/').replace('/', '__')}.yaml"
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise CommandUsageError(f"cannot write {path}: {error.strerror}") from error
+    say(f"Saving to:  {path}")
+
+
+def nest(values: dict[str, Any]) -> dict[str, Any]:
+    """Return values by dotted names as nested dicts.
+
+    If `a` is itself a value, `a.b` keeps its dot; both forms mean the same.
+    """
+    nested: dict[str, Any] = {}
+    # A name is sorted before the names that start with it.
+    for name, value in sorted(values.items()):
+        group, (first, dot, rest) = nested, name.partition(".")
+        while dot and isinstance(group.setdefault(first, {}), dict):
+            group, (first, dot, rest) = group[first], rest.partition(".")
+        group[f"{first}{dot}{rest}"] = value
+    return nested
+
+
+def add_load_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_node_argument(parser)
+    parser.add_argument("parameter_file", help="file in the form of `arm param dump`")
+    parser.add_argument(
+        "--no-use-wildcard", action="store_true", help="ignore the file's section '/**'"
+    )
+
+
+def load(options: argparse.Namespace) -> int:
+    """Set the parameters one by one; the exit code is 1 if the node refuses one.
+
+    Raises:
+        NoSuchNameError: there is no such node or file, or the file has no section for the node.
+        MessageError: the file is not a parameter file.
+        UnansweredError: the node does not answer.
+    """
+    node = absolute_name(options.node_name)
+    sections = ([] if options.no_use_wildcard else ["/**"]) + [node]
+    contents = read_parameters(Path(options.parameter_file), sections)
+    with open_parameters(node) as parameters:
+        from rcl_interfaces.msg import ParameterValue
+
+        from arm_cli.parameter_values import set_value
+
+        values = {name: ParameterValue() for name in contents}
+        for name, content in contents.items():
+            if not set_value(values[name], content):
+                raise MessageError(f"{name}: {content!r} cannot be the value of a parameter")
+        results = parameters.set(values)
+    for name, result in zip(values, results, strict=True):
+        outcome = "successful" if result.successful else "failed"
+        reason = f": {result.reason}" if result.reason else ""
+        report = say if result.successful else complain
+        report(f"Set parameter {name} {outcome}{reason}")
+    return 0 if all(result.successful for result in results) else 1
+
+
+def read_parameters(path: Path, sections: list[str]) -> dict[str, Any]:
+    """Return the values in some sections of a parameter file, by dotted name.
+
+    Raises:
+        NoSuchNameError: there is no such file, or it has none of the sections.
+        MessageError: the file is not a parameter file.
+    """
+    try:
+        content = load_yaml(read_text(path))
+    except OSError as error:
+        raise NoSuchNameError(f"no parameter file {path}: {error.strerror}") from error
+    except (YamlError, UnicodeDecodeError) as error:
+        raise MessageError(f"{path} is not YAML: {error}") from error
+    if not isinstance(content, dict):
+        raise MessageError(f"{path} is not a parameter file: it has no 'node: {PARAMETERS}:'")
+    found = {absolute_name(str(key)): value for key, value in content.items()}
+    chosen = [found[section] for section in sections if section in found]
+    if not chosen:
+        raise NoSuchNameError(
+            f"{path} has no section for {sections[-1]}, only for {', '.join(found)}"
+        )
+    values: dict[str, Any] = {}
+    for section in chosen:
+        if not isinstance(section, dict) or not isinstance(section.get(PARAMETERS), dict):
+            raise MessageError(f"{path}: no '{PARAMETERS}:' below the node's name")
+        values |= _flatten(section[PARAMETERS], "")
+    return values
+
+
+def _flatten(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            flat |= _flatten(value, f"{prefix}{name}.")
+        else:
+            flat[f"{prefix}{name}"] = value
+    return flat
+
+
+DUMP = VerbFunctions(add_dump_arguments, dump)
+LOAD = VerbFunctions(add_load_arguments, load)

@@ -1,0 +1,141 @@
+"""The verbs of `arm sim` that change a running simulation."""
+
+import argparse
+from pathlib import Path
+
+from arm_cli.output import say
+from arm_cli.sim.simulation import PAUSED, PLAYING, add_namespace_argument, ask_simulation
+from arm_cli.verb import VerbFunctions
+
+SCOPE_TIME, SCOPE_STATE, SCOPE_SPAWNED, SCOPE_ALL = 1, 2, 4, 255
+
+
+def add_spawn_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "file", help="URDF, xacro, SDF or MJCF: a path or a URI such as model://can"
+    )
+    parser.add_argument("--name", default="", help="name of the entity; default: its body's name")
+    parser.add_argument(
+        "--pose",
+        nargs=6,
+        type=float,
+        default=[0.0] * 6,
+        metavar=("X", "Y", "Z", "ROLL", "PITCH", "YAW"),
+        help="pose in m and rad (default: the origin)",
+    )
+    parser.add_argument(
+        "--frame", default="", help="frame of the pose: an entity or a link (default: the world)"
+    )
+    add_namespace_argument(parser)
+
+
+def spawn(options: argparse.Namespace) -> None:
+    """Spawn the entity and print its name.
+
+    Raises:
+        SimulationRefusedError: the entity cannot be spawned.
+    """
+    with ask_simulation(options) as simulation:
+        from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
+        from simulation_interfaces.msg import Resource
+
+        from arm_description.transforms import quaternion_from_rpy
+
+        x, y, z, *rpy = options.pose
+        qx, qy, qz, qw = quaternion_from_rpy(rpy).tolist()
+        pose = PoseStamped(
+            pose=Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+        )
+        pose.header.frame_id = options.frame
+        # A relative path is relative to this process, not to the simulation's working folder.
+        uri = options.file if "://" in options.file else str(Path(options.file).absolute())
+        answer = simulation.ask(
+            "SpawnEntity",
+            "spawn_entity",
+            name=options.name,
+            allow_renaming=not options.name,
+            entity_resource=Resource(uri=uri),
+            initial_pose=pose,
+        )
+    say(answer.entity_name)
+
+
+def add_delete_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "entities", nargs="+", metavar="ENTITY", help="names, as listed by arm sim info"
+    )
+    add_namespace_argument(parser)
+
+
+def delete(options: argparse.Namespace) -> None:
+    """Delete the entities, one after another.
+
+    Raises:
+        SimulationRefusedError: there is no such entity, or it cannot be deleted.
+    """
+    with ask_simulation(options) as simulation:
+        for entity in options.entities:
+            simulation.ask("DeleteEntity", "delete_entity", entity=entity)
+
+
+def add_pause_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_namespace_argument(parser)
+
+
+def pause(options: argparse.Namespace) -> None:
+    """Pause the simulation.
+
+    Raises:
+        SimulationRefusedError: it is already paused.
+    """
+    with ask_simulation(options) as simulation:
+        simulation.set_state(PAUSED)
+
+
+def add_play_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    add_namespace_argument(parser)
+
+
+def play(options: argparse.Namespace) -> None:
+    """Resume the simulation.
+
+    Raises:
+        SimulationRefusedError: it is already running, or there is no world.
+    """
+    with ask_simulation(options) as simulation:
+        simulation.set_state(PLAYING)
+
+
+def add_reset_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "--keep-spawned", action="store_true", help="keep spawned entities, and deletions"
+    )
+    parser.add_argument("--keep-clock", action="store_true", help="let the clock go on")
+    add_namespace_argument(parser)
+
+
+def reset(options: argparse.Namespace) -> None:
+    """Return everything to its start, apart from what the options keep.
+
+    Raises:
+        SimulationRefusedError: a controller cannot be reset, or the clock must not be.
+    """
+    scope = SCOPE_ALL
+    if options.keep_spawned or options.keep_clock:
+        scope = SCOPE_STATE
+        scope |= 0 if options.keep_spawned else SCOPE_SPAWNED
+        scope |= 0 if options.keep_clock else SCOPE_TIME
+    with ask_simulation(options) as simulation:
+        simulation.ask("ResetSimulation", "reset_simulation", scope=scope)
+
+
+SPAWN = VerbFunctions(add_spawn_arguments, spawn)
+DELETE = VerbFunctions(add_delete_arguments, delete)
+PAUSE = VerbFunctions(add_pause_arguments, pause)
+PLAY = VerbFunctions(add_play_arguments, play)
+RESET = VerbFunctions(add_reset_arguments, reset)

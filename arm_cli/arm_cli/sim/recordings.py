@@ -1,0 +1,250 @@
+"""`arm sim record`, `replay` and `diff`: runs are recorded, run again and compared."""
+
+import argparse
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arm_cli.command_parser import positive_number
+from arm_cli.errors import ArmCliError, SimulationRefusedError, StoppedError
+from arm_cli.output import complain, say
+from arm_cli.ros.connection import connect
+from arm_cli.sim.simulation import SimulationClient, add_namespace_argument, ask_simulation
+from arm_cli.verb import VerbFunctions
+
+if TYPE_CHECKING:
+    from arm_gazebo.recording.replay import Difference, Replay, ReplayResult
+    from arm_gazebo.recording.run_file import RecordedInput
+
+PARAMETER = "record_run"
+MAX_ARGUMENTS = 120
+"""Characters of an input's arguments that are printed."""
+BLOBS = ("model", "saved")
+"""Arguments that say nothing to people."""
+_REFUSED = " (refused)"
+
+
+def add_record_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("file", type=Path, help="the file to write; the simulation writes it")
+    parser.add_argument(
+        "--duration",
+        metavar="S",
+        type=positive_number,
+        default=math.inf,
+        help="end after this wall time in seconds (default: at Ctrl-C)",
+    )
+    add_namespace_argument(parser)
+
+
+def record(options: argparse.Namespace) -> None:
+    """Record the inputs and states of a running simulation until Ctrl-C.
+
+    Raises:
+        UnansweredError: no simulation answers.
+        SimulationRefusedError: it cannot write the file, or records already.
+    """
+    # A relative path is relative to this process, not to the simulation's working folder.
+    path = options.file.absolute()
+    with ask_simulation(options) as simulation:
+        _set(simulation, str(path))
+        say(f"recording to {path}; Ctrl-C ends it")
+        try:
+            simulation.session.spin_for(options.duration)
+        except StoppedError:
+            simulation.session.clear_stop()
+        _set(simulation, "")
+    with _sentences():
+        _say_recorded(path)
+
+
+def _set(simulation: SimulationClient, path: str) -> None:
+    from rcl_interfaces.msg import ParameterType, ParameterValue
+
+    value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=path)
+    result = simulation.parameters().set({PARAMETER: value})[0]
+    if not result.successful:
+        raise SimulationRefusedError(result.reason)
+
+
+def _say_recorded(path: Path) -> None:
+    from arm_gazebo.recording.run_file import RecordingEnd, RunFile
+
+    ends = (record for record in RunFile(path).records() if isinstance(record, RecordingEnd))
+    end = next(ends, None)
+    if end is None:
+        raise ArmCliError(f"the recording {path} has no end; the simulation's log says why")
+    say(f"{end.periods} control periods in {path}, {path.stat().st_size / 1e6:.1f} MB")
+    if end.reason:
+        say(f"the recording ended because {end.reason}")
+
+
+def add_replay_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("file", type=Path, help="a recording of arm sim record")
+    parser.add_argument(
+        "--until",
+        metavar="TIME",
+        type=positive_number,
+        help="stop at this simulation time in seconds, and print where the joints are",
+    )
+    parser.add_argument(
+        "--inputs", action="store_true", help="print each input with the time at which it came"
+    )
+    parser.add_argument(
+        "--publish",
+        action="store_true",
+        help="publish clock, joint states and transforms, the last ones until Ctrl-C",
+    )
+    parser.add_argument(
+        "--speed",
+        type=positive_number,
+        default=1.0,
+        help="simulated seconds per second, with --publish (default: 1)",
+    )
+
+
+def replay(options: argparse.Namespace) -> int:
+    """Run a recording again; return 1 unless every control period is equal.
+
+    Raises:
+        ArmCliError: the recording cannot be read, or its run cannot be built.
+    """
+    with _sentences():
+        from arm_gazebo.recording.replay import Replay
+        from arm_gazebo.recording.run_file import RunFile
+        from arm_gazebo.state.made_with import differences_of_makers
+
+        file = RunFile(options.file)
+        others = differences_of_makers(file.header.get("made_with", {}))
+        if others:
+            complain(
+                f"{options.file} was made with {', '.join(others)}; equal bits are promised for "
+                "the same machine and versions only"
+            )
+        run = Replay(file)
+        result = _published(run, options) if options.publish else _replayed(run, options)
+    return 1 if result.difference is not None or not result.periods else 0
+
+
+def _replayed(
+    run: "Replay", options: argparse.Namespace, show: Callable[[], object] = lambda: None
+) -> "ReplayResult":
+    """Run and compare, and print what was found."""
+
+    def say_input(item: "RecordedInput") -> None:
+        where = " ".join(filter(None, (item.controller, item.method)))
+        words = " ".join(filter(None, (where, _brief(item))))
+        say(f"{run.simulation.time_s:.3f} s: {words}{_REFUSED * item.raised}")
+
+    before_input = say_input if options.inputs else _ignore
+    until_s = math.inf if options.until is None else options.until
+    began_s = time.monotonic()
+    result = run.run(until_s, show, before_input)
+    _say_result(options.file, result, time.monotonic() - began_s)
+    if options.until is not None:
+        _say_joints(run)
+    return result
+
+
+def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
+    """Run, publish and compare; then publish the last state until Ctrl-C."""
+    from arm_cli.ros.run_player import RunPlayer
+
+    with connect() as session:
+        player = RunPlayer(session, run, options.speed)
+        result = _replayed(run, options, player.show)
+        with suppress(StoppedError):
+            player.hold()
+    return result
+
+
+def _ignore(_item: "RecordedInput") -> None:
+    """Do nothing."""
+
+
+def _brief(item: "RecordedInput") -> str:
+    """Return the arguments of an input, shortened."""
+    text = " ".join(
+        f"{name}={value}" for name, value in item.arguments.items() if name not in BLOBS
+    )
+    text = " ".join(text.split())
+    return text if len(text) <= MAX_ARGUMENTS else f"{text[:MAX_ARGUMENTS]}..."
+
+
+def _say_result(path: Path, result: "ReplayResult", wall_s: float) -> None:
+    if result.difference is not None:
+        _say_difference(result.difference)
+    elif not result.periods:
+        complain(f"{path} holds no control period, so nothing was compared")
+    if result.periods:
+        equal = "the first " if result.difference is not None else ""
+        say(
+            f"{equal}{result.periods} control periods are equal, up to {result.time_s:.3f} s "
+            f"(replayed in {wall_s:.2f} s)"
+        )
+    if result.is_cut_off:
+        say("the recording has no end: the process that wrote it was killed, or still writes")
+    if result.end_reason:
+        say(f"the recording ended because {result.end_reason}")
+
+
+def _say_difference(difference: "Difference") -> None:
+    say(f"control period {difference.period}, at {difference.time_s:.3f} s, differs:")
+    say(*(f"  {line}" for line in difference.lines))
+
+
+def _say_joints(run: "Replay") -> None:
+    say(f"joints at {run.simulation.time_s:.3f} s:")
+    data = run.simulation.data
+    for name, joint in run.simulation.built.joints.items():
+        position, velocity = data.qpos[joint.qpos_address], data.qvel[joint.dof_address]
+        say(f"  {name}: position {position:.6f}, velocity {velocity:.6f}")
+
+
+def add_diff_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("first", type=Path, help="a recording of arm sim record")
+    parser.add_argument("second", type=Path, help="another one")
+
+
+def diff(options: argparse.Namespace) -> int:
+    """Name the first difference of two recordings; return 1 if there is one.
+
+    Raises:
+        ArmCliError: a recording cannot be read.
+    """
+    with _sentences():
+        from arm_gazebo.recording.comparison import compare
+        from arm_gazebo.recording.run_file import RunFile
+
+        result = compare(RunFile(options.first), RunFile(options.second))
+    say(*result.settings)
+    if result.difference is not None:
+        _say_difference(result.difference)
+    say(f"{result.periods} control periods are equal")
+    if result.longer:
+        which, count = ("second", result.longer) if result.longer > 0 else ("first", -result.longer)
+        say(f"the {which} recording has {count} control periods more")
+    return 0 if result.is_equal and result.periods else 1
+
+
+@contextmanager
+def _sentences() -> Iterator[None]:
+    """Report what recordings and simulations refuse as errors of the command line."""
+    from arm_control.errors import ArmControlError
+    from arm_description.errors import DescriptionError
+    from arm_gazebo.errors import GazeboError
+
+    try:
+        yield
+    except (GazeboError, ArmControlError, DescriptionError) as error:
+        raise ArmCliError(str(error)) from error
+
+
+RECORD = VerbFunctions(add_record_arguments, record)
+REPLAY = VerbFunctions(add_replay_arguments, replay)
+DIFF = VerbFunctions(add_diff_arguments, diff)

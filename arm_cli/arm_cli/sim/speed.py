@@ -1,0 +1,62 @@
+"""`arm sim speed`: shows and changes the real-time factor of a running simulation."""
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from arm_cli.output import say
+from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
+
+if TYPE_CHECKING:
+    from arm_cli.ros.parameters import NodeParameters
+
+PARAMETER = "real_time_factor"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "factor",
+        nargs="?",
+        type=_factor,
+        help="simulated seconds per second; 0 is as fast as possible (default: print it)",
+    )
+    add_namespace_argument(parser)
+
+
+def _factor(text: str) -> float:
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = math.nan
+    if not 0.0 <= factor < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number of at least 0")
+    return factor
+
+
+def run(options: argparse.Namespace) -> None:
+    """Set the factor, or print it.
+
+    Raises:
+        UnansweredError: no simulation answers.
+        SimulationRefusedError: it refuses the factor.
+    """
+    with ask_simulation(options) as simulation:
+        parameters = simulation.parameters()
+        if options.factor is None:
+            from arm_cli.parameter_values import content_of
+
+            say(f"{content_of(parameters.value(PARAMETER)):g}")
+        else:
+            _set(parameters, options.factor)
+
+
+def _set(parameters: "NodeParameters", factor: float) -> None:
+    from rcl_interfaces.msg import ParameterType, ParameterValue
+
+    from arm_cli.errors import SimulationRefusedError
+
+    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=factor)
+    result: Any = parameters.set({PARAMETER: value})[0]
+    if not result.successful:
+        raise SimulationRefusedError(result.reason)

@@ -1,0 +1,82 @@
+"""`arm sweep`: makes the runs of a study on all cores."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arm_cli.command_parser import positive_whole_number
+from arm_cli.errors import ArmCliError
+from arm_cli.output import complain, say
+from arm_node.printable import printable
+
+if TYPE_CHECKING:
+    from arm_sim.sweep.journal import Journal, Outcome
+    from arm_sim.sweep.study import Study
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a YAML or Python file")
+    parser.add_argument(
+        "--processes",
+        type=positive_whole_number,
+        default=os.cpu_count() or 1,
+        help="processes that make runs (default: one for each core)",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="folder of the results; a study that was interrupted goes on there "
+        "(default: STUDY without its suffix, and -results)",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make the runs, write the tables; return 1 if a run has failed.
+
+    Raises:
+        ArmCliError: the study cannot be read or run.
+    """
+    from arm_sim.sweep.journal import Journal
+    from arm_sim.sweep.study import StudyError, read_study
+    from arm_sim.sweep.table import write_tables
+
+    folder = options.output or options.study.with_name(f"{options.study.stem}-results")
+    try:
+        study = read_study(options.study)
+        with Journal(folder, study) as journal:
+            _make_runs(study, journal, options.processes)
+    except StudyError as error:
+        raise ArmCliError(str(error)) from error
+    for path in write_tables(folder, journal.outcomes.values()):
+        say(str(path))
+    failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
+    if failed:
+        complain(f"{failed} of {len(journal.outcomes)} runs failed; the tables say why")
+    return 1 if failed else 0
+
+
+def _make_runs(study: "Study", journal: "Journal", processes: int) -> None:
+    """Make the runs that the journal lacks, with a progress bar."""
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from arm_sim.sweep.engine import Engine
+
+    total, before = len(study.runs()), len(journal.outcomes)
+    if before:
+        say(f"{before} of {total} runs were made before; the others follow")
+    columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeRemainingColumn())
+    # Not rich's shared console, which keeps the output that it had when it was made.
+    with Progress(*columns, console=Console()) as progress:
+        bar = progress.add_task("runs", total=total, completed=before)
+
+        def told(outcome: "Outcome") -> None:
+            progress.advance(bar)
+            if outcome.error:
+                line = f"run {outcome.number} failed: {outcome.error}"
+                progress.console.print(printable(line), markup=False)
+
+        Engine(study, journal, processes, told).run()

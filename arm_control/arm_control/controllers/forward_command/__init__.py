@@ -1,0 +1,1 @@
+"""Controllers that pass the latest command on to the hardware."""

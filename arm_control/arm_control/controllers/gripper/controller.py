@@ -1,0 +1,369 @@
+"""The state machine of all gripper controllers: a goal is reached, stalls or is cancelled."""
+
+import logging
+import struct
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from math import isfinite, isnan, nan
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
+
+from arm_control.controllers.controller import (
+    Controller,
+    ControllerContext,
+    InterfaceConfiguration,
+    ReturnType,
+)
+from arm_control.controllers.goals import GoalOutcome, RequestQueue, refused_while_inactive
+from arm_control.controllers.gripper.goals import (
+    CANCELED,
+    PREEMPTED,
+    RESET,
+    RESTORED,
+    GripperCancel,
+    GripperRequest,
+    GripperResult,
+    GripperState,
+    GripperTarget,
+    deactivated,
+    reached,
+    stalled,
+    unmeasured,
+)
+from arm_control.controllers.gripper.parameters import GripperParameters
+from arm_control.errors import ControllerError
+from arm_control.run_inputs import run_input
+
+
+class GripperSink(Protocol):
+    """Receives the gripper controller's results on the loop thread; it must return quickly."""
+
+    def open(self) -> None:
+        """Prepare for goals; called at each activation."""
+        ...
+
+    def finish_goal(self, goal_id: object, result: GripperResult) -> None:
+        """End a goal; called once for each accepted goal, in the cycle in which it ends."""
+        ...
+
+
+class _GripperStatus(Enum):
+    """Progress of a goal."""
+
+    MOVING = "moving"
+    REACHED = "reached"
+    STALLED = "stalled"
+    UNMEASURED = "unmeasured"
+
+
+@dataclass(slots=True)
+class _GoalWatch:
+    """Checks the progress of one goal in every cycle. Loop thread only.
+
+    Attributes:
+        tolerance: a joint closer than this has reached its goal, in rad or m.
+        still_velocity: a joint no faster than this is at rest, in rad/s or m/s.
+        stall_timeout_s: a joint at rest for longer has stalled; a joint whose state is not a number
+            for longer counts as unmeasured.
+        still_s: how long the joint has been at rest.
+        lost_s: how long its state has not been a number.
+    """
+
+    tolerance: float
+    still_velocity: float
+    stall_timeout_s: float
+    still_s: float = 0.0
+    lost_s: float = 0.0
+
+    def judge(self, error: float, velocity: float, period_s: float) -> _GripperStatus:
+        """Return the progress of the goal after a period.
+
+        Args:
+            error: signed distance to the goal; NaN if the position is unknown.
+            velocity: measured velocity; NaN if unknown.
+            period_s: time since the last call, or since the goal started.
+        """
+        if not (isfinite(error) and isfinite(velocity)):
+            self.still_s, self.lost_s = 0.0, self.lost_s + period_s
+            return (
+                _GripperStatus.UNMEASURED
+                if self.lost_s > self.stall_timeout_s
+                else _GripperStatus.MOVING
+            )
+        self.lost_s = 0.0
+        if abs(error) < self.tolerance:
+            return _GripperStatus.REACHED
+        # Sums periods instead of comparing times, so that setting the clock back does no harm.
+        self.still_s = self.still_s + period_s if abs(velocity) <= self.still_velocity else 0.0
+        return (
+            _GripperStatus.STALLED if self.still_s > self.stall_timeout_s else _GripperStatus.MOVING
+        )
+
+
+ParametersT = TypeVar("ParametersT", bound=GripperParameters)
+
+STATES = ("position", "velocity")
+"""The joint's states that are read, in this order."""
+
+
+class GripperController(Controller[ParametersT], Generic[ParametersT]):
+    """Moves one joint to a goal position and holds it there.
+
+    Goals may arrive on any thread. They take effect at the next update, or when `serve_requests` is
+    called on the loop thread, which cancels and preempts goals even while the simulation is paused.
+
+    Attributes:
+        sink: receives the results; None drops them. Set it before activation.
+        deprecated_type: its type string if that type is deprecated; else empty.
+    """
+
+    deprecated_type: ClassVar[str] = ""
+    transient = ("_requests", "_joint")
+
+    def __init__(self, context: ControllerContext) -> None:
+        super().__init__(context)
+        if self.deprecated_type:
+            self.logger.warning(
+                "[Deprecated] %s: use parallel_gripper_action_controller/GripperActionController, "
+                "whose action is control_msgs/action/ParallelGripperCommand",
+                self.deprecated_type,
+            )
+        self.sink: GripperSink | None = None
+        self._requests: RequestQueue[GripperRequest | GripperCancel] = RequestQueue()
+        self._joint = ""
+        self._target = GripperTarget(0.0, 0.0, 0.0)
+        self._goal_id: object = None
+        self._watch = _GoalWatch(0.0, 0.0, 0.0)
+        self._seen_position = nan
+
+    # Requests: any thread, once configured
+
+    def check_goal(self, request: GripperRequest) -> str:
+        """Return why a goal must be rejected; empty if it is acceptable."""
+        is_open = self._requests.is_open
+        refusal = _fault_of(request) if is_open else refused_while_inactive(self.halted_by)
+        if refusal:
+            self.logger.error("%s", refusal)
+        return refusal
+
+    @run_input
+    def submit_goal(self, request: GripperRequest) -> GripperResult | None:
+        """Start a goal that `check_goal` accepts; it replaces the previous one.
+
+        Returns:
+            None if the sink will receive the result; the result itself if the goal has already
+            ended because the controller is not running.
+        """
+        taken = self._requests.put(request)
+        if taken:
+            return None
+        return GripperResult(GoalOutcome.ABORTED, refused_while_inactive(self.halted_by))
+
+    @run_input
+    def cancel_goal(self, goal_id: object) -> None:
+        """Cancel a goal and hold; has no effect if it has already ended."""
+        self._requests.put(GripperCancel(goal_id))
+
+    # Loop thread
+
+    @property
+    def max_velocity(self) -> float:
+        """Default velocity limit, in rad/s or m/s; 0 for none."""
+        return 0.0
+
+    @abstractmethod
+    def command(
+        self, target: GripperTarget, position: float, velocity: float, period_s: float
+    ) -> float:
+        """Write the commands of one cycle.
+
+        Args:
+            target: set-point of the joint.
+            position: position of the joint, in rad or m.
+            velocity: velocity of the joint, in rad/s or m/s.
+            period_s: time since the last cycle.
+
+        Returns:
+            The effort to report in the result, in N m or N.
+        """
+
+    def state_interface_configuration(self) -> InterfaceConfiguration:
+        """Read the joint's position and velocity."""
+        return self._interfaces_of_joint(STATES)
+
+    def on_configure(self, parameters: ParametersT) -> None:
+        """Take the parameters.
+
+        Raises:
+            ControllerError: the joint is empty.
+            ParameterError: one is out of its range.
+        """
+        if not parameters.joint:
+            raise ControllerError("'joint' parameter was empty")
+        parameters.check()
+        self._parameters = parameters
+        self._joint = parameters.joint
+
+    def update_parameters(self, parameters: ParametersT) -> None:
+        """Apply changed parameters; they take effect with the next goal.
+
+        The joint and the interfaces change only when the controller is configured again.
+
+        Raises:
+            ParameterError: one is out of its range; the old ones stay.
+        """
+        parameters.check()
+        self._parameters = parameters
+
+    def on_activate(self) -> None:
+        """Hold the joint at its position and start accepting goals."""
+        self._seen_position = nan
+        self._hold()
+        if self.sink is not None:
+            self.sink.open()
+        self._requests.open()
+
+    def update(self, time_s: float, period_s: float) -> ReturnType:
+        """Run one cycle."""
+        self._serve_requests()
+        position, velocity = self._measure()
+        if isnan(self._target.position):
+            self._hold()
+        effort = self.command(self._target, position, velocity, period_s)
+        if self._goal_id is not None:
+            self._judge(GripperState(position, velocity, effort), period_s)
+        return ReturnType.OK
+
+    @run_input
+    def serve_requests(self) -> None:
+        """Process the clients' requests; a motion starts at the next update."""
+        self._serve_requests()
+
+    def _serve_requests(self) -> None:
+        if not self._requests:
+            return
+        for request in self._requests.take():
+            match request:
+                case GripperRequest():
+                    self._end(PREEMPTED)
+                    self._start(request)
+                case GripperCancel(goal_id):
+                    if goal_id == self._goal_id:
+                        self._hold()
+                        self._end(CANCELED)
+
+    def save_state(self) -> Any:
+        """Return the set-point and the goal; pending requests are served first."""
+        self._serve_requests()
+        return super().save_state()
+
+    def load_state(self, state: Any) -> None:
+        """Go on with a saved goal; another one that is under way is aborted."""
+        self._serve_requests()
+        if state["_goal_id"] != self._goal_id:
+            self._end(RESTORED)
+        super().load_state(state)
+
+    def fingerprint(self) -> bytes:
+        """Return the numbers of the set-point and of the goal's progress."""
+        target, watch = self._target, self._watch
+        return struct.pack(
+            "<6d?",
+            target.position,
+            target.max_effort,
+            target.max_velocity,
+            watch.still_s,
+            watch.lost_s,
+            self._seen_position,
+            self._goal_id is not None,
+        )
+
+    def on_reset(self) -> None:
+        """Abort the goal and hold the joint where it is."""
+        self._serve_requests()
+        self._end(RESET)
+        self._seen_position = nan
+        self._hold()
+
+    def on_deactivate(self) -> None:
+        """Abort the goal."""
+        state = GripperState(*self._measure(), self._target.max_effort)
+        for request in self._requests.close():
+            if isinstance(request, GripperRequest):
+                self._end(PREEMPTED)
+                self._goal_id = request.id
+        self._end(deactivated(state, self.halted_by))
+
+    def _start(self, request: GripperRequest) -> None:
+        parameters = self.parameters
+        self._goal_id = request.id
+        self._target = GripperTarget(
+            request.positions[0],
+            request.efforts[0] if request.efforts else parameters.max_effort,
+            request.velocities[0] if request.velocities else self.max_velocity,
+        )
+        self._watch = _GoalWatch(
+            parameters.goal_tolerance, parameters.stall_velocity_threshold, parameters.stall_timeout
+        )
+
+    def _judge(self, state: GripperState, period_s: float) -> None:
+        error = self._target.position - state.position
+        match self._watch.judge(error, state.velocity, period_s):
+            case _GripperStatus.REACHED:
+                self._end(reached(state))
+            case _GripperStatus.STALLED:
+                is_success = self.parameters.allow_stalling
+                self._end(stalled(state, self._target.position, is_success=is_success))
+            case _GripperStatus.UNMEASURED:
+                values = zip(STATES, (state.position, state.velocity), strict=True)
+                names = [f"{self._joint}/{kind}" for kind, value in values if not isfinite(value)]
+                self._hold()
+                self._end(unmeasured(state, names))
+            case _GripperStatus.MOVING:
+                pass
+
+    def _hold(self) -> None:
+        """Hold the last known position; command nothing before a position is known."""
+        self._measure()
+        self._target = GripperTarget(
+            self._seen_position, self.parameters.max_effort, self.max_velocity
+        )
+
+    def _end(self, result: GripperResult) -> None:
+        """End the goal, if there is one."""
+        if self._goal_id is None:
+            return
+        goal_id, self._goal_id = self._goal_id, None
+        level = logging.WARNING if result.outcome is GoalOutcome.ABORTED else logging.INFO
+        self.logger.log(level, "%s", result.message)
+        if self.sink is not None:
+            self.sink.finish_goal(goal_id, result)
+
+    def _measure(self) -> tuple[float, float]:
+        position, velocity = self.states.read()[: len(STATES)].tolist()
+        if isfinite(position):
+            self._seen_position = position
+        return position, velocity
+
+    def _interfaces_of_joint(self, kinds: Sequence[str]) -> InterfaceConfiguration:
+        return InterfaceConfiguration.individual(f"{self._joint}/{kind}" for kind in kinds)
+
+
+def _fault_of(request: GripperRequest) -> str:
+    """Return why a request is invalid; empty if it is valid."""
+    numbers: Mapping[str, Sequence[float]] = {
+        "position": request.positions,
+        "effort": request.efforts,
+        "velocity": request.velocities,
+    }
+    for kind, values in numbers.items():
+        if len(values) > 1 or (kind == "position" and not values):
+            expected = "1" if kind == "position" else "at most 1"
+            return (
+                f"Received action goal with wrong number of {kind} values, "
+                f"expects {expected}, got {len(values)}"
+            )
+        if not all(map(isfinite, values)):
+            return f"Received action goal whose {kind} is not finite: {values[0]:g}"
+    return ""

@@ -1,0 +1,181 @@
+"""The ROS half of the gripper controllers: the action ~/gripper_cmd."""
+
+from abc import ABC
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from control_msgs.action import GripperCommand, ParallelGripperCommand
+from rclpy.executors import Executor
+from rclpy.node import Node
+
+from arm_control.controllers.gripper import GripperController, GripperRequest, GripperResult
+from arm_control.controllers.gripper.parameters import GripperParameters
+from arm_control.controllers.ros_action import ControllerAction
+from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.ros_executor_bridge import run_on_executor
+
+
+@dataclass(frozen=True, slots=True)
+class _GripperActionFormat:
+    """A gripper action type and the conversion of its messages.
+
+    Attributes:
+        action_type: class of the action.
+        request: makes the controller's request from a goal's id and message.
+        result: makes the result message from a result and the joint's name.
+    """
+
+    action_type: type[Any]
+    request: Callable[[bytes, Any], GripperRequest]
+    result: Callable[[GripperResult, str], Any]
+
+
+def gripper_command_request(goal_id: bytes, goal: GripperCommand.Goal) -> GripperRequest:
+    """Return the request of a goal with one position and one effort."""
+    return GripperRequest(goal_id, (goal.command.position,), (goal.command.max_effort,))
+
+
+def gripper_command_result(result: GripperResult, joint: str) -> GripperCommand.Result:
+    """Return the result message of the older action."""
+    message = GripperCommand.Result(stalled=result.stalled, reached_goal=result.reached_goal)
+    if result.state is not None:
+        message.position, message.effort = result.state.position, result.state.effort
+    return message
+
+
+def parallel_gripper_request(goal_id: bytes, goal: ParallelGripperCommand.Goal) -> GripperRequest:
+    """Return the request of a goal with a joint state, of which only the position is required."""
+    command = goal.command
+    return GripperRequest(goal_id, command.position, command.effort, command.velocity)
+
+
+def parallel_gripper_result(result: GripperResult, joint: str) -> ParallelGripperCommand.Result:
+    """Return the result message of the newer action."""
+    message = ParallelGripperCommand.Result(
+        stalled=result.stalled, reached_goal=result.reached_goal
+    )
+    if result.state is not None:
+        message.state.name = [joint]
+        message.state.position = [result.state.position]
+        message.state.velocity = [result.state.velocity]
+        message.state.effort = [result.state.effort]
+    return message
+
+
+GRIPPER_COMMAND = _GripperActionFormat(
+    GripperCommand, gripper_command_request, gripper_command_result
+)
+PARALLEL_GRIPPER_COMMAND = _GripperActionFormat(
+    ParallelGripperCommand, parallel_gripper_request, parallel_gripper_result
+)
+
+
+class _GripperAction(ControllerAction[GripperController[Any], GripperResult]):
+    """The action of a gripper controller; without feedback, as in ros2_controllers."""
+
+    def __init__(
+        self,
+        controller: GripperController[Any],
+        node: Node,
+        loop: ControlLoop,
+        executor: Executor,
+        action_format: _GripperActionFormat,
+        joint: str,
+    ) -> None:
+        """Offer the action.
+
+        Args:
+            controller: executes the goals.
+            node: offers the action.
+            loop: runs the controller.
+            executor: spins the node.
+            action_format: the action's type and the conversion of its messages.
+            joint: the gripper's joint.
+        """
+        self._action_format = action_format
+        self._joint = joint
+        super().__init__(
+            controller, node, loop, executor, action_format.action_type, "~/gripper_cmd"
+        )
+
+    def accepts(self, goal: Any) -> bool:
+        """Return whether a goal is acceptable."""
+        return not self.controller.check_goal(self._action_format.request(b"", goal))
+
+    def submit(self, goal_id: bytes, goal: Any) -> GripperResult | None:
+        """Start a goal."""
+        return self.controller.submit_goal(self._action_format.request(goal_id, goal))
+
+    def result_message(self, result: GripperResult) -> Any:
+        """Return the result message of a goal."""
+        return self._action_format.result(result, self._joint)
+
+
+class _GripperAdapter(ControllerAdapter[GripperController[Any]], ABC):
+    """Offers the action from the first activation on, and is the controller's sink.
+
+    Attributes:
+        action_format: the action's type and the conversion of its messages.
+    """
+
+    action_format: ClassVar[_GripperActionFormat]
+    _action: _GripperAction | None = None
+
+    def on_configure(self, parameters: GripperParameters) -> None:
+        """Become the controller's sink; the action follows at the first activation."""
+        self._executor = self.executor
+        self._joint = parameters.joint
+        self.controller.sink = self
+
+    def on_cleanup(self) -> None:
+        """Withdraw the action after the results of all goals have been sent."""
+        if self.controller.sink is None:
+            return
+        self.controller.sink = None
+        if self._action is not None:
+            self._action.wait_for_results()
+        run_on_executor(self._executor, self._withdraw)
+
+    # Loop thread
+
+    def open(self) -> None:
+        """Let the executor create the action, so that the loop does not wait."""
+        if self._action is None:
+            self._executor.create_task(self._offer)
+
+    def finish_goal(self, goal_id: Any, result: GripperResult) -> None:
+        """Send the result to the goal's client."""
+        if self._action is not None:
+            self._action.finish(goal_id, result)
+
+    # Executor's thread
+
+    def _offer(self) -> None:
+        if self._action is None and self.controller.sink is self:
+            self._action = _GripperAction(
+                self.controller,
+                self.node,
+                self.loop,
+                self._executor,
+                self.action_format,
+                self._joint,
+            )
+
+    def _withdraw(self) -> None:
+        if self._action is not None:
+            self._action.destroy()
+            self._action = None
+
+
+class GripperCommandAdapter(_GripperAdapter):
+    """Offers control_msgs/action/GripperCommand."""
+
+    action_format = GRIPPER_COMMAND
+
+
+class ParallelGripperAdapter(_GripperAdapter):
+    """Offers control_msgs/action/ParallelGripperCommand."""
+
+    action_format = PARALLEL_GRIPPER_COMMAND

@@ -1,0 +1,103 @@
+"""The ROS half of the mecanum drive: references in; odometry, transform and state out."""
+
+import logging
+
+import numpy as np
+from control_msgs.msg import MecanumDriveControllerState
+from geometry_msgs.msg import TwistStamped
+from nav_msgs.msg import Odometry
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+from tf2_msgs.msg import TFMessage
+
+from arm_control.controllers.mecanum_drive.controller import (
+    MecanumDriveController,
+    MecanumDriveParameters,
+)
+from arm_control.controllers.mecanum_drive.kinematics import Array, MecanumOdometry, MecanumTwist
+from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.controllers.ros_odometry import OdometryPublisher
+from arm_control.loop.clock import Throttle
+from arm_node.workarounds.message_template import MessageTemplate
+
+REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+WARNING_INTERVAL_S = 1.0
+TWIST = (0, 1, 5)
+"""Indices in the velocities along and about x y z that a mecanum drive has."""
+
+
+class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
+    """Connects the controller to ~/reference, ~/odometry, ~/tf_odometry and ~/controller_state."""
+
+    _end_points: tuple[Publisher | Subscription, ...] = ()
+
+    def on_configure(self, parameters: MecanumDriveParameters) -> None:
+        """Create the end points."""
+        self._throttle = Throttle(WARNING_INTERVAL_S)
+        qos = QoSPresetProfiles.SYSTEM_DEFAULT.value
+        odometry = self.node.create_publisher(Odometry, "~/odometry", qos)
+        frames = self.node.create_publisher(TFMessage, "~/tf_odometry", qos)
+        state = self.node.create_publisher(MecanumDriveControllerState, "~/controller_state", qos)
+        publisher = OdometryPublisher(
+            odometry,
+            frames if parameters.enable_odom_tf else None,
+            parameters.odom_frame_id,
+            parameters.base_frame_id,
+            (parameters.pose_covariance_diagonal, parameters.twist_covariance_diagonal),
+            TWIST,
+        )
+        self.controller.sink = _MecanumPublisher(publisher, state, parameters.odom_frame_id)
+        self._end_points = (
+            odometry,
+            frames,
+            state,
+            self.node.create_subscription(
+                TwistStamped, "~/reference", self._take_reference, REFERENCE_QOS
+            ),
+        )
+
+    def on_cleanup(self) -> None:
+        """Destroy the end points."""
+        self.controller.sink = None
+        self.destroy(*self._end_points)
+        self._end_points = ()
+
+    def _take_reference(self, message: TwistStamped) -> None:
+        stamp = message.header.stamp
+        stamp_s = stamp.sec + stamp.nanosec * 1e-9
+        twist = message.twist
+        reason = self.controller.offer(
+            MecanumTwist(twist.linear.x, twist.linear.y, twist.angular.z), stamp_s or None
+        )
+        if reason and self._throttle.permits():
+            logging.getLogger(self.controller.name).warning("a reference was dropped: %s", reason)
+
+
+class _MecanumPublisher:
+    """Publishes odometry and state; see `MecanumSink`. Loop thread only."""
+
+    def __init__(self, odometry: OdometryPublisher, state: Publisher, odom: str) -> None:
+        message = MecanumDriveControllerState()
+        message.header.frame_id = odom
+        self._odometry, self._state = odometry, state
+        self._template = MessageTemplate(message)
+        wheels = ("front_left", "front_right", "back_right", "back_left")
+        self._wheels_at = np.concatenate(
+            [self._template.indices(f"{wheel}_wheel_velocity") for wheel in wheels]
+        )
+        self._reference_at = self._template.indices("reference_velocity")[list(TWIST)]
+
+    def publish(
+        self, time_s: float, odometry: MecanumOdometry, wheels: Array, reference: MecanumTwist
+    ) -> None:
+        """Publish one cycle."""
+        twist = odometry.twist
+        self._odometry.publish(
+            time_s, (odometry.x, odometry.y, odometry.heading), (twist.x, twist.y, twist.yaw)
+        )
+        template = self._template
+        template.set_stamps(round(time_s * 1e9))
+        template.float64[self._wheels_at] = wheels
+        template.float64[self._reference_at] = (reference.x, reference.y, reference.yaw)
+        template.publish(self._state)

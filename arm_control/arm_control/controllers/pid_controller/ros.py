@@ -1,0 +1,140 @@
+"""The ROS half of the PID controller: its references, states and feed-forward switch."""
+
+import logging
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from control_msgs.msg import (
+    MultiDOFCommand,
+    MultiDOFStateStamped,
+    PidState,
+    SingleDOFState,
+)
+from numpy.typing import NDArray
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from std_srvs.srv import SetBool
+
+from arm_control.controllers.pid_controller.controller import STATE_FIELDS, PidController, PidTerms
+from arm_control.controllers.pid_controller.parameters import PidControllerParameters
+from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.controllers.ros_times import duration_message, time_message
+from arm_control.loop.clock import Throttle
+from arm_node.names import as_node_name
+from arm_node.workarounds.message_template import MessageTemplate
+
+REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+WARNING_INTERVAL_S = 1.0
+
+
+class PidControllerAdapter(ControllerAdapter[PidController]):
+    """Connects the controller to its topics and its service."""
+
+    _end_points: tuple[Publisher | Service | Subscription, ...] = ()
+
+    def on_configure(self, parameters: PidControllerParameters) -> None:
+        """Create the end points."""
+        self._throttle = Throttle(WARNING_INTERVAL_S)
+        publisher = self.node.create_publisher(
+            MultiDOFStateStamped, "~/controller_state", QoSPresetProfiles.SYSTEM_DEFAULT.value
+        )
+        # One for each, because `activate_state_publisher` may be set at any time.
+        terms = [
+            self.node.create_publisher(
+                PidState, f"~/{_as_topic(dof)}/pid_state", QoSPresetProfiles.SENSOR_DATA.value
+            )
+            for dof in parameters.dof_names
+        ]
+        self.controller.sink = _PidStatePublisher(publisher, parameters.state_dof_names, terms)
+        self._end_points = (
+            publisher,
+            *terms,
+            self.node.create_service(SetBool, "~/set_feedforward_control", self._set_feedforward),
+            self.node.create_subscription(
+                MultiDOFCommand, "~/reference", self._take_reference, REFERENCE_QOS
+            ),
+        )
+        if parameters.use_external_measured_states:
+            self._end_points += (
+                self.node.create_subscription(
+                    MultiDOFCommand, "~/measured_state", self._take_measured, REFERENCE_QOS
+                ),
+            )
+
+    def on_cleanup(self) -> None:
+        """Destroy the end points."""
+        self.controller.sink = None
+        self.destroy(*self._end_points)
+        self._end_points = ()
+
+    def _take_reference(self, message: MultiDOFCommand) -> None:
+        self._warn_dropped("reference", self.controller.offer(*_parts(message)))
+
+    def _take_measured(self, message: MultiDOFCommand) -> None:
+        self._warn_dropped("measured state", self.controller.offer_measured(*_parts(message)))
+
+    def _warn_dropped(self, what: str, reason: str) -> None:
+        if reason and self._throttle.permits():
+            logging.getLogger(self.controller.name).error("a %s was dropped: %s", what, reason)
+
+    def _set_feedforward(self, request: SetBool.Request, response: Any) -> Any:
+        self.controller.enable_feedforward(request.data)
+        response.success = True
+        return response
+
+
+def _as_topic(dof: str) -> str:
+    """Return a degree of freedom's name in a form that topic names allow."""
+    return "/".join(as_node_name(part) for part in dof.split("/") if part)
+
+
+def _parts(message: MultiDOFCommand) -> tuple[list[str], list[float], list[float]]:
+    return list(message.dof_names), list(message.values), list(message.values_dot)
+
+
+class _PidStatePublisher:
+    """Publishes the state as control_msgs/msg/MultiDOFStateStamped; see `PidStateSink`.
+
+    The terms of an output are published as control_msgs/msg/PidState.
+    """
+
+    def __init__(
+        self, publisher: Publisher, names: tuple[str, ...], terms: Sequence[Publisher] = ()
+    ) -> None:
+        self._publisher = publisher
+        self._terms = terms
+        self._template = MessageTemplate(
+            MultiDOFStateStamped(dof_states=[SingleDOFState(name=name) for name in names])
+        )
+        self._where = np.stack(
+            [self._template.indices(f"dof_states[*].{field}") for field in STATE_FIELDS], axis=1
+        )
+
+    def publish(self, time_s: float, state: NDArray[np.float64]) -> None:
+        """Publish one state."""
+        self._template.set_stamps(round(time_s * 1e9))
+        self._template.float64[self._where] = state
+        self._template.publish(self._publisher)
+
+    def publish_terms(self, time_s: float, dof: int, terms: PidTerms) -> None:
+        """Publish the terms of an output."""
+        gains = terms.gains
+        message = PidState(
+            timestep=duration_message(terms.period_s),
+            error=terms.error,
+            error_dot=terms.error_rate,
+            p_error=terms.error,
+            i_error=terms.integral,
+            d_error=terms.error_rate,
+            p_term=gains.p,
+            i_term=gains.i,
+            d_term=gains.d,
+            i_max=gains.i_clamp_max,
+            i_min=gains.i_clamp_min,
+            output=terms.output,
+        )
+        message.header.stamp = time_message(time_s)
+        self._terms[dof].publish(message)

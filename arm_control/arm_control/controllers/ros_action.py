@@ -1,0 +1,176 @@
+"""An action whose goals a controller serves on the loop thread."""
+
+import logging
+import threading
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar, cast
+
+from rclpy.action.server import (
+    ActionServer,
+    CancelResponse,
+    GoalEvent,
+    GoalResponse,
+    ServerGoalHandle,
+)
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.task import Future
+
+from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.ros_executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer, settle
+
+RESULT_TIMEOUT_S = 10
+"""How long a result is kept for its client. With rclpy's default of 15 minutes, a stream of goals
+would fill the memory; this is rcl's default."""
+
+
+ControllerT = TypeVar("ControllerT", bound=GoalController)
+ResultT = TypeVar("ResultT", bound=GoalEnd)
+
+
+@dataclass(frozen=True, slots=True)
+class _RunningGoal:
+    """A goal whose result a coroutine of the executor awaits."""
+
+    handle: ServerGoalHandle
+    ended: Future
+
+
+class ControllerAction(ABC, Generic[ControllerT, ResultT]):
+    """Passes goals to the controller, and its results to their clients.
+
+    Goals arrive on the executor's thread, of which there must be only one; results arrive on the
+    loop thread. The loop serves each request immediately, so that goals are cancelled and preempted
+    even while the simulation is paused.
+    """
+
+    def __init__(
+        self,
+        controller: ControllerT,
+        node: Node,
+        loop: ControlLoop,
+        executor: Executor,
+        action_type: type[Any],
+        name: str,
+    ) -> None:
+        """Offer the action.
+
+        Args:
+            controller: executes the goals.
+            node: offers the action.
+            loop: runs the controller.
+            executor: spins the node.
+            action_type: class of the action.
+            name: name of the action, such as '~/gripper_cmd'.
+        """
+        self.controller = controller
+        self._loop = loop
+        self._executor = executor
+        self._logger = logging.getLogger(controller.name)
+        self._running: dict[bytes, _RunningGoal] = {}
+        self._idle = threading.Event()
+        self._idle.set()
+        self._server = ActionServer(
+            node,
+            action_type,
+            name,
+            self._await_end,
+            goal_callback=self._answer,
+            handle_accepted_callback=self._start,
+            cancel_callback=self._cancel,
+            result_timeout=RESULT_TIMEOUT_S,
+        )
+
+    @abstractmethod
+    def accepts(self, goal: Any) -> bool:
+        """Return whether to accept a goal; log the reason if not. Executor's thread."""
+
+    @abstractmethod
+    def submit(self, goal_id: bytes, goal: Any) -> ResultT | None:
+        """Start an accepted goal; return its result if it ended immediately.
+
+        Executor's thread.
+        """
+
+    @abstractmethod
+    def result_message(self, result: ResultT) -> Any:
+        """Return the result message for the client. Executor's thread."""
+
+    def wait_for_results(self) -> None:
+        """Wait until the results of all goals have been sent; a control-plane thread."""
+        self._idle.wait(EXECUTOR_TIMEOUT_S)
+        let_executor_answer(self._executor)
+
+    # Loop thread
+
+    def handle_of(self, goal_id: bytes) -> ServerGoalHandle | None:
+        """Return the handle of a goal; None if its client has got a result already.
+
+        That is so for a goal of a restored snapshot.
+        """
+        running = self._running.get(goal_id)
+        return running and running.handle
+
+    def finish(self, goal_id: bytes, result: ResultT) -> None:
+        """End a goal, unless its client has got a result already; any thread."""
+        running = self._running.get(goal_id)
+        if running is not None:
+            settle(running.ended, result, self._executor)
+
+    # Executor's thread
+
+    def destroy(self) -> None:
+        """Withdraw the action."""
+        self._server.destroy()
+
+    def _answer(self, goal: Any) -> GoalResponse:
+        self._logger.info("Received new action goal")
+        return GoalResponse.ACCEPT if self.accepts(goal) else GoalResponse.REJECT
+
+    def _start(self, handle: ServerGoalHandle) -> None:
+        goal_id = bytes(handle.goal_id.uuid)
+        self._idle.clear()
+        self._running[goal_id] = _RunningGoal(handle, Future())
+        handle.execute()
+        result = self.submit(goal_id, handle.request)
+        if result is not None:
+            self.finish(goal_id, result)
+            return
+        self._logger.info("Accepted new action goal")
+        self._loop.call(self.controller.serve_requests)
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        # The handle becomes canceling only after this returns. The goal cannot end earlier, because
+        # its result is processed on this thread too.
+        self._logger.info("Got request to cancel goal")
+        self.controller.cancel_goal(bytes(handle.goal_id.uuid))
+        self._loop.call(self.controller.serve_requests)
+        return CancelResponse.ACCEPT
+
+    async def _await_end(self, handle: ServerGoalHandle) -> Any:
+        goal_id = bytes(handle.goal_id.uuid)
+        result = cast(ResultT, await self._running[goal_id].ended)
+        match result.outcome:
+            case GoalOutcome.SUCCEEDED:
+                handle.succeed()
+            case GoalOutcome.ABORTED:
+                handle.abort()
+            case GoalOutcome.CANCELED:
+                _cancel_by_itself(handle)
+                handle.canceled()
+        del self._running[goal_id]
+        if not self._running:
+            self._idle.set()
+        return self.result_message(result)
+
+
+def _cancel_by_itself(handle: ServerGoalHandle) -> None:
+    """Put a goal into 'canceling' although no client has requested it.
+
+    A goal must pass through that state before it is canceled, and rclpy has no public method with
+    which a server can enter it.
+    """
+    if not handle.is_cancel_requested:
+        handle._update_state(GoalEvent.CANCEL_GOAL)  # pyright: ignore[reportPrivateUsage]

@@ -1,0 +1,79 @@
+"""The ROS half of a controller: its topics, services and actions."""
+
+from abc import ABC, abstractmethod
+from typing import Any, Generic, TypeVar
+
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+
+from arm_control.controllers.controller import Controller
+from arm_control.errors import ControllerError
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.ros_executor_bridge import run_on_executor
+
+ControllerT = TypeVar("ControllerT", bound=Controller[Any])
+
+
+class ControllerAdapter(ABC, Generic[ControllerT]):
+    """Connects a controller's core to its node.
+
+    It is created when the controller is loaded. The methods run on a control-plane thread, never
+    while the controller is active. The end points that they create pass messages to the core on the
+    executor's thread, and publish its results on the loop thread.
+
+    Attributes:
+        controller: the core.
+        node: the controller's node; a single-threaded executor spins it.
+        loop: runs the core.
+    """
+
+    def __init__(self, controller: ControllerT, node: Node, loop: ControlLoop) -> None:
+        self.controller = controller
+        self.node = node
+        self.loop = loop
+
+    @property
+    def executor(self) -> Executor:
+        """The executor that spins the node.
+
+        Raises:
+            ControllerError: no executor spins it yet.
+        """
+        if self.node.executor is None:
+            raise ControllerError(
+                f"no executor spins the node of controller '{self.node.get_name()}'"
+            )
+        return self.node.executor
+
+    @abstractmethod
+    def on_configure(self, parameters: Any) -> None:
+        """Create the end points; the core already has these parameters."""
+
+    @abstractmethod
+    def on_cleanup(self) -> None:
+        """Destroy what `on_configure` created, using `destroy`; may be called more than once."""
+
+    def destroy(self, *end_points: Publisher | Subscription | Service) -> None:
+        """Destroy end points of the node; call it from a thread other than the executor's.
+
+        The executor destroys them itself: it fails if an end point disappears while it collects
+        the entities to wait for.
+        """
+
+        def destroy_all() -> None:
+            for end_point in end_points:
+                if isinstance(end_point, Publisher):
+                    self.node.destroy_publisher(end_point)
+                elif isinstance(end_point, Subscription):
+                    self.node.destroy_subscription(end_point)
+                else:
+                    self.node.destroy_service(end_point)
+
+        executor = self.node.executor
+        if executor is None:
+            destroy_all()
+        elif end_points:
+            run_on_executor(executor, destroy_all)

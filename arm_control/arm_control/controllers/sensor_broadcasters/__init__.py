@@ -1,0 +1,1 @@
+"""Broadcasters of IMU and force-torque sensor readings."""

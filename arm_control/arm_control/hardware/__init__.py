@@ -1,0 +1,1 @@
+"""Hardware components: the driver interface, their description, limits and resources."""

@@ -1,0 +1,1 @@
+"""The control loop: one thread at a steady rate, its clock, its priority and its records."""

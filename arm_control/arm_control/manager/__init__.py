@@ -1,0 +1,1 @@
+"""The controller manager: it loads, switches and updates controllers over the hardware."""

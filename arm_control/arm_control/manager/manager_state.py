@@ -1,0 +1,235 @@
+"""The state of a controller manager: what its next cycle depends on."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager
+from typing import Any
+
+from arm_control.controllers.controller import ChainableController
+from arm_control.errors import ControllerManagerError, StateError
+from arm_control.hardware.command_limits import CommandLimiter
+from arm_control.hardware.resource_manager import ResourceManager
+from arm_control.lifecycle import LifecycleState
+from arm_control.loop.supervision import failure_of
+from arm_control.manager.controller_chain import ControllerChain
+from arm_control.manager.controller_switcher import ControllerSwitcher
+from arm_control.manager.emergency_stop import LATCHED, EmergencyStop
+from arm_control.manager.hardware_lifecycle import HardwareLifecycle
+from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.switch_planner import Strictness, SwitchRequest
+from arm_control.state.encoding import NotPlainError, encode
+
+CONFIGURED = (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
+
+
+class ManagerState:
+    """Saves, restores and resets a manager's controllers and components. Loop thread only."""
+
+    def __init__(
+        self,
+        controllers: dict[str, ManagedController],
+        resources: ResourceManager,
+        limiter: CommandLimiter | None,
+        emergency: EmergencyStop,
+        chain: ControllerChain,
+        switcher: ControllerSwitcher,
+        hardware: HardwareLifecycle,
+        tracking: Callable[[], AbstractContextManager[None]],
+    ) -> None:
+        """Refer to the manager's controllers and components.
+
+        Args:
+            controllers: by name; the manager adds and removes some later.
+            resources: the components.
+            limiter: clamps the commands.
+            emergency: the emergency stop; while it is engaged nothing is saved or restored.
+            chain: the order of the controllers.
+            switcher: activates and deactivates controllers.
+            hardware: runs the transitions of components.
+            tracking: updates the manager afterwards, if anything has changed.
+        """
+        self._controllers = controllers
+        self._resources = resources
+        self._limiter = limiter
+        self._emergency = emergency
+        self._chain = chain
+        self._switcher = switcher
+        self._hardware = hardware
+        self._tracking = tracking
+
+    def save(self) -> dict[str, Any]:
+        """Return the state as plain values, which may share arrays with the manager.
+
+        Raises:
+            StateError: some controllers cannot be saved; the message names all of them.
+        """
+        self._check_released()
+        refused: list[str] = []
+        controllers = {
+            managed.name: _saved(managed, refused) for managed in self._controllers.values()
+        }
+        if refused:
+            raise StateError("; ".join(refused))
+        return {
+            "components": {
+                name: (component.state, component.save_state())
+                for name, component in self._resources.components.items()
+            },
+            "controllers": controllers,
+            "states": self._resources.states,
+            "commands": self._resources.commands,
+            "limits": None if self._limiter is None else self._limiter.save_state(),
+        }
+
+    def check(self, state: Mapping[str, Any]) -> None:
+        """Check that a saved state fits.
+
+        Raises:
+            StateError: it does not; the message says what differs.
+        """
+        self._check_released()
+        present, saved = list(self._resources.components), list(state["components"])
+        if present != saved:
+            raise StateError(
+                f"the snapshot has the hardware components {', '.join(saved) or 'none'}; "
+                f"here are {', '.join(present) or 'none'}"
+            )
+        problems = [
+            problem
+            for name, controller in state["controllers"].items()
+            for problem in self._misfits(name, controller)
+        ]
+        if problems:
+            raise StateError("; ".join(problems))
+
+    def align(self, state: Mapping[str, Any]) -> None:
+        """Bring components and controllers to their life-cycle states in a state that fits.
+
+        Raises:
+            StateError: one refuses its transition.
+        """
+        with self._tracking():
+            self._align(state)
+
+    def load(self, state: Mapping[str, Any]) -> None:
+        """Restore a state for which `align` has been called; nothing is run."""
+        for name, controller in state["controllers"].items():
+            if controller["state"] in CONFIGURED:
+                self._load_controller(self._controllers[name], controller)
+        for name, (_, component) in state["components"].items():
+            self._resources.components[name].load_state(component)
+        self._resources.states[:] = state["states"]
+        self._resources.commands[:] = state["commands"]
+        if self._limiter is not None and state["limits"] is not None:
+            self._limiter.load_state(state["limits"])
+
+    def reset(self) -> None:
+        """Let components and active controllers begin anew, after the simulation was reset.
+
+        Raises:
+            StateError: some controllers refuse; the message names all of them.
+        """
+        for component in self._resources.components.values():
+            component.reset()
+        if self._limiter is not None:
+            self._limiter.restart()
+        active = [c for c in self._controllers.values() if c.is_active and not c.is_halted]
+        reasons = {
+            managed.name: failure_of(
+                managed.controller.on_reset, f"on_reset of controller '{managed.name}'"
+            )
+            for managed in self._chain.from_below(active)
+        }
+        self.restart_cadences()
+        failed = [f"controller '{name}': {reason}" for name, reason in reasons.items() if reason]
+        if failed:
+            raise StateError("; ".join(failed))
+
+    def restart_cadences(self) -> None:
+        """Treat the next cycle as the first of all components and controllers."""
+        for part in (*self._resources.components.values(), *self._controllers.values()):
+            part.restart_cadence()
+
+    def fingerprint(self) -> Iterator[tuple[str, bytes]]:
+        """Yield the parts of the state by name, as bytes that differ if the state does."""
+        yield "commands", self._resources.commands.tobytes()
+        for managed in self._controllers.values():
+            if managed.is_active:
+                yield managed.name, managed.controller.fingerprint()
+
+    def _check_released(self) -> None:
+        if self._emergency.is_engaged:
+            raise StateError(LATCHED)
+
+    def _align(self, state: Mapping[str, Any]) -> None:
+        for name, (target, _) in state["components"].items():
+            if self._resources.components[name].state is not target:
+                try:
+                    self._hardware.set_state(name, target)
+                except ControllerManagerError as error:
+                    raise StateError(f"{error}") from error
+        saved = state["controllers"]
+        active = {name for name in saved if saved[name]["state"] is LifecycleState.ACTIVE}
+        stop = [c.name for c in self._chain.in_order() if c.is_active and c.name not in active]
+        start = [name for name in saved if name in active and not self._controllers[name].is_active]
+        if start or stop:
+            request = SwitchRequest(tuple(start), tuple(stop), Strictness.STRICT)
+            result = self._switcher.switch(request)
+            if not result.ok:
+                raise StateError(f"the snapshot's controllers do not start: {result.message}")
+        # Controllers run in the reverse order of their loading.
+        for name in saved:
+            self._controllers[name] = self._controllers.pop(name)
+
+    def _load_controller(self, managed: ManagedController, saved: Mapping[str, Any]) -> None:
+        managed.load_state(saved["content"])
+        controller = managed.controller
+        if isinstance(controller, ChainableController):
+            controller.references[:], controller.exported_states[:] = saved["exports"]
+
+    def _misfits(self, name: str, saved: Mapping[str, Any]) -> Iterator[str]:
+        managed = self._controllers.get(name)
+        if managed is None:
+            loaded = ", ".join(self._controllers) or "none"
+            yield f"the snapshot has controller '{name}', which is not loaded; loaded: {loaded}"
+        elif managed.type_name != saved["type"]:
+            yield f"controller '{name}' was a {saved['type']} and is a {managed.type_name} now"
+        elif saved["state"] in CONFIGURED and managed.state not in CONFIGURED:
+            yield (
+                f"controller '{name}' was {saved['state'].label} and is {managed.state.label} now; "
+                "configure it first"
+            )
+        elif saved["state"] in CONFIGURED and managed.commands != saved["commands"]:
+            yield (
+                f"controller '{name}' claimed {', '.join(saved['commands']) or 'nothing'} and "
+                f"claims {', '.join(managed.commands) or 'nothing'} now"
+            )
+
+
+def _saved(managed: ManagedController, refused: list[str]) -> dict[str, Any] | None:
+    """Return the state of a controller; add a sentence to `refused` if it cannot be saved."""
+    saved: dict[str, Any] = {
+        "type": managed.type_name,
+        "state": managed.state,
+        "commands": managed.commands,
+    }
+    if managed.state not in CONFIGURED:
+        return saved
+    controller = managed.controller
+    if isinstance(controller, ChainableController):
+        saved["exports"] = (controller.references, controller.exported_states)
+    try:
+        saved["content"] = managed.save_state()
+        encode(saved["content"])
+    except NotPlainError as error:
+        refused.append(
+            f"controller '{managed.name}' cannot be saved: its attribute "
+            f"{error.path.removeprefix('[1].')} {error.reason}; define save_state and load_state, "
+            "or list the attribute in 'transient' if it is not part of the state"
+        )
+    except Exception as error:
+        # A controller is user code and may raise anything.
+        refused.append(
+            f"controller '{managed.name}' cannot be saved: its save_state raised "
+            f"{type(error).__name__}: {error}"
+        )
+    return saved

@@ -1,0 +1,158 @@
+"""Finds the parameters of one controller in the content of a ROS parameter file."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from arm_control.errors import ParameterError
+from arm_node.limited_yaml import YamlError, load_yaml
+from arm_node.user_file import read_text
+
+_PARAMETERS = "ros__parameters"
+_ANY = "/**"
+_MANAGER = "controller_manager"
+
+
+class ParametersByNode:
+    """Parameters in ros2_control's format, by the names of nodes.
+
+    Attributes:
+        source: what they are from, for messages.
+    """
+
+    def __init__(self, content: Mapping[str, Any], source: str) -> None:
+        self.source = source
+        self._content = content
+
+    def given(self, node: str, namespace: str) -> dict[str, Any]:
+        """Return all parameters that apply to a node by their full names, with dots.
+
+        Args:
+            node: name of the node.
+            namespace: its namespace, with the leading slash.
+
+        Raises:
+            ParameterError: an entry for the node has no ros__parameters.
+        """
+        values: dict[str, Any] = {}
+        for entry in reversed([*self._entries(node, namespace)]):
+            values.update(_flat(entry))
+        return values
+
+    def mentions(self, controller: str, namespace: str) -> bool:
+        """Return whether the file has parameters of a controller's own node.
+
+        Raises:
+            ParameterError: see `lookup`.
+        """
+        return any(True for _ in self._entries_of_controller(controller, namespace))
+
+    def lookup(self, controller: str, namespace: str, parameter: str) -> Any:
+        """Return a parameter of a controller, None if the file does not have it.
+
+        It may be under the controller's name, alone or with its namespace or `/**`; under `/**`; or
+        among the manager's parameters, where the controller manager looks. The most specific entry
+        wins.
+
+        Args:
+            controller: name of the controller.
+            namespace: namespace of its node, with the leading slash.
+            parameter: name of the parameter.
+
+        Raises:
+            ParameterError: an entry for the controller has no ros__parameters, or lacks the
+                controller's namespace.
+        """
+        for parameters in self._entries_of_controller(controller, namespace):
+            if parameter in parameters:
+                return parameters[parameter]
+        for of_manager in self._entries(_MANAGER, namespace):
+            entry = of_manager.get(controller)
+            if isinstance(entry, Mapping) and parameter in entry:
+                return entry[parameter]
+        return None
+
+    def own_entry(self, controller: str, namespace: str, parameter: str) -> Any:
+        """Return a parameter from the controller's own entry, None if there is none."""
+        entries = self._entries_by_name(controller, namespace)
+        return next((entry[parameter] for entry in entries if parameter in entry), None)
+
+    def _entries_of_controller(
+        self, controller: str, namespace: str
+    ) -> Iterator[Mapping[str, Any]]:
+        full_name = _full_name(controller, namespace)
+        if (
+            namespace != "/"
+            and controller in self._content
+            and not any(True for _ in self._entries_by_name(controller, namespace))
+        ):
+            raise ParameterError(
+                f"{self.source} names '{controller}' without its namespace: "
+                f"write '{full_name}' or '{_ANY}/{controller}'"
+            )
+        return self._entries(controller, namespace)
+
+    def _entries(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
+        """Yield the parameters that apply to a node, the most specific ones first."""
+        yield from self._entries_by_name(node, namespace)
+        every = self._content.get(_ANY)
+        if isinstance(every, Mapping) and _PARAMETERS in every:
+            yield self._parameters(every, _ANY)
+
+    def _entries_by_name(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
+        full_name = _full_name(node, namespace)
+        bare = (node,) if namespace == "/" else ()
+        every = self._content.get(_ANY)
+        for place, where, keys in (
+            (self._content, "", (full_name, *bare, f"{_ANY}{full_name}", f"{_ANY}/{node}")),
+            (every if isinstance(every, Mapping) else {}, f"{_ANY}: ", (full_name, node)),
+        ):
+            for key in dict.fromkeys(keys):
+                if key in place:
+                    yield self._parameters(place[key], f"{where}{key}")
+
+    def _parameters(self, entry: object, key: str) -> Mapping[str, Any]:
+        parameters = entry.get(_PARAMETERS) if isinstance(entry, Mapping) else None
+        if not isinstance(parameters, Mapping):
+            raise ParameterError(f"{self.source}: '{key}' has no mapping {_PARAMETERS}")
+        return parameters
+
+
+class ControllerParameterFile(ParametersByNode):
+    """A parameter file in ros2_control's format.
+
+    Attributes:
+        path: its absolute path.
+    """
+
+    def __init__(self, path: str) -> None:
+        """Read the file.
+
+        Raises:
+            ParameterError: the file does not exist, or is not a YAML mapping.
+        """
+        self.path = Path(path).absolute()
+        source = f"parameter file '{self.path}'"
+        try:
+            content = load_yaml(read_text(self.path))
+        except YamlError as error:
+            raise ParameterError(f"{source} is not YAML: {error}") from error
+        except (OSError, UnicodeDecodeError) as error:
+            reason = error.strerror if isinstance(error, OSError) else error
+            raise ParameterError(f"cannot read {source}: {reason}") from error
+        if not isinstance(content, dict):
+            raise ParameterError(f"{source} contains no nodes")
+        super().__init__(cast(dict[str, Any], content), source)
+
+
+def _flat(values: Mapping[Any, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the values of nested mappings by their full names."""
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def _full_name(node: str, namespace: str) -> str:
+    return f"{namespace.rstrip('/')}/{node}"

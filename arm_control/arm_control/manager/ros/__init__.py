@@ -1,0 +1,1 @@
+"""The ROS side of the controller manager: its node, services, topics and process."""

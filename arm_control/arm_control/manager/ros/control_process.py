@@ -1,0 +1,173 @@
+"""Assembles a stand-alone controller manager: description, hardware, manager, loop, services.
+
+At the start it waits for the description, then creates everything in the main thread. At the end it
+stops the services, shuts the controllers down on the loop, joins the loop, and only then destroys
+the nodes.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+
+from rclpy.executors import SingleThreadedExecutor
+
+from arm_control.errors import ArmControlError, HardwareInfoError
+from arm_control.hardware.info import parse_hardware_info
+from arm_control.loop.clock import MonotonicClock, SystemClock, Throttle
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.pacer import Pacer
+from arm_control.manager.configured_manager import bring_up, configured_manager
+from arm_control.manager.control_cycle import ControlCycle
+from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.registry import create_hardware
+from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
+from arm_control.manager.ros.description_topic import DescriptionTopic
+from arm_control.manager.ros.simulated_clock import DeadlineClock, SimulatedClock
+from arm_description.errors import DescriptionError
+from arm_description.urdf.document import UrdfDocument
+from arm_node.process import EXIT_FAILED, NodeProcess
+from arm_node.workarounds.discovery import prompt_discovery
+
+LISTENING_S = 0.1
+REMINDER_INTERVAL_S = 1.0
+LOOP_JOIN_TIMEOUT_S = 5.0
+CATCH_UP_PERIODS = 0.75
+"""A late cycle is caught up, a missed one is skipped: commands in a burst are of no use."""
+
+logger = logging.getLogger("controller_manager")
+
+
+@contextmanager
+def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[None]:
+    """Run a controller manager for the hardware of the first usable description.
+
+    Raises:
+        ArmControlError: a parameter is invalid, or hardware did not reach its initial state.
+    """
+    with ExitStack() as nodes, ExitStack() as ending:
+        # Destroying a node while the executor uses it crashes the process.
+        ending.callback(process.join_spinning)
+        with prompt_discovery():
+            node = ControllerManagerNode(arguments)
+        own = nodes.enter_context(ExitStack())
+        own.callback(node.destroy_node)
+        descriptions = DescriptionTopic(node)
+        found = _wait_for_robot(process, node, descriptions)
+        if found is not None:
+            description, manager = found
+            with ExitStack() as started:
+                started.callback(manager.shutdown)
+                bring_up(manager, node.settings)
+                logger.info("update rate is %d Hz", manager.update_rate_hz)
+                loop = _loop(process, node, manager, nodes)
+                started.pop_all()
+            ending.callback(loop.join, LOOP_JOIN_TIMEOUT_S)
+            ending.callback(loop.stop)
+            server = ControllerManagerServer(
+                node,
+                manager,
+                loop,
+                process.executor,
+                robot_description=description,
+                descriptions=descriptions,
+            )
+            own.pop_all()
+            own.callback(server.destroy_nodes)
+            ending.callback(server.shutdown)
+        yield
+
+
+def _wait_for_robot(
+    process: NodeProcess, node: ControllerManagerNode, descriptions: DescriptionTopic
+) -> tuple[UrdfDocument, ControllerManager] | None:
+    """Return the first usable description and its manager; None if the process must end."""
+    description = _description_parameter(node)
+    reminder = Throttle(REMINDER_INTERVAL_S)
+    reminder.permits()  # The first reminder waits, because the description may be on its way.
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    logger.info("Subscribing to '%s' topic for robot description.", descriptions.name)
+    try:
+        while not process.stopping:
+            if description is not None:
+                found = _manager(description, node)
+                if found is not None:
+                    descriptions.use(description)
+                    return found
+            elif reminder.permits():
+                logger.warning(
+                    "Waiting for data on 'robot_description' topic to finish initialization"
+                )
+            executor.spin_once(timeout_sec=LISTENING_S)
+            description = descriptions.take()
+        return None
+    finally:
+        executor.remove_node(node)
+        executor.shutdown()
+
+
+def _description_parameter(node: ControllerManagerNode) -> str | None:
+    given = node.given_parameters().get("robot_description")
+    if not given:
+        return None
+    logger.warning(
+        "[Deprecated] Passing the robot description parameter directly to the control_manager node "
+        "is deprecated. Use the 'robot_description' topic from 'robot_state_publisher' instead."
+    )
+    return str(given)
+
+
+def _manager(
+    description: str, node: ControllerManagerNode
+) -> tuple[UrdfDocument, ControllerManager] | None:
+    """Create a manager for a description's hardware; log the reason if that fails."""
+    try:
+        document = UrdfDocument(description)
+        infos = parse_hardware_info(document)
+        if not infos:
+            raise HardwareInfoError("it has no <ros2_control> block, which describes the hardware")
+        hardware = [create_hardware(info) for info in infos]
+        name = node.get_fully_qualified_name()
+        return document, configured_manager(hardware, node.settings, document, name)
+    except (ArmControlError, DescriptionError) as error:
+        logger.error(
+            "The robot description cannot be used: %s. Correct it and publish it again.", error
+        )
+        return None
+
+
+def _loop(
+    process: NodeProcess, node: ControllerManagerNode, manager: ControllerManager, nodes: ExitStack
+) -> ControlLoop:
+    """Start the loop; with simulation time it is paused until the first /clock message."""
+    simulated = SimulatedClock() if node.get_parameter("use_sim_time").value else None
+    period_s = 1.0 / manager.update_rate_hz
+    pacer = Pacer(
+        period_s,
+        clock=DeadlineClock(simulated) if simulated else None,
+        catch_up_s=CATCH_UP_PERIODS * period_s,
+        print_warnings=node.settings.overruns.print_warnings,
+    )
+    cycle = ControlCycle(manager, simulated or SystemClock(), simulated or MonotonicClock())
+    loop = ControlLoop(
+        cycle,
+        pacer,
+        on_failure=lambda _: process.stop(EXIT_FAILED),
+        priority=node.loop_priority(),
+    )
+    loop.start(paused=simulated is not None)
+    if simulated is not None:
+        clock_node = simulated.listen(
+            node,
+            process.executor,
+            on_start=loop.resume,
+            on_advance=lambda: loop.call(_wake),
+            on_set_back=lambda: loop.call(pacer.restart),
+        )
+        nodes.callback(clock_node.destroy_node)
+    return loop
+
+
+def _wake() -> None:
+    """Do nothing; the call itself wakes the loop, which then reads the clock."""

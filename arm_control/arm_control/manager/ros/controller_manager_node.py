@@ -1,0 +1,132 @@
+"""The node /controller_manager and its parameters."""
+
+import dataclasses
+import logging
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
+
+from builtin_interfaces.msg import Time
+from rclpy.parameter import Parameter
+
+from arm_control.controllers.ros_times import time_message
+from arm_control.loop.clock import Clock
+from arm_control.loop.priority import LoopPriority
+from arm_control.manager.node_arguments import manager_arguments
+from arm_control.manager.ros.health_publisher import HealthPublisher
+from arm_control.manager.ros.parameter_node import ParameterNode
+from arm_control.manager.settings import ManagerSettings
+from arm_control.manager.switch_planner import Strictness
+from arm_control.parameters import ParameterSpec, build_parameters, specs_of
+from arm_node.logger_levels import LoggerLevelServices
+
+MIN_SIMILARITY = 0.85
+"""Similarity from which a parameter name counts as a mistyped one (difflib's ratio)."""
+
+_STRICTNESS = {"best_effort": Strictness.BEST_EFFORT, "strict": Strictness.STRICT}
+
+
+class ControllerManagerNode(ParameterNode):
+    """The manager's node: its own parameters, and the parameters that describe controllers.
+
+    It is created before the hardware, which needs the update rate; `ControllerManagerServer` then
+    adds the services.
+
+    Attributes:
+        arguments: ROS arguments of the process.
+        settings: the node's current parameters; replaced as a whole, any thread may read them.
+        health: publishes /diagnostics as long as the node exists.
+    """
+
+    def __init__(
+        self,
+        arguments: Sequence[str] | None = None,
+        *,
+        name: str = "controller_manager",
+        namespace: str = "",
+        clock: Clock | None = None,
+    ) -> None:
+        """Make the node.
+
+        Args:
+            arguments: command line of the process; default sys.argv.
+            name: name of the node.
+            namespace: namespace of the node, its controllers and components.
+            clock: clock for its stamps, which any thread may read; default the node's clock. A
+                process that generates simulation time passes its own clock instead of
+                subscribing to /clock.
+
+        Raises:
+            ParameterError: a parameter has the wrong type or value.
+        """
+        self.arguments = tuple(sys.argv if arguments is None else arguments)
+        self._stamp_clock = clock
+        super().__init__(
+            name,
+            namespace=namespace,
+            cli_args=manager_arguments(self.arguments),
+            use_global_arguments=False,
+            allow_undeclared_parameters=True,
+        )
+        LoggerLevelServices(self)
+        self._specs = tuple(self._adapted(specs_of(ManagerSettings)))
+        self.declare_specs(self._specs)
+        self._warn_of_mistyped()
+        self.declare_rest()
+        self.settings = self._read_settings()
+        self.add_post_set_parameters_callback(self._take)
+        self.health = HealthPublisher(self, lambda: self.settings, self.stamp)
+        self.health.start()
+
+    def destroy_node(self) -> None:
+        """End the publishing, then the node."""
+        self.health.stop()
+        super().destroy_node()
+
+    def default_strictness(self) -> Strictness:
+        """Return the strictness of a switch request that does not set it."""
+        return _STRICTNESS[self.settings.defaults.switch_controller.strictness]
+
+    def loop_priority(self) -> LoopPriority:
+        """Return the priority of the loop that updates the controllers."""
+        warn_if_denied = "thread_priority" in self.given_parameters()
+        return LoopPriority(self.settings.thread_priority, warn_if_denied=warn_if_denied)
+
+    def stamp(self) -> Time:
+        """Return the time for a message's header; any thread."""
+        if self._stamp_clock is None:
+            return self.get_clock().now().to_msg()
+        return time_message(self._stamp_clock.now_s())
+
+    def _adapted(self, specs: Iterable[ParameterSpec]) -> Iterator[ParameterSpec]:
+        """Yield the parameters, with defaults that depend on other parameters."""
+        for spec in specs:
+            if spec.name == "overruns.print_warnings":
+                # The simulation, not this process, determines the pace of simulation time.
+                yield dataclasses.replace(
+                    spec, default=not self.get_parameter("use_sim_time").value
+                )
+            else:
+                yield spec
+
+    def _warn_of_mistyped(self) -> None:
+        """Warn of given parameters whose names resemble one of the manager's.
+
+        Any other one may belong to a controller or to ros2_control's own manager.
+        """
+        own = [spec.name for spec in self._specs]
+        for name in set(self.given_parameters()).difference(own):
+            for near in get_close_matches(name, own, 1, MIN_SIMILARITY):
+                logging.getLogger(self.get_name()).warning(
+                    "parameter '%s' is not known to %s and has no effect; did you mean '%s'?",
+                    name,
+                    self.get_name(),
+                    near,
+                )
+
+    def _read_settings(self) -> ManagerSettings:
+        return build_parameters(ManagerSettings, self.values_of(self._specs))
+
+    def _take(self, changed: Sequence[Parameter]) -> None:
+        """Apply the new values."""
+        self.settings = self._read_settings()

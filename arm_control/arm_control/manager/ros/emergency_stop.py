@@ -1,0 +1,102 @@
+"""The emergency stop over ROS: a service that stops and releases, and topics."""
+
+import logging
+from collections.abc import Sequence
+from typing import Any
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool
+
+from arm_control.errors import LoopStoppedError
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.ros_executor_bridge import call_on_loop
+from arm_control.manager.controller_manager import ControllerManager
+
+NAME = "emergency_stop"
+DEPTH = 10
+LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+logger = logging.getLogger(__name__)
+
+
+class EmergencyStopServer:
+    """Offers the service emergency_stop and the topics of the same name in a node's namespace.
+
+    The service stops with true and releases with false. A true on the topic stops as well; a false
+    has no effect there, so that no stream of messages releases a stop by accident. The topic
+    emergency_stop/active tells everybody, also those who come later, whether all is stopped.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        executor: Executor,
+        loop: ControlLoop,
+        managers: Sequence[ControllerManager],
+    ) -> None:
+        """Offer them.
+
+        Args:
+            node: gets the end points.
+            executor: spins the node; the callbacks never block it.
+            loop: runs the managers.
+            managers: the managers to stop together; the loop is running, paused or not.
+        """
+        self._executor = executor
+        self._loop = loop
+        self._managers = tuple(managers)
+        group = MutuallyExclusiveCallbackGroup()
+        self._active = node.create_publisher(Bool, f"{NAME}/active", LATCHED_QOS)
+        self._published: bool | None = None
+        # rclpy's types know no coroutines.
+        answer: Any = self._answer
+        node.create_service(SetBool, NAME, answer, callback_group=group)
+        node.create_subscription(Bool, NAME, self._take, DEPTH, callback_group=group)
+        loop.call(self._observe).result()
+
+    # Loop thread
+
+    def controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """Do nothing: transitions change no stop."""
+
+    def activity_changed(self) -> None:
+        """Publish whether everything is stopped, if that has changed."""
+        stopped = all(manager.emergency_stopped for manager in self._managers)
+        if stopped is not self._published:
+            self._published = stopped
+            self._active.publish(Bool(data=stopped))
+
+    def _observe(self) -> None:
+        for manager in self._managers:
+            manager.add_observer(self)
+        self.activity_changed()
+
+    def _set(self, engaged: bool) -> bool:
+        """Stop or release all; return whether that changed any."""
+        return any([manager.set_emergency_stop(engaged) for manager in self._managers])
+
+    # Executor's thread
+
+    async def _answer(self, request: SetBool.Request, response: SetBool.Response) -> Any:
+        engaged = request.data
+        try:
+            changed = await call_on_loop(self._loop, lambda: self._set(engaged), self._executor)
+        except LoopStoppedError as error:
+            response.message = str(error)
+            return response
+        response.success = True
+        state = "stopped" if engaged else "released"
+        response.message = state if changed else f"already {state}"
+        return response
+
+    def _take(self, message: Bool) -> None:
+        if message.data:
+            # Nobody waits for the result; what goes wrong is in the log.
+            self._loop.call(lambda: self._set(True))

@@ -1,0 +1,27 @@
+"""The executable `ros2_control_node`: a controller manager for a description's hardware."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from arm_control.errors import ArmControlError
+from arm_node.process import NodeProcess, run_process
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the controller manager until it is told to stop; return the exit code."""
+    arguments = list(sys.argv if argv is None else argv)
+
+    @contextmanager
+    def application(process: NodeProcess) -> Iterator[None]:
+        # Imported after the environment is prepared, because message packages are found through it.
+        from arm_control.manager.ros.control_process import control_process
+
+        with control_process(process, arguments):
+            yield
+
+    return run_process(application, arguments, (ArmControlError,))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

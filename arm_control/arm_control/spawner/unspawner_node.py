@@ -1,0 +1,32 @@
+"""The executable `unspawner`: deactivates and unloads controllers."""
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from arm_control.manager.node_arguments import split_ros_arguments
+from arm_control.spawner.command_line import parse_unspawner_options
+from arm_control.spawner.ros_manager_task import run_manager_task
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from arm_node.process import NodeProcess
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run an unspawner; return 0, 1 if a controller was not unloaded, or 2 for bad arguments."""
+    program, *arguments = sys.argv if argv is None else argv
+    own, ros = split_ros_arguments(arguments)
+    options = parse_unspawner_options(own)
+
+    def task(node: "Node", process: "NodeProcess") -> int:
+        from arm_control.spawner.ros_unspawner import unspawn
+
+        return unspawn(node, process, options)
+
+    return run_manager_task(f"unspawner_{options.names[0]}", task, [program, *ros])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

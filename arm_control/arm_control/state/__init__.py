@@ -1,0 +1,1 @@
+"""The state of controllers and drivers as plain values, and its bytes."""

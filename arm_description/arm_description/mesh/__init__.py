@@ -1,0 +1,1 @@
+"""Reads mesh files as triangles, and refuses broken or far too large ones early."""

@@ -1,0 +1,77 @@
+"""Checks a COLLADA file before trimesh reads it: its unit, and how much it draws."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import lxml.etree as etree
+import numpy as np
+
+from arm_description.errors import MeshFileError
+from arm_description.mesh.scene_graph import SceneNode, check_scene
+from arm_node.user_file import open_file
+
+MAX_TEXT = 10_000_000
+"""Bytes that libxml2 accepts in one element, unless told to accept any size."""
+
+
+def read_collada_unit(path: Path) -> float:
+    """Return the length of a file's unit in m, because trimesh ignores COLLADA's <unit>.
+
+    Raises:
+        MeshFileError: the file is not XML, or has a DOCTYPE, an invalid unit, or nodes that use
+            each other without bound.
+    """
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=path.stat().st_size > MAX_TEXT,
+    )
+    try:
+        with open_file(path) as file:
+            document = etree.parse(file, parser)
+    except etree.XMLSyntaxError as error:
+        raise MeshFileError(f"it is not XML: {error.msg}") from error
+    if document.docinfo.internalDTD is not None:
+        raise MeshFileError("it has a DOCTYPE, which is not accepted; remove it")
+    root = document.getroot()
+    _check_instances(root)
+    return _unit(root)
+
+
+def _unit(root: etree._Element) -> float:
+    text = next((unit.get("meter") for unit in root.iterfind("{*}asset/{*}unit")), None)
+    try:
+        unit = 1.0 if text is None else float(text)
+    except ValueError as error:
+        raise MeshFileError(f"its <unit> is not a number: {error}") from error
+    if not (np.isfinite(unit) and unit > 0):
+        raise MeshFileError(f"its <unit> of {unit:g} m is not above 0")
+    return unit
+
+
+def _check_instances(root: etree._Element) -> None:
+    nodes = {f"#{node.get('id')}": node for node in root.iter("{*}node") if node.get("id")}
+    corners = {f"#{g.get('id')}": _corners(g) for g in root.iter("{*}geometry")}
+    scenes = {f"scene {n}": scene for n, scene in enumerate(root.iter("{*}visual_scene"))}
+
+    def find(name: str) -> SceneNode | None:
+        element = scenes[name] if name in scenes else nodes.get(name)
+        return None if element is None else _scene_node(element, corners)
+
+    check_scene(scenes, find)
+
+
+def _scene_node(element: etree._Element, corners: Mapping[str, int]) -> SceneNode:
+    """Return what an element and the elements within it use."""
+    drawn = list(element.iter("{*}instance_geometry", "{*}instance_controller"))
+    return SceneNode(
+        len(drawn),
+        tuple(used.get("url", "") for used in element.iter("{*}instance_node")),
+        sum(corners.get(geometry.get("url", ""), 0) for geometry in drawn),
+    )
+
+
+def _corners(geometry: etree._Element) -> int:
+    """Estimate how many corners a geometry's faces have: one digit and one blank each."""
+    return sum(len(indices.text or "") for indices in geometry.iter("{*}p")) // 2

@@ -1,0 +1,133 @@
+"""Reads mesh files of every kind that a description may name.
+
+STL files have their own reader. trimesh reads the others: .obj .dae .glb .gltf .ply .off .3mf.
+"""
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.errors import MeshFileError
+from arm_description.mesh.collada import read_collada_unit
+from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
+from arm_description.mesh.gltf import check_gltf
+from arm_description.mesh.packed import check_packed
+from arm_description.mesh.stl import read_stl
+from arm_node.user_file import check_file, read_bytes
+
+COLLADA_SUFFIX = ".dae"
+CHECKS = {".gltf": check_gltf, ".glb": check_gltf, ".3mf": check_packed}
+"""Checks before trimesh reads a file."""
+
+
+def read_scene(path: Path) -> tuple[MeshData, ...]:
+    """Return the parts of a mesh file in m, one for each material.
+
+    Raises:
+        MeshFileError: trimesh cannot read the file, the file would draw too much, or it has no
+            triangles.
+    """
+    suffix = path.suffix.lower()
+    unit = read_collada_unit(path) if suffix == COLLADA_SUFFIX else 1.0
+    if suffix in CHECKS:
+        CHECKS[suffix](path)
+    content = io.BytesIO(read_bytes(path, LARGEST_BYTES))
+    # trimesh takes half a second to import, and STL files do not need it.
+    import trimesh
+
+    from arm_description.mesh.side_files import SideFiles
+
+    try:
+        scene = trimesh.load_scene(
+            content,
+            file_type=suffix.removeprefix("."),
+            resolver=SideFiles(path),
+            process=False,
+            group_material=True,
+        )
+        parts = tuple(
+            _part(mesh, transform, unit)
+            for mesh, transform in _placed(scene)
+            if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)
+        )
+    except Exception as error:
+        # Each of trimesh's loaders raises its own exceptions, and any of them for a broken file.
+        raise MeshFileError(f"{type(error).__name__}: {error}") from error
+    if not parts:
+        raise MeshFileError("no triangles in it")
+    return parts
+
+
+def _placed(scene: Any) -> Iterator[tuple[Any, NDArray[np.float64]]]:
+    """Yield each geometry of a trimesh scene and where it stands.
+
+    `scene.dump()` copies each mesh, and the copy of one with coloured faces needs SciPy.
+    """
+    for node in scene.graph.nodes_geometry:
+        transform, geometry = scene.graph[node]
+        yield scene.geometry[geometry], transform
+
+
+def _part(mesh: Any, transform: NDArray[np.float64], unit: float) -> MeshData:
+    rotation, translation = transform[:3, :3], transform[:3, 3]
+    vertices = np.asarray(mesh.vertices, dtype=np.float64) @ rotation.T + translation
+    faces = np.asarray(mesh.faces, dtype=np.int32)
+    if np.linalg.det(rotation) < 0.0:
+        # A mirror image is turned inside out.
+        faces = faces[:, ::-1]
+    return MeshData(vertices * unit, faces, _color(mesh.visual))
+
+
+def _color(visual: Any) -> Color | None:
+    material = getattr(visual, "material", None)
+    if material is not None:
+        rgba = np.asarray(material.main_color, dtype=np.float64) / 255
+    elif getattr(visual, "defined", False):
+        rgba = np.asarray(visual.main_color, dtype=np.float64) / 255
+    else:
+        return None
+    return (float(rgba[0]), float(rgba[1]), float(rgba[2]), float(rgba[3]))
+
+
+STL_SUFFIX = ".stl"
+PACKED_SUFFIX = ".3mf"
+SCENE_SUFFIXES = (".obj", ".dae", ".glb", ".gltf", ".ply", ".off", PACKED_SUFFIX)
+
+
+def check_mesh_file(path: Path) -> None:
+    """Refuse anything that is not a mesh before it is read: devices, folders, other files.
+
+    Raises:
+        MeshFileError: it is not a mesh; the message says why.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in (STL_SUFFIX, *SCENE_SUFFIXES):
+        raise MeshFileError(f"'{suffix}' is not one of {STL_SUFFIX}, {', '.join(SCENE_SUFFIXES)}")
+    try:
+        check_file(path, LARGEST_BYTES)
+    except (OSError, ValueError) as error:
+        raise MeshFileError(str(error)) from error
+    if suffix == PACKED_SUFFIX and (size := _packed_bytes(path)) > LARGEST_BYTES:
+        raise MeshFileError(f"it unpacks to {size} bytes; at most {LARGEST_BYTES} are read")
+
+
+def read_mesh_file(path: Path) -> tuple[MeshData, ...]:
+    """Return the parts of a file that `check_mesh_file` allows, in m, one for each material.
+
+    Raises:
+        MeshFileError: the file is broken, or has no triangles.
+    """
+    if path.suffix.lower() == STL_SUFFIX:
+        return (read_stl(read_bytes(path, LARGEST_BYTES)),)
+    return read_scene(path)
+
+
+def _packed_bytes(path: Path) -> int:
+    # Other meshes do not need zipfile and lxml.
+    from arm_description.mesh.packed import unpacked_bytes
+
+    return unpacked_bytes(path)

@@ -1,0 +1,83 @@
+"""Checks a 3MF file before trimesh reads it: how large it is, and how much it draws."""
+
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+from typing import IO
+
+import lxml.etree as etree
+
+from arm_description.errors import MeshFileError
+from arm_description.mesh.scene_graph import SceneNode, check_scene
+
+MODEL = "3d/3dmodel.model"
+MAX_TEXT = 10_000_000
+"""Bytes that libxml2 accepts in one element, unless told to accept any size."""
+EXTERNAL = SceneNode(1, ())
+BROKEN = (
+    *(zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError),
+    *(LookupError, struct.error, etree.LxmlError),
+)
+"""Exceptions of zipfile and lxml for broken, encrypted and unknown content.
+
+RuntimeError includes NotImplementedError, for unknown compression methods and ZIP versions.
+"""
+
+
+def unpacked_bytes(path: Path) -> int:
+    """Return the unpacked size of a ZIP file, which may be a thousand times its own size.
+
+    Raises:
+        MeshFileError: it is not a ZIP file, or of an unknown kind.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return sum(entry.file_size for entry in archive.infolist())
+    except BROKEN as error:
+        raise MeshFileError(f"it is not a ZIP file, as 3MF files are: {error}") from error
+
+
+def check_packed(path: Path) -> None:
+    """Refuse a .3mf file that is not 3MF, or that takes too much time or memory.
+
+    Raises:
+        MeshFileError: the file is refused.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            name = next((n for n in archive.namelist() if MODEL in n.lower()), None)
+            if name is None:
+                raise MeshFileError(f"it is not 3MF: it does not contain {MODEL}")
+            is_large = archive.getinfo(name).file_size > MAX_TEXT
+            with archive.open(name) as model:
+                objects, items = _read(model, is_large)
+    except BROKEN as error:
+        raise MeshFileError(f"it is not 3MF: {error}") from error
+    # Objects that are not in the model are in other files of the archive, one mesh each.
+    check_scene(items, lambda name: objects.get(name, EXTERNAL))
+
+
+def _read(model: IO[bytes], is_large: bool) -> tuple[dict[str, SceneNode], list[str]]:
+    """Return the objects by id, and the ids of those that are built."""
+    objects: dict[str, SceneNode] = {}
+    items: list[str] = []
+    elements = etree.iterparse(
+        model,
+        events=("end",),
+        tag=("{*}object", "{*}item"),
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=is_large,
+    )
+    for _, element in elements:
+        if etree.QName(element).localname == "item":
+            items.append(element.get("objectid", ""))
+            continue
+        triangles = sum(1 for _ in element.iter("{*}triangle"))
+        used = tuple(part.get("objectid", "") for part in element.iter("{*}component"))
+        meshes = sum(1 for _ in element.iter("{*}mesh"))
+        objects[element.get("id", "")] = SceneNode(meshes, used, 3 * triangles)
+        element.clear()
+    return objects, items

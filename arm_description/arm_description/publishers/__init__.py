@@ -1,0 +1,1 @@
+"""The nodes robot_state_publisher and joint_state_publisher; only `ros_*` imports ROS."""

@@ -1,0 +1,273 @@
+"""The node robot_state_publisher: publishes /tf and /tf_static from joint states and a URDF."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from geometry_msgs.msg import TransformStamped
+from numpy.typing import NDArray
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, qos_profile_sensor_data
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+
+from arm_description.errors import DescriptionError
+from arm_description.kinematics.transform_tree import Frame, Motion, TransformTree
+from arm_description.publishers.state_publisher_settings import (
+    StatePublisherSettings,
+    read_frequency,
+)
+from arm_description.publishers.state_throttle import StateThrottle
+from arm_description.urdf.parser import parse_urdf
+from arm_node.executor_thread import ExecutorThread
+from arm_node.names import listing
+from arm_node.parameter_values import read_flag, read_text, wanted_by
+from arm_node.parameters import declare_untyped
+from arm_node.printable import printable
+from arm_node.workarounds.joint_state_encoding import (
+    NANOSECONDS,
+    EncodingError,
+    JointPositions,
+    read_joint_state,
+)
+from arm_node.workarounds.message_template import MessageTemplate
+from arm_node.workarounds.stamp_clock import StampClock
+
+
+class _TransformPublisher:
+    """Publishes a TFMessage with constant frames. One thread at a time."""
+
+    def __init__(self, publisher: Publisher, frames: Sequence[Frame], prefix: str) -> None:
+        """Create the message template.
+
+        Args:
+            publisher: publishes TFMessage.
+            frames: child frames and their parents.
+            prefix: prefix of every frame's name.
+        """
+        self._publisher = publisher
+        self._template = MessageTemplate(
+            TFMessage(transforms=[_transform_stamped(frame, prefix) for frame in frames])
+        )
+        self._where = self._template.indices("transforms[*].transform")
+
+    def publish(self, transforms: NDArray[np.float64], stamp_ns: int) -> None:
+        """Publish (m, 7): x, y, z in m and the quaternion x, y, z, w of every frame."""
+        self._template.set_stamps(stamp_ns)
+        self._template.float64[self._where] = transforms.ravel()
+        self._template.publish(self._publisher)
+
+
+def _transform_stamped(frame: Frame, prefix: str) -> TransformStamped:
+    message = TransformStamped()
+    message.header.frame_id = prefix + frame.parent
+    message.child_frame_id = prefix + frame.child
+    return message
+
+
+LOG_INTERVAL_S = 5.0
+MAX_GROUPS = 32
+"""Maximum sets of joint names whose message templates are kept."""
+
+_TF_QOS = QoSProfile(depth=100)
+_LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_PARAMETERS = {
+    "robot_description": ("", read_text, "the robot's URDF"),
+    "publish_frequency": (20.0, read_frequency, "highest frequency of /tf in Hz; 0 for no limit"),
+    "frame_prefix": ("", read_text, "prefix of the name of every frame, such as left/"),
+    "ignore_timestamp": (
+        False,
+        read_flag,
+        "whether joint states with old stamps are published as well",
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _TransformGroup:
+    """The transforms of joint states that name the same joints."""
+
+    names: tuple[str, ...]
+    motion: Motion
+    publisher: _TransformPublisher
+
+
+class RobotStatePublisher(Node):
+    """Publishes the poses of the links; every callback runs in the executor's thread.
+
+    Raises:
+        SettingsError: a parameter is invalid, for example an empty robot_description.
+        XmlError, UrdfError: the description is not a robot.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("robot_state_publisher")
+        self._stamp_clock = StampClock(self)
+        for name, (default, read, description) in _PARAMETERS.items():
+            declare_untyped(self, name, default, description, wanted_by(read), read_only=False)
+        self._settings = self._checked(())
+        self._tree = TransformTree(parse_urdf(self._settings.robot_description))
+        self._throttle = StateThrottle(self._settings.publish_frequency_hz)
+        self._groups: dict[tuple[str, ...], _TransformGroup] = {}
+        self._description_publisher = self.create_publisher(
+            String, "robot_description", _LATCHED_QOS
+        )
+        policies = (QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
+        self._static_publisher = self.create_publisher(
+            TFMessage,
+            "/tf_static",
+            _LATCHED_QOS,
+            qos_overriding_options=QoSOverridingOptions(policies),
+        )
+        self._tf_publisher = self.create_publisher(
+            TFMessage,
+            "/tf",
+            _TF_QOS,
+            qos_overriding_options=QoSOverridingOptions((*policies, QoSPolicyKind.DURABILITY)),
+        )
+        self.create_subscription(
+            JointState,
+            "joint_states",
+            self._on_joint_state,
+            qos_profile_sensor_data,
+            raw=True,
+            qos_overriding_options=QoSOverridingOptions(policies),
+        )
+        # After all declarations, because the callbacks would also receive those of QoS overrides.
+        self.add_on_set_parameters_callback(self._refuse_or_accept)
+        self.add_post_set_parameters_callback(self._take_parameters)
+        self._publish_description()
+        self._publish_static()
+
+    def _checked(self, changes: Sequence[Parameter]) -> StatePublisherSettings:
+        values = {name: self.get_parameter(name).value for name in _PARAMETERS}
+        values.update((change.name, change.value) for change in changes)
+        return StatePublisherSettings.from_parameters(values)
+
+    def _refuse_or_accept(self, changes: list[Parameter]) -> SetParametersResult:
+        try:
+            settings = self._checked(changes)
+            if settings.robot_description != self._settings.robot_description:
+                parse_urdf(settings.robot_description)
+        except DescriptionError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _take_parameters(self, _changes: list[Parameter]) -> None:
+        before, self._settings = self._settings, self._checked(())
+        self._throttle.set_frequency(self._settings.publish_frequency_hz)
+        if self._settings.robot_description != before.robot_description:
+            self._tree = TransformTree(parse_urdf(self._settings.robot_description))
+            self._publish_description()
+        elif self._settings.frame_prefix == before.frame_prefix:
+            return
+        self._groups.clear()
+        self._publish_static()
+
+    def _publish_description(self) -> None:
+        self._description_publisher.publish(String(data=self._settings.robot_description))
+
+    def _publish_static(self) -> None:
+        # One message with all frames, because late subscribers get only the latest message.
+        _TransformPublisher(
+            self._static_publisher, self._tree.static_frames, self._settings.frame_prefix
+        ).publish(self._tree.static_transforms, self._now_ns())
+
+    def _now_ns(self) -> int:
+        return self.get_clock().now().nanoseconds
+
+    def _on_joint_state(self, data: bytes) -> None:
+        try:
+            state = read_joint_state(data)
+        except EncodingError as error:
+            self._report(f"a JointState whose bytes cannot be read: {error}")
+            return
+        if len(state.names) != len(state.positions):
+            self._report_sizes(state)
+            return
+        if state.stamp_ns < 0:
+            stamp_s = state.stamp_ns / NANOSECONDS
+            about = f"a JointState about {listing(state.names)}"
+            self._report(f"{about}: its stamp, {stamp_s:g} s, is negative")
+            return
+        self._stamp_clock.hear(state.names, state.stamp_ns)
+        if self._throttle.went_back(self.get_clock().now().nanoseconds):
+            # Throttled: with a second publisher of /clock, this happens at every other message.
+            self.get_logger().warning(
+                "Moved backwards in time, re-publishing joint transforms!",
+                throttle_duration_sec=LOG_INTERVAL_S,
+            )
+        group = self._group_of(state.names)
+        if not group.names:
+            return
+        if self._settings.ignore_timestamp or self._throttle.due(group.names, state.stamp_ns):
+            self._publish(group, state)
+
+    def _publish(self, group: _TransformGroup, state: JointPositions) -> None:
+        transforms = group.motion.transforms(state.positions)
+        finite = np.isfinite(transforms).all(axis=1)
+        if not finite.all():
+            child = group.motion.frames[int(np.argmin(finite))].child
+            self._report(
+                f"a JointState about {listing(group.names)}: a position is not a finite number, "
+                f"or too large for link {child!r}"
+            )
+            return
+        group.publisher.publish(transforms, state.stamp_ns)
+        self._throttle.record_used(group.names, state.stamp_ns)
+
+    def _group_of(self, names: tuple[str, ...]) -> _TransformGroup:
+        group = self._groups.get(names)
+        if group is None:
+            if len(self._groups) >= MAX_GROUPS:
+                self._groups.clear()
+            group = self._groups[names] = self._lay_out(names)
+        return group
+
+    def _lay_out(self, names: tuple[str, ...]) -> _TransformGroup:
+        motion = self._tree.motion(names)
+        return _TransformGroup(
+            names=tuple(names[source] for source in dict.fromkeys(motion.source.tolist())),
+            motion=motion,
+            publisher=_TransformPublisher(
+                self._tf_publisher, motion.frames, self._settings.frame_prefix
+            ),
+        )
+
+    def _report_sizes(self, state: JointPositions) -> None:
+        about = printable(f"a JointState about {listing(state.names)}")
+        if len(state.positions) == 0:
+            # A message with only velocities is valid, but the warning explains why nothing moves.
+            self.get_logger().warning(
+                f"ignored {about}: it has no positions", throttle_duration_sec=LOG_INTERVAL_S
+            )
+            return
+        self._report(f"{about}: {len(state.names)} names, but {len(state.positions)} positions")
+
+    def _report(self, about: str) -> None:
+        text = printable(f"ignored {about}")
+        self.get_logger().error(text, throttle_duration_sec=LOG_INTERVAL_S)
+
+
+MAX_WAIT_S = 1.0
+"""Without a time-out, spin_once of this executor polls the clock while it holds the GIL."""
+
+
+@contextmanager
+def spinning(node: Node) -> Iterator[None]:
+    """Run the node's callbacks in a separate thread; at the end stop it and destroy the node."""
+    thread = ExecutorThread("events", EventsExecutor(context=node.context), MAX_WAIT_S)
+    thread.executor.add_node(node)
+    thread.start()
+    try:
+        yield
+    finally:
+        thread.stop()
+        node.destroy_node()

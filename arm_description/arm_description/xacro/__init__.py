@@ -1,0 +1,1 @@
+"""Expands xacro files to URDF text, with the line of each error."""

@@ -1,0 +1,128 @@
+"""One robot of the simulation: its description, its hardware and its controller manager."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from arm_control.hardware.info import parse_hardware_info
+from arm_control.manager.configured_manager import bring_up, configured_manager
+from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.settings import ManagerSettings
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.document import UrdfDocument
+from arm_description.urdf.parser import parse_urdf
+from arm_gazebo.assembly.robot_settings import RobotSettings
+from arm_gazebo.errors import SimSettingsError
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
+from arm_gazebo.robot.part import BuildOptions, RobotInWorld
+from arm_gazebo.sensors.camera import CameraSensor
+from arm_gazebo.sensors.camera_reader import parse_cameras
+from arm_gazebo.sensors.reader import parse_link_sensors
+
+
+class AssembledRobot:
+    """One robot; call `in_world` to build the world, then `drive` with its simulation.
+
+    Attributes:
+        document: the parsed description.
+        cameras: its cameras, with names and topics that are unique among all robots.
+        sensors: its running sensors, from `drive` on.
+        hardware: its hardware components, from `drive` on.
+        manager: its controller manager, from `drive` on.
+    """
+
+    sensors: Sequence[SimulatedSensor]
+    hardware: Sequence[SimulatedHardware]
+    manager: ControllerManager
+
+    def __init__(self, settings: RobotSettings) -> None:
+        """Read the description.
+
+        Raises:
+            SimSettingsError, DescriptionError, ArmControlError, GazeboError: it has no hardware,
+                or is invalid.
+        """
+        self._settings = settings
+        self.document = UrdfDocument(settings.robot_description)
+        self._hardware_info = parse_hardware_info(self.document)
+        if not self._hardware_info:
+            raise SimSettingsError(
+                "the robot description has no <ros2_control> block, so no joint can be commanded; "
+                "add one with a <joint> and its interfaces for each joint"
+            )
+        self.cameras = tuple(
+            _in_namespace(camera, settings.namespace) for camera in parse_cameras(self.document)
+        )
+        self._robot = parse_urdf(self.document)
+        self._sensors = tuple(
+            replace(sensor, topic=_below(settings.namespace, sensor.topic))
+            for sensor in parse_link_sensors(self.document, self._robot)
+        )
+
+    def in_world(self, options: BuildOptions) -> RobotInWorld:
+        """Return the robot for the model builder.
+
+        Args:
+            options: the user's choices for all robots.
+        """
+        settings = self._settings
+        return RobotInWorld(
+            self._robot,
+            self._hardware_info,
+            self.cameras,
+            replace(
+                options,
+                base="free" if settings.base == "free" else "fixed",
+                spawn=settings.pose,
+                resources=ResourceFinder.of_description(
+                    settings.robot_description, settings.package_path
+                ),
+            ),
+            parse_gazebo_tags(self.document),
+            self._sensors,
+        )
+
+    def drive(
+        self, simulation: Simulation, seed: int, settings: ManagerSettings, manager_name: str
+    ) -> None:
+        """Create hardware, sensors and manager before the first tick.
+
+        Args:
+            simulation: the simulation that contains the robot.
+            seed: seed of the sensors' noise.
+            settings: settings of the manager.
+            manager_name: fully qualified name of the manager's node, for messages.
+
+        Raises:
+            ArmControlError: a component does not reach its initial state.
+        """
+        self.sensors = [SimulatedSensor(simulation, sensor, seed) for sensor in self._sensors]
+        self.hardware = [
+            SimulatedHardware(simulation, info, self.sensors) for info in self._hardware_info
+        ]
+        self.manager = configured_manager(self.hardware, settings, self.document, manager_name)
+        bring_up(self.manager, settings)
+
+
+def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
+    """Return a camera whose name and relative topics are unique among all robots."""
+    if not namespace:
+        return camera
+
+    def below(topics: Sequence[str]) -> tuple[str, ...]:
+        return tuple(_below(namespace, topic) for topic in topics)
+
+    return replace(
+        camera,
+        name=f"{namespace}_{camera.name}",
+        image_topics=below(camera.image_topics),
+        info_topics=below(camera.info_topics),
+        depth_topics=below(camera.depth_topics),
+        points_topics=below(camera.points_topics),
+    )
+
+
+def _below(namespace: str, topic: str) -> str:
+    return topic if topic.startswith("/") or not namespace else f"{namespace}/{topic}"

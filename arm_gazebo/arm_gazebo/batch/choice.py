@@ -1,0 +1,41 @@
+"""Choose the kind of batch that is fastest for a number of copies."""
+
+from collections.abc import Sequence
+
+from arm_gazebo.batch.copies import CommandBounds, Copies
+from arm_gazebo.batch.physics_batch import PhysicsBatch
+from arm_gazebo.batch.serial_batch import SerialBatch
+from arm_gazebo.batch.warp_batch import WarpBatch
+from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.physics.simulation import Simulation
+
+HOST = "host"
+SERIAL_COPIES = 8
+"""Up to so many, an evaluation of the servo law as arrays takes longer than the physics."""
+
+
+def make_copies(
+    simulation: Simulation,
+    hardware: Sequence[SimulatedHardware],
+    copies: int,
+    threads: int = 0,
+    device: str = HOST,
+) -> Copies:
+    """Return copies of a simulation; on the host their states do not depend on their kind.
+
+    Args:
+        simulation: a simulation whose model, start, and modes of drives the copies take.
+        hardware: its hardware components, whose claimed interfaces bound the commands.
+        copies: number of copies.
+        threads: number of threads of many copies; 0 for one on each core.
+        device: "host", or "cuda" for MuJoCo Warp on a GPU.
+
+    Raises:
+        BatchError: there are no copies, no such device, or no MuJoCo Warp.
+    """
+    bounds = CommandBounds(simulation, hardware)
+    if device != HOST:
+        return WarpBatch(simulation, bounds, copies, device)
+    if copies <= SERIAL_COPIES:
+        return SerialBatch(simulation, bounds, copies)
+    return PhysicsBatch(simulation, bounds, copies, threads)

@@ -1,0 +1,113 @@
+"""Many copies of one simulation, stepped together on all cores; each to the bit like one alone."""
+
+from collections.abc import Sequence
+from copy import deepcopy
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch
+
+from arm_gazebo.batch.contact_gates import ContactGates
+from arm_gazebo.batch.copies import (
+    Array,
+    CommandBounds,
+    Flags,
+    Indices,
+    check_copies,
+    rows_of,
+    start_of,
+)
+from arm_gazebo.drives.servo_batch import ServoBatch
+from arm_gazebo.physics.simulation import Simulation
+
+POSITION_STAGE = mujoco.mjtStage.mjSTAGE_POS
+NO_STAGE = mujoco.mjtStage.mjSTAGE_NONE
+
+
+class PhysicsBatch:
+    """Copies of a simulation's robot and world, with its drives; see `Copies`.
+
+    Each copy goes on as `Simulation` would with the same commands, bit for bit. MuJoCo's own pool
+    of threads steps the copies, the drives' law is evaluated for all of them at once.
+
+    Args:
+        simulation: a simulation whose model, start, and modes of drives the copies take. It stays
+            as it is and may be used further.
+        bounds: bounds of the commands.
+        copies: number of copies, at least 1.
+        threads: number of threads; 0 for one on each core.
+
+    Raises:
+        BatchError: there are no copies.
+    """
+
+    def __init__(
+        self, simulation: Simulation, bounds: CommandBounds, copies: int, threads: int = 0
+    ) -> None:
+        check_copies(copies)
+        servo, self._bounds = simulation.servo, bounds
+        model = deepcopy(simulation.model)
+        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        self.copies, self._period_s = copies, simulation.timing.period_s
+        self._steps = simulation.timing.steps
+        # MuJoCo keeps which bodies sleep in its MjData, so each copy needs one.
+        self._batch = Batch(model, copies, threads, persistent=True)
+        self._servo = ServoBatch(model, servo, copies)
+        self._start = start_of(simulation, model)
+        self._gates = ContactGates(self._batch, model, self._start, self._period_s)
+        first = next((j.actuator for j in servo.joints if j.actuator is not None), 0)
+        count = len(servo.joints)
+        activation = int(model.actuator_actadr[first]) if count else 0
+        self._act = self._batch.bind("act")[:, activation : activation + count]
+        self._ctrl = self._batch.bind("ctrl")[:, first : first + count]
+        self._time = self._batch.bind("time").reshape(copies)
+        self.qpos, self.qvel = self._batch.bind("qpos"), self._batch.bind("qvel")
+        self._new_inertia, self._new_bias = self._batch.bind("M"), self._batch.bind("qfrc_bias")
+        self._inertia = np.zeros(self._new_inertia.shape)
+        self._bias = np.zeros(self._new_bias.shape)
+        self._link_positions = self._batch.bind("xpos")
+        self._periods = np.zeros(copies, dtype=np.int64)
+        self._poses_are_new = False
+        self.reset()
+
+    def reset(self, copies: Indices | Sequence[int] | None = None) -> None:
+        """Return copies to their start; see `Copies`."""
+        rows = rows_of(copies, self.copies)
+        if not len(rows):
+            return
+        self._batch.reset(rows, stage=NO_STAGE)
+        self.qpos[rows] = self._start.qpos
+        # What the drives read in the first period.
+        self._inertia[rows], self._bias[rows] = self._start.M, self._start.qfrc_bias
+        # MuJoCo sets the time to 0 when a copy becomes unstable, so it must not begin there.
+        self._periods[rows], self._time[rows] = 1, self._period_s
+        self._servo.restart(rows, self.qpos[rows], self.qvel[rows])
+        self._gates.reset(rows)
+        self._poses_are_new = False
+
+    def advance(self, commands: Array, periods: int = 1) -> Flags:
+        """Advance all copies; see `Copies`."""
+        self._servo.command(self._bounds.limited(commands, self.copies))
+        failed = np.zeros(self.copies, dtype=bool)
+        for _ in range(periods):
+            self._servo.update(self.qpos, self.qvel, self._inertia, self._bias)
+            self._act[...] = self._servo.activations
+            self._ctrl[...] = self._servo.rates
+            self._gates.update()
+            least_s = self._time + 0.5 * self._period_s
+            self._batch.step(nstep=self._steps)
+            failed |= self._time < least_s
+            # Looking at poses evaluates these again, and the drives read those of the last step.
+            self._inertia[...], self._bias[...] = self._new_inertia, self._new_bias
+            # As in `Simulation.advance`: MuJoCo adds up its steps with their rounding errors.
+            self._periods += 1
+            np.multiply(self._periods, self._period_s, out=self._time)
+        self._poses_are_new = False
+        return failed
+
+    def link_positions(self, body: int) -> Array:
+        """Return positions of a body's frame in the world, shape (copies, 3); a copy."""
+        if not self._poses_are_new:
+            self._batch.forward(stage=POSITION_STAGE)
+            self._poses_are_new = True
+        return self._link_positions[:, body].copy()

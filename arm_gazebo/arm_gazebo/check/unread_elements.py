@@ -1,0 +1,117 @@
+"""Find the elements of a description that no part of the simulation reads."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from arm_description.urdf.element import written_name
+from arm_description.urdf.xml_document import is_foreign, parse_xml
+from arm_gazebo.sensors.reader import sensor_type
+from arm_gazebo.sensors.tags import COLOR_FORMATS
+from arm_gazebo.spec.report import BuildOutcome, Finding
+
+_SHAPES = {
+    "origin": {},
+    "geometry": {"box": {}, "cylinder": {}, "sphere": {}, "capsule": {}, "mesh": {}},
+}
+_MATERIAL = {"color": {}, "texture": {}}
+# A tree of the elements that are read; other readers check the children of a None.
+_READ: dict[str, Any] = {
+    "material": _MATERIAL,
+    "link": {
+        "inertial": {"origin": {}, "mass": {}, "inertia": {}},
+        "visual": {**_SHAPES, "material": _MATERIAL},
+        "collision": {**_SHAPES, "material": None},
+    },
+    "joint": {
+        "origin": {},
+        "parent": {},
+        "child": {},
+        "axis": {},
+        "limit": {},
+        "dynamics": {},
+        "mimic": {},
+        "safety_controller": {},
+    },
+    "gazebo": None,
+    "ros2_control": None,
+    "transmission": None,
+}
+
+
+def unread_elements(urdf_xml: str, source: str = "robot_description") -> tuple[Finding, ...]:
+    """Return elements that are not read, and elements without a meaning in a simulation.
+
+    For elements that repeat at many links or joints, the first is named and the others counted.
+
+    Raises:
+        XmlError: the text is not XML.
+    """
+    root = parse_xml(urdf_xml, source)
+    groups: dict[str, list[Finding]] = {}
+    for kind, finding in (*_unknown(root, _READ, "<robot>"), *_meaningless(root)):
+        groups.setdefault(kind, []).append(finding)
+    return tuple(_counted(group) for group in groups.values())
+
+
+def _counted(group: Sequence[Finding]) -> Finding:
+    first, others = group[0], len(group) - 1
+    return replace(first, element=f"{first.element} and {others} more") if others else first
+
+
+def _unknown(element: Any, read: dict[str, Any], owner: str) -> Iterator[tuple[str, Finding]]:
+    for child in element.iterchildren(tag="*"):
+        name = written_name(child)
+        if is_foreign(child):
+            # The reader of the description reports it.
+            continue
+        if name not in read:
+            yield name, _dropped(child, f"<{name}> in {owner}", "the simulation does not use it")
+        elif read[name] is not None:
+            called = child.get("name")
+            here = f"{name} '{called}'" if called and element.getparent() is None else owner
+            yield from _unknown(child, read[name], here)
+
+
+def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
+    for element in root.findall("transmission"):
+        name = f"transmission '{element.get('name')}'"
+        reason = "joints are driven directly; <ros2_control> defines what is commanded"
+        yield "transmission", _dropped(element, name, reason)
+    for element in root.iterfind("joint/safety_controller"):
+        name = f"<safety_controller> of joint '{element.getparent().get('name')}'"
+        reason = "the joint stops at its <limit>; soft limits count under enforce_command_limits"
+        yield "safety_controller", _dropped(element, name, reason)
+    yield from _mimics_of_hardware(root)
+    for element in root.iterfind(".//material/texture"):
+        yield "texture", _dropped(element, "<texture>", "surfaces have a colour, not a texture")
+    for element in root.iterfind("gazebo/sensor"):
+        if sensor_type(element) is None:
+            name = f"sensor '{element.get('name')}'"
+            yield (
+                name,
+                _dropped(element, name, f"its type '{element.get('type')}' is not simulated"),
+            )
+        elif sensor_type(element) == "camera":
+            for wanted in element.iterfind(".//image/format"):
+                word = str(wanted.text or "").strip()
+                if word and word not in COLOR_FORMATS:
+                    name = f"<format> of camera '{element.get('name')}'"
+                    yield "format", _dropped(wanted, name, f"images are rgb8, not {word}")
+
+
+def _mimics_of_hardware(root: Any) -> Iterator[tuple[str, Finding]]:
+    followers = {mimic.getparent().get("name") for mimic in root.iterfind("joint/mimic")}
+    for joint in root.iterfind("ros2_control/joint"):
+        marks = [f'<param name="{p.get("name")}">' for p in joint.iterfind("param[@name='mimic']")]
+        if joint.get("mimic", "").strip().lower() == "true":
+            marks.append('mimic="true"')
+        if marks and joint.get("name") not in followers:
+            name = f"{marks[0]} of <ros2_control> joint '{joint.get('name')}'"
+            reason = "it has no effect: since ROS 2 Jazzy only <mimic> in the URDF's joint counts"
+            line = int(joint.sourceline or 0)
+            yield marks[0], Finding(BuildOutcome.DOUBTFUL, name, reason, line)
+
+
+def _dropped(element: Any, name: str, reason: str) -> Finding:
+    return Finding(BuildOutcome.DROPPED, name, reason, int(element.sourceline or 0))

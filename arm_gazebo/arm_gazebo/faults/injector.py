@@ -1,0 +1,125 @@
+"""Begins and ends faults in a simulation that runs."""
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from arm_control.lifecycle import LifecycleState
+from arm_control.manager.controller_manager import ControllerManager
+from arm_gazebo.errors import FaultError
+from arm_gazebo.faults.fault import Fault, FaultKind
+from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
+from arm_gazebo.physics.faults import Distortion
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.tick import SimulationTick
+from arm_node.names import listing
+
+DISTORTIONS = {
+    FaultKind.SENSOR_FROZEN: Distortion.FROZEN,
+    FaultKind.SENSOR_NOISY: Distortion.NOISY,
+    FaultKind.SENSOR_NAN: Distortion.NAN,
+}
+REASON = "a fault was asked for"
+
+
+class FaultInjector:
+    """Begins and ends faults. Loop thread only, between two ticks.
+
+    What a fault changes reaches the run as inputs, so a recording of the run has it.
+
+    Args:
+        simulation: the physics.
+        managers: the controller managers of the robots.
+        tick: runs a control period.
+        sensors: the sensors of the robots.
+        sleep: waits for some seconds of wall time.
+
+    Attributes:
+        active: the faults that have begun and not ended.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        managers: Sequence[ControllerManager],
+        tick: SimulationTick,
+        sensors: Sequence[SimulatedSensor],
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.active: list[Fault] = []
+        self._simulation = simulation
+        self._managers = tuple(managers)
+        self._tick = tick
+        self._sensors = tuple(sensors)
+        self._sleep = sleep
+        self._feeds: dict[Fault, _EachTick] = {}
+
+    def check(self, fault: Fault) -> None:
+        """Raise FaultError if the simulation does not have what the fault is about."""
+        kind, target = fault.kind, fault.target
+        if kind is FaultKind.JOINT_STALLED:
+            _find("joint", target, list(self._simulation.built.joints))
+        elif kind in DISTORTIONS:
+            channels = [name for m in self._managers for name in m.resources.state_names]
+            channels += [name for sensor in self._sensors for name in sensor.channels]
+            owners = dict.fromkeys(name.rpartition("/")[0] for name in channels)
+            _find("joint, sensor or channel", target, [*owners, *dict.fromkeys(channels)])
+        elif kind is FaultKind.CONTROLLER_RAISES:
+            _find("controller", target, [name for m in self._managers for name in m.controllers])
+
+    def begin(self, fault: Fault) -> None:
+        """Begin a fault.
+
+        Raises:
+            FaultError: it has begun already, or the simulation does not have what it is about.
+        """
+        if fault in self.active:
+            raise FaultError(f"the fault '{fault}' has begun already")
+        self.check(fault)
+        if fault.kind is FaultKind.JOINT_STALLED:
+            self._simulation.stall_joint(fault.target)
+        elif fault.kind in DISTORTIONS:
+            distortion = DISTORTIONS[fault.kind].value
+            self._simulation.distort(fault.target, distortion, fault.amount, fault.seed)
+        elif fault.kind is FaultKind.CONTROLLER_RAISES:
+            self._fail(fault.target)
+            self._do_each_tick(fault, lambda: self._fail(fault.target))
+        else:
+            self._do_each_tick(fault, lambda: self._sleep(fault.amount))
+        self.active.append(fault)
+
+    def end(self, fault: Fault) -> None:
+        """End a fault that has begun. A controller that failed stays inactive."""
+        self.active.remove(fault)
+        if fault.kind is FaultKind.JOINT_STALLED:
+            self._simulation.free_joint(fault.target)
+        elif fault.kind in DISTORTIONS:
+            self._simulation.read_rightly(fault.target, DISTORTIONS[fault.kind].value)
+        else:
+            self._tick.remove_feed(self._feeds.pop(fault))
+
+    def _do_each_tick(self, fault: Fault, act: Callable[[], None]) -> None:
+        self._feeds[fault] = feed = _EachTick(act)
+        self._tick.add_feed(feed)
+
+    def _fail(self, name: str) -> None:
+        """Let an active controller fail; it may have been activated again."""
+        for manager in self._managers:
+            managed = manager.controllers.get(name)
+            if managed is not None and managed.state is LifecycleState.ACTIVE:
+                manager.fail_controller(name, REASON)
+
+
+class _EachTick:
+    """Does something after each tick."""
+
+    def __init__(self, act: Callable[[], None]) -> None:
+        self._act = act
+
+    def publish_due(self, time_s: float, data: Any) -> None:
+        self._act()
+
+
+def _find(what: str, name: str, existing: Sequence[str]) -> None:
+    if name not in existing:
+        raise FaultError(f"no {what} '{name}'; there are {listing(existing)}")

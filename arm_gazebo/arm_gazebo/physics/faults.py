@@ -1,0 +1,117 @@
+"""Faults of joints and sensors on demand: they stick, freeze, are noisy or read NaN."""
+
+from collections.abc import Callable, Sequence
+from enum import Enum
+from math import nan
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+Values = NDArray[np.float64]
+
+STICTION = 1e5
+"""Friction in N m or N that no drive overcomes."""
+STIFF = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of that friction, the largest that MuJoCo takes: a pushed joint hardly creeps."""
+PROMPT = (1e-4, 1.0)
+"""Time constant of that friction in s, and its damping; MuJoCo takes two steps at least."""
+
+
+class Distortion(Enum):
+    """How readings are wrong."""
+
+    FROZEN = "frozen"
+    NOISY = "noisy"
+    NAN = "nan"
+
+
+class PhysicsFaults:
+    """The present faults of one simulation. Loop thread only.
+
+    Args:
+        joint_address: returns the index of a joint's first degree of freedom.
+    """
+
+    def __init__(self, model: mujoco.MjModel, joint_address: Callable[[str], int]) -> None:
+        self._model = model
+        self._joint_address = joint_address
+        self._stalled: dict[str, tuple[float, Values, Values]] = {}
+        self._distortions: dict[tuple[str, Distortion], tuple[float, int]] = {}
+        self._frozen: dict[str, float] = {}
+
+    def stall(self, joint: str) -> None:
+        """Let a joint stick where it is."""
+        address, model = self._joint_address(joint), self._model
+        if joint not in self._stalled:
+            self._stalled[joint] = (
+                float(model.dof_frictionloss[address]),
+                model.dof_solimp[address].copy(),
+                model.dof_solref[address].copy(),
+            )
+        model.dof_frictionloss[address] = STICTION
+        model.dof_solimp[address] = STIFF
+        model.dof_solref[address] = PROMPT
+
+    def free(self, joint: str) -> None:
+        """Let a joint move again; has no effect if it does not stick."""
+        if joint in self._stalled:
+            address = self._joint_address(joint)
+            friction, impedance, reference = self._stalled.pop(joint)
+            self._model.dof_frictionloss[address] = friction
+            self._model.dof_solimp[address] = impedance
+            self._model.dof_solref[address] = reference
+
+    def rebind(self, model: mujoco.MjModel) -> None:
+        """Let the same joints stick in another model."""
+        self._model = model
+        for joint in list(self._stalled):
+            del self._stalled[joint]
+            self.stall(joint)
+
+    def distort(self, name: str, kind: Distortion, deviation: float, seed: int) -> None:
+        """Let readings be wrong.
+
+        Args:
+            name: a joint, a sensor, or one of its channels, such as j0/position.
+            kind: how they are wrong.
+            deviation: standard deviation of the noise, in the unit of the reading.
+            seed: of the noise.
+        """
+        self._distortions[name, kind] = deviation, seed
+
+    def clear(self, name: str, kind: Distortion) -> None:
+        """Let readings be right again; has no effect if they are."""
+        self._distortions.pop((name, kind), None)
+        if not any(kind is Distortion.FROZEN for _, kind in self._distortions):
+            self._frozen.clear()
+
+    def apply(self, channels: Sequence[str], readings: Values, number: int) -> None:
+        """Change the readings that are wrong.
+
+        Args:
+            channels: names of the readings, such as j0/position.
+            readings: changed in place, shape (n,).
+            number: of the state; the noise is the same for the same state.
+        """
+        if not self._distortions:
+            return
+        for (name, kind), (deviation, seed) in self._distortions.items():
+            for index, channel in enumerate(channels):
+                if channel == name or channel.startswith(f"{name}/"):
+                    readings[index] = self._wrong(
+                        channel, float(readings[index]), kind, deviation, (seed, number)
+                    )
+
+    def _wrong(
+        self, channel: str, value: float, kind: Distortion, deviation: float, key: tuple[int, int]
+    ) -> float:
+        match kind:
+            case Distortion.FROZEN:
+                return self._frozen.setdefault(channel, value)
+            case Distortion.NOISY:
+                # Of the channel's own, so that each has the same noise alone and with others.
+                words = (*key, *channel.encode())
+                return value + deviation * float(np.random.default_rng(words).standard_normal())
+            case Distortion.NAN:
+                return nan

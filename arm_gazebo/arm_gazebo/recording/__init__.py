@@ -1,0 +1,1 @@
+"""Recordings of runs: inputs and states, written while a run goes on, and run again later."""

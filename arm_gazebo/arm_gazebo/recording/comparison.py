@@ -1,0 +1,135 @@
+"""Compare two recordings of runs."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+
+from arm_gazebo.recording.recorded_run import rebuild, run_of
+from arm_gazebo.recording.replay import Difference, differing
+from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
+from arm_gazebo.recording.run_state import state_names
+from arm_node.plain_data import to_plain
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """What two recordings have in common.
+
+    Attributes:
+        settings: what differs before the first period, a line each.
+        periods: number of the first periods that are equal.
+        difference: the first difference; None if there is none in the periods of both.
+        longer: how many periods the second recording has more than the first; negative if fewer.
+    """
+
+    settings: tuple[str, ...]
+    periods: int
+    difference: Difference | None
+    longer: int
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether they are recordings of the same run, of the same length."""
+        return not self.settings and self.difference is None and not self.longer
+
+
+@dataclass(frozen=True, slots=True)
+class _Period:
+    """A recorded period with the inputs that took effect before it."""
+
+    number: int
+    block: StateBlock
+    inputs: tuple[RecordedInput, ...]
+
+    @property
+    def hash(self) -> int:
+        return int(self.block.hashes[self.number - self.block.first])
+
+
+def compare(first: RunFile, second: RunFile) -> Comparison:
+    """Return the first difference of two recordings.
+
+    Raises:
+        RecordingError: one of them is damaged.
+    """
+    settings = tuple(_differing_settings(first, second))
+    pairs = zip_longest(_periods(first), _periods(second))
+    inputs: list[RecordedInput] = []
+    equal = longer = 0
+    difference = None
+    for one, other in pairs:
+        if one is None or other is None:
+            longer += 1 if one is None else -1
+            continue
+        inputs += one.inputs
+        if difference is None:
+            difference = _difference(first, inputs, one, other)
+            equal += difference is None
+    return Comparison(settings, equal, difference, longer)
+
+
+def _periods(file: RunFile) -> Iterator[_Period]:
+    waiting: list[RecordedInput] = []
+    for record in file.records():
+        match record:
+            case RecordedInput():
+                waiting.append(record)
+            case StateBlock():
+                for number in range(record.first, record.first + len(record.hashes)):
+                    before = tuple(item for item in waiting if item.period <= number)
+                    waiting = [item for item in waiting if item.period > number]
+                    yield _Period(number, record, before)
+            case _:
+                pass
+
+
+def _difference(
+    file: RunFile, inputs: list[RecordedInput], one: _Period, other: _Period
+) -> Difference | None:
+    lines: list[str] = []
+    if to_plain(one.inputs) != to_plain(other.inputs):
+        lines.append(f"inputs: {_listed(other.inputs)} instead of {_listed(one.inputs)}")
+    elif one.hash == other.hash:
+        return None
+    state, then = other.block.state(other.number), one.block.state(one.number)
+    if state is not None and then is not None:
+        lines += differing(_names(file, inputs), then, state)
+    elif not lines:
+        lines.append("the hashes of the states differ; the states are not stored here")
+    time_s = run_of(file).timing.period_s * (one.number + 1)
+    return Difference(one.number, time_s, tuple(lines))
+
+
+def _names(file: RunFile, inputs: list[RecordedInput]) -> list[str]:
+    """Return the names of a state's numbers after these inputs."""
+    run = run_of(file)
+    models = [item.arguments["model"] for item in inputs if item.method == "swap"]
+    _, robots = rebuild(run)
+    model = (models[-1] if models else run.model).load().model
+    return state_names(model, [robot.manager for robot in robots])
+
+
+def _differing_settings(first: RunFile, second: RunFile) -> Iterator[str]:
+    here, there = first.header.get("made_with", {}), second.header.get("made_with", {})
+    for key in here:
+        if here[key] != there.get(key):
+            yield f"made with {key} {there.get(key)} instead of {here[key]}"
+    one, other = run_of(first), run_of(second)
+    if one.model.content != other.model.content:
+        yield "the models differ"
+    for name in ("timing", "hold_joints", "proportional_gain", "seed"):
+        if getattr(one, name) != getattr(other, name):
+            yield f"{name} {getattr(other, name)} instead of {getattr(one, name)}"
+    if len(one.robots) != len(other.robots):
+        yield f"{len(other.robots)} robots instead of {len(one.robots)}"
+    for robot, its_twin in zip(one.robots, other.robots, strict=False):
+        for name in ("settings", "manager"):
+            here, there = to_plain(getattr(robot, name)), to_plain(getattr(its_twin, name))
+            for key in here:
+                if here[key] != there[key]:
+                    yield f"{key} of {robot.manager_name} differs"
+
+
+def _listed(inputs: tuple[RecordedInput, ...]) -> str:
+    each = (" ".join(filter(None, (i.controller, i.method))) for i in inputs)
+    return ", ".join(each) or "none"

@@ -1,0 +1,266 @@
+"""The file of a recorded run: an MCAP file that is readable to its last second after a kill.
+
+It holds the header with all that rebuilds the run, then, as they come, inputs and blocks of states
+with one hash for each control period.
+"""
+
+import json
+import struct
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Channel, Message
+from mcap.stream_reader import StreamReader
+from mcap.writer import Writer
+from numpy.typing import NDArray
+
+from arm_gazebo.errors import RecordingError
+from arm_node.plain_data import PlainDataError, from_plain, to_plain
+
+FORMAT = 1
+PROFILE = "arm-run"
+LIBRARY = "arm-suite"
+HEADER, INPUT, STATES, END = "header", "input", "states", "end"
+MAX_BLOCK_BYTES = 1 << 30
+"""No block that a recorder writes is larger; a file that says so is damaged."""
+
+_BLOCK = struct.Struct("<QIII")
+"""First period, number of periods, interval of the stored states, values of a state."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedInput:
+    """An input and when it took effect.
+
+    Attributes:
+        period: the control period before which it took effect, counted from 0.
+        robot: index of the robot whose manager or controller took it; None for the simulation.
+        controller: name of the controller; None for the manager or the simulation.
+        method: name of the method.
+        arguments: its arguments by name.
+        raised: whether it was refused: it ended with an exception.
+    """
+
+    period: int
+    robot: int | None
+    controller: str | None
+    method: str
+    arguments: Mapping[str, Any]
+    raised: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class StateBlock:
+    """The states after consecutive control periods.
+
+    Attributes:
+        first: number of the first period.
+        hashes: a running hash after each period, uint64, shape (n,).
+        interval: every how many periods a state is stored; the first period of the block has one.
+        states: the stored states, shape (ceil(n / interval), width).
+    """
+
+    first: int
+    hashes: NDArray[np.uint64]
+    interval: int
+    states: NDArray[np.float64]
+
+    def state(self, period: int) -> NDArray[np.float64] | None:
+        """Return the state after a period, or None if it is not stored."""
+        index, rest = divmod(period - self.first, self.interval)
+        return None if rest or not 0 <= index < len(self.states) else self.states[index]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingEnd:
+    """The end of a recording that was finished.
+
+    Attributes:
+        periods: number of recorded periods.
+        reason: why it ended; "" if it was stopped by its user.
+    """
+
+    periods: int
+    reason: str = ""
+
+
+Record = RecordedInput | StateBlock | RecordingEnd
+
+
+class RunFileWriter:
+    """Writes a recording; not thread-safe. Each `flush` leaves a readable file.
+
+    Args:
+        path: the file; it must not exist.
+        header: what rebuilds the run; plain data.
+
+    Raises:
+        RecordingError: the file exists, or cannot be written.
+    """
+
+    def __init__(self, path: Path, header: Mapping[str, Any]) -> None:
+        self.path = path
+        try:
+            # The writer below owns the file; it is closed in `close`.
+            self._stream: BinaryIO = path.open("xb")
+        except FileExistsError as error:
+            raise RecordingError(f"{path} exists already; choose another name") from error
+        except OSError as error:
+            raise RecordingError(f"cannot write {path}: {error.strerror}") from error
+        self._writer = Writer(self._stream, use_chunking=False, enable_data_crcs=False)
+        self._writer.start(PROFILE, LIBRARY)
+        schema = self._writer.register_schema("", "", b"")
+        self._channels = {
+            topic: self._writer.register_channel(topic, "json", schema)
+            for topic in (HEADER, INPUT, STATES, END)
+        }
+        self._message(HEADER, 0, _json({"format": FORMAT, **header}))
+
+    def write(self, record: Record) -> None:
+        """Append a record.
+
+        Raises:
+            OSError: the file cannot be written.
+            PlainDataError: an argument of an input is not plain data.
+        """
+        match record:
+            case RecordedInput():
+                self._message(INPUT, record.period, _json(record))
+            case StateBlock():
+                self._message(STATES, record.first, _block_bytes(record))
+            case RecordingEnd():
+                self._message(END, record.periods, _json(record))
+
+    def flush(self) -> None:
+        """Hand everything so far to the operating system."""
+        self._writer.flush()
+        self._stream.flush()
+
+    def close(self) -> None:
+        """Finish the file; it stays readable if that fails."""
+        with suppress(OSError):
+            self._writer.finish()
+        with suppress(OSError):
+            self._stream.close()
+
+    def _message(self, topic: str, sequence: int, data: bytes) -> None:
+        channel = self._channels[topic]
+        self._writer.add_message(channel, sequence, data, sequence, sequence & 0xFFFFFFFF)
+
+
+class RunFile:
+    """Reads a recording, record by record.
+
+    Args:
+        path: the file.
+
+    Raises:
+        RecordingError: it does not exist, or is not a recording.
+
+    Attributes:
+        header: what rebuilds the run.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.header: Mapping[str, Any] = self._read_header()
+
+    def records(self) -> Iterator[Record]:
+        """Return the records in order; a file that was cut off ends early, without an end record.
+
+        Raises:
+            RecordingError: the file is damaged before its end.
+        """
+        with self._open() as stream:
+            for topic, data in _raw_records(stream):
+                if topic != HEADER:
+                    yield self._record(topic, data)
+
+    def _open(self) -> BinaryIO:
+        try:
+            if not self.path.is_file():
+                state = "is not a file" if self.path.exists() else "does not exist"
+                raise RecordingError(f"{self.path} {state}")
+            return self.path.open("rb")
+        except OSError as error:
+            raise RecordingError(f"cannot read {self.path}: {error.strerror}") from error
+
+    def _read_header(self) -> Mapping[str, Any]:
+        with self._open() as stream:
+            topic, data = next(_raw_records(stream), ("", b""))
+        if topic != HEADER:
+            raise RecordingError(f"{self.path} is not a recording of a run")
+        header = self._from_json(data)
+        if not isinstance(header, dict):
+            raise RecordingError(f"{self.path} is damaged: its header is not a mapping")
+        if header.get("format") != FORMAT:
+            raise RecordingError(
+                f"{self.path} has format {header.get('format')}; this version reads {FORMAT}"
+            )
+        return header
+
+    def _record(self, topic: str, data: bytes) -> Record:
+        try:
+            if topic in (INPUT, END):
+                return self._from_json(data)
+            return _block(data)
+        except (ValueError, struct.error) as error:
+            raise RecordingError(f"{self.path} is damaged: {error}") from error
+
+    def _from_json(self, data: bytes) -> Any:
+        try:
+            text = _decompressed(data)
+            return from_plain(json.loads(text), "record")
+        except (PlainDataError, ValueError, RecursionError) as error:
+            raise RecordingError(f"{self.path} is damaged: {error}") from error
+
+
+def _raw_records(stream: BinaryIO) -> Iterator[tuple[str, bytes]]:
+    """Return topic and content of each message up to where the file ends."""
+    topics: dict[int, str] = {}
+    # Where the file is cut off, the library finds a record that ends too early, or none at all.
+    with suppress(McapError, EOFError, struct.error, zlib.error, UnicodeDecodeError):
+        for record in StreamReader(stream, record_size_limit=MAX_BLOCK_BYTES).records:
+            match record:
+                case Channel():
+                    topics[record.id] = record.topic
+                case Message():
+                    yield topics.get(record.channel_id, ""), record.data
+                case _:
+                    pass
+
+
+def _json(value: object) -> bytes:
+    text = json.dumps(to_plain(value, "record"), separators=(",", ":"))
+    return zstandard.compress(text.encode(), 3)
+
+
+def _decompressed(data: bytes) -> bytes:
+    try:
+        return zstandard.decompress(data, MAX_BLOCK_BYTES)
+    except (zstandard.ZstdError, MemoryError) as error:
+        # A damaged frame may claim any size.
+        raise ValueError(str(error) or "a part does not fit into memory") from error
+
+
+def _block_bytes(block: StateBlock) -> bytes:
+    head = _BLOCK.pack(block.first, len(block.hashes), block.interval, block.states.shape[1])
+    content = block.hashes.tobytes() + block.states.tobytes()
+    return head + zstandard.compress(content, 1)
+
+
+def _block(data: bytes) -> StateBlock:
+    first, count, interval, width = _BLOCK.unpack_from(data)
+    content = _decompressed(data[_BLOCK.size :])
+    if interval < 1 or len(content) != 8 * (count + width * -(-count // interval)):
+        raise ValueError("a block of states has the wrong size")
+    hashes = np.frombuffer(content, np.uint64, count)
+    states = np.frombuffer(content, np.float64, offset=8 * count).reshape(-1, width)
+    return StateBlock(first, hashes, interval, states)

@@ -1,0 +1,1 @@
+"""Shared by all code that writes a MuJoCo specification: names, report, sizes, timing."""

@@ -1,0 +1,36 @@
+"""Names in a MuJoCo specification, which must be unique among elements of one kind."""
+
+from collections.abc import Collection
+
+import mujoco
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return the name, or if it is taken the first free one of NAME_2, NAME_3 and so on."""
+    candidate, number = name, 1
+    while candidate in taken:
+        number += 1
+        candidate = f"{name}_{number}"
+    return candidate
+
+
+UNNAMED_BODY = "thing"
+
+
+def name_elements(spec: mujoco.MjSpec) -> None:
+    """Give every unnamed body, joint and actuator a unique name."""
+    bodies = {body.name for body in spec.bodies}
+    for body in spec.bodies:
+        if not body.name:
+            body.name = free_name(UNNAMED_BODY, bodies)
+            bodies.add(body.name)
+    joints = {joint.name for joint in spec.joints}
+    for joint in spec.joints:
+        if not joint.name:
+            joint.name = free_name(f"{joint.parent.name}::joint", joints)
+            joints.add(joint.name)
+    actuators = {actuator.name for actuator in spec.actuators}
+    for actuator in spec.actuators:
+        if not actuator.name:
+            actuator.name = free_name(f"{actuator.target or UNNAMED_BODY}::actuator", actuators)
+            actuators.add(actuator.name)

@@ -1,0 +1,70 @@
+"""Derive the physics step from the control rate."""
+
+import math
+from dataclasses import dataclass
+
+from arm_gazebo.errors import TimingError
+
+MAX_STEP_S = 0.002
+MIN_STEP_S = 1e-6
+"""A shorter step is a typing error: the simulation would never get anywhere."""
+DIVIDES_WITHIN = 1e-6
+"""Largest relative error at which a step counts as a divisor, because decimal steps are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhysicsTiming:
+    """One control period and the physics steps that fill it.
+
+    Attributes:
+        period_s: control period.
+        steps: physics steps in one control period.
+    """
+
+    period_s: float
+    steps: int
+
+    @property
+    def step_s(self) -> float:
+        """Length of one physics step."""
+        return self.period_s / self.steps
+
+
+def physics_timing(
+    update_rate_hz: float,
+    fixed_step_s: float | None = None,
+    largest_step_s: float = MAX_STEP_S,
+) -> PhysicsTiming:
+    """Return the largest physics step that divides the control period.
+
+    Args:
+        update_rate_hz: control rate.
+        fixed_step_s: the step that the user fixed; it must divide the period. None to choose one.
+        largest_step_s: upper bound on a chosen step.
+
+    Raises:
+        TimingError: the rate is not above 0, the fixed step does not divide the period, or a step
+            is shorter than `MIN_STEP_S`.
+    """
+    if not (math.isfinite(update_rate_hz) and update_rate_hz > 0):
+        raise TimingError(f"update_rate must be above 0 Hz, not {update_rate_hz:g}")
+    if fixed_step_s is not None and not (math.isfinite(fixed_step_s) and fixed_step_s > 0):
+        raise TimingError(f"the physics step must be above 0 s, not {fixed_step_s:g}")
+    period_s = 1.0 / update_rate_hz
+    if min(period_s, fixed_step_s or period_s) < MIN_STEP_S:
+        what = "update_rate" if fixed_step_s is None else "the physics step"
+        raise TimingError(
+            f"{what} makes physics steps shorter than {MIN_STEP_S:g} s; update_rate is "
+            f"{update_rate_hz:g} Hz"
+        )
+    if fixed_step_s is None:
+        # The margin keeps 500 Hz at one step of 2 ms despite rounding.
+        return PhysicsTiming(period_s, math.ceil(period_s / largest_step_s * (1 - DIVIDES_WITHIN)))
+    steps = max(1, round(period_s / fixed_step_s))
+    if abs(steps * fixed_step_s - period_s) > DIVIDES_WITHIN * period_s:
+        raise TimingError(
+            f"a physics step of {fixed_step_s:g} s does not divide the control period of "
+            f"{period_s:.6g} s (update_rate {update_rate_hz:g} Hz); "
+            f"{period_s / steps:.6g} s would"
+        )
+    return PhysicsTiming(period_s, steps)

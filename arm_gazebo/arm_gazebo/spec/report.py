@@ -1,0 +1,118 @@
+"""The report to the user: what the model builder repaired, dropped or left out."""
+
+import logging
+from dataclasses import dataclass
+from enum import Enum
+
+MAX_NAMED = 5
+"""How many kinds of missing things one line names; the log names all of them."""
+
+
+class BuildOutcome(Enum):
+    """What happened to an element; the value is the word shown to the user."""
+
+    NOTED = "note"
+    """The model differs from the description by design."""
+    DROPPED = "dropped"
+    """The simulation ignores it, and users will not notice."""
+    LEFT_OUT = "left out"
+    """The simulation lacks something visible or touchable, and users will notice."""
+    REPAIRED = "repaired"
+    """The description was invalid, and the model uses something else instead."""
+    DOUBTFUL = "warning"
+    """The description is probably not what its author meant."""
+    FAILED = "error"
+    """The model could not be built because of it."""
+
+    @property
+    def level(self) -> int:
+        """The logging level."""
+        return _LEVELS.get(self, logging.WARNING)
+
+
+_LEVELS = {
+    BuildOutcome.NOTED: logging.INFO,
+    BuildOutcome.DROPPED: logging.INFO,
+    BuildOutcome.FAILED: logging.ERROR,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One remark about one element of the description.
+
+    Attributes:
+        outcome: what happened to the element.
+        element: for example "link 'wrist'".
+        message: what is wrong and what was done.
+        line: line of the element in the description, 0 if unknown.
+        count: how many elements the finding covers.
+    """
+
+    outcome: BuildOutcome
+    element: str
+    message: str
+    line: int = 0
+    count: int = 1
+
+    def __str__(self) -> str:
+        where = f"{self.element} (line {self.line})" if self.line else self.element
+        return f"{where}: {self.message}"
+
+
+class BuildReport:
+    """The findings of one build, in order."""
+
+    def __init__(self) -> None:
+        self._findings: list[Finding] = []
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Everything found so far."""
+        return tuple(self._findings)
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """The findings that a user should look at."""
+        return tuple(f for f in self._findings if f.outcome.level >= logging.WARNING)
+
+    @property
+    def left_out(self) -> str:
+        """One line that counts and names what was left out; "" if nothing was."""
+        missing = [f for f in self._findings if f.outcome is BuildOutcome.LEFT_OUT]
+        if not missing:
+            return ""
+        count = sum(finding.count for finding in missing)
+        named = [finding.element for finding in missing[:MAX_NAMED]]
+        more = ["..."] if len(missing) > MAX_NAMED else []
+        things = "1 thing is" if count == 1 else f"{count} things are"
+        return f"{things} left out: {'; '.join([*named, *more])}"
+
+    def add(self, *findings: Finding) -> None:
+        """Add findings made elsewhere."""
+        self._findings.extend(findings)
+
+    def inform(self, element: str, message: str, line: int = 0) -> None:
+        """Add a note."""
+        self.add(Finding(BuildOutcome.NOTED, element, message, line))
+
+    def drop(self, element: str, message: str, line: int = 0) -> None:
+        """Add something that the simulation ignores."""
+        self.add(Finding(BuildOutcome.DROPPED, element, message, line))
+
+    def leave_out(self, element: str, message: str, line: int = 0) -> None:
+        """Add something that the simulation lacks and users will notice."""
+        self.add(Finding(BuildOutcome.LEFT_OUT, element, message, line))
+
+    def repair(self, element: str, message: str, line: int = 0) -> None:
+        """Add something that was replaced because it was invalid."""
+        self.add(Finding(BuildOutcome.REPAIRED, element, message, line))
+
+    def warn(self, element: str, message: str, line: int = 0) -> None:
+        """Add something that is probably not what the author meant."""
+        self.add(Finding(BuildOutcome.DOUBTFUL, element, message, line))
+
+    def log(self, logger: logging.Logger) -> None:
+        """Log every finding at its level."""
+        for finding in self._findings:
+            logger.log(finding.outcome.level, "%s", finding)

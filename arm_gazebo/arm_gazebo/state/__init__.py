@@ -1,0 +1,1 @@
+"""The complete state of a run: saved, restored, compared, reset."""

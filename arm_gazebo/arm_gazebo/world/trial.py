@@ -1,0 +1,117 @@
+"""Try an MJCF in a separate process with limited memory and time, before it is compiled here.
+
+With an untrusted model MuJoCo may use all memory, never return, or crash the process. None of this
+may happen in the process of the control loop.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import weakref
+from contextlib import suppress
+from pathlib import Path
+
+from arm_gazebo.feed.child_process import describe_exit
+from arm_gazebo.spec.mjcf_size import MemoryLimit
+
+MODULE = "arm_gazebo.world.trial_process"
+END_TIMEOUT_S = 5.0
+HEADROOM = 2.0
+"""Compiling needs more memory than the compiled model."""
+SPAWN_PROCESSOR_S = 8
+WORLD_PROCESSOR_S = 60
+"""A world may be larger than a spawned model, and the simulation pauses for it anyway."""
+
+
+class MjcfTrial:
+    """Compiles an MJCF and takes some steps, in a process that starts with the first trial.
+
+    Call it from one thread at a time. The process ends with this object or with its owner.
+    """
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def problem(
+        self,
+        text: str,
+        path: Path | None,
+        limit: MemoryLimit,
+        processor_s: int = SPAWN_PROCESSOR_S,
+    ) -> str:
+        """Return why a model cannot be simulated, "" if it can.
+
+        Args:
+            text: the MJCF.
+            path: its file, which is read instead of `text`; None without a file.
+            limit: limit on the memory of the model.
+            processor_s: limit on the processor time in s.
+        """
+        request = {
+            "text": text,
+            "path": path and str(path.absolute()),
+            "limit_mb": HEADROOM * limit.mb,
+            "processor_s": processor_s,
+        }
+        for _ in range(2):
+            answer = self._ask(json.dumps(request).encode() + b"\n")
+            if answer:
+                return _problem(json.loads(answer), limit)
+            # The process was ended between two trials.
+            self._process = None
+        return "the process that tries models does not answer"
+
+    def _ask(self, request: bytes) -> bytes:
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with suppress(BrokenPipeError):
+            process.stdin.write(request)
+            process.stdin.flush()
+        return process.stdout.readline()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        # MuJoCo writes a log file into the working folder.
+        folder = tempfile.TemporaryDirectory(prefix="arm-trial-")
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", MODULE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd=folder.name,
+            # Its own group shields it from Ctrl-C, so that it ends with the simulation.
+            process_group=0,
+        )
+        self._process = process
+        weakref.finalize(self, _end, process, folder, os.getpid())
+        return process
+
+
+def _end(
+    process: subprocess.Popen[bytes], folder: tempfile.TemporaryDirectory[str], owner: int
+) -> None:
+    """End a process by closing its stdin, and remove its folder; do nothing in a fork."""
+    if os.getpid() != owner:
+        return
+    for stream in (process.stdin, process.stdout):
+        if stream is not None:
+            with suppress(BrokenPipeError):
+                stream.close()
+    try:
+        process.wait(END_TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+    folder.cleanup()
+
+
+def _problem(answer: dict[str, object], limit: MemoryLimit) -> str:
+    """Return the problem that a trial found, in words."""
+    code = answer.get("exit")
+    if isinstance(code, int):
+        return f"MuJoCo cannot compile it: its process ended {describe_exit(code)}"
+    if answer.get("out_of_memory"):
+        return f"it needs more than {limit.mb:.0f} MB (parameter {limit.parameter})"
+    return str(answer["problem"])

@@ -1,0 +1,1 @@
+"""Draws graphs: vertices and edges, a layered layout, and SVG."""

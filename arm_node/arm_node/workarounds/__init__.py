@@ -1,0 +1,33 @@
+"""Workarounds for faults and costs of the libraries below.
+
+Each is made for one version of a library. With any other version it is off, and the process logs
+that in one line. `ARM_WITHOUT=name,name` switches workarounds off by hand, `ARM_WITHOUT=all` all of
+them; see `switch`.
+
+| name                 | works around                                | made for         | upstream |
+| -------------------- | ------------------------------------------- | ---------------- | -------- |
+| discovery            | Fast DDS announces itself before it listens | rmw_fastrtps 8.4 |          |
+| signs_of_life        | a late sender sleeps for up to 333 ms       | rmw_fastrtps 8.4 | [6535]   |
+| torn_ports           | a killed process's port hangs the next one  | rmw_fastrtps 8.4 | [1144]   |
+| private_files        | all users can read Fast DDS's shared memory | rmw_fastrtps 8.4 |          |
+| local_profile        | LOCALHOST doubles a profile's transports    | rmw_fastrtps 8.4 | [653]    |
+| message_template     | rclpy serialises whole messages each cycle  | rclpy 7.1        | [836]    |
+| joint_state_encoding | rclpy creates objects for unused fields     | rclpy 7.1        | [836]    |
+| stamp_clock          | listening to /clock costs a tenth of a core | rclpy 7.1        | [1378]   |
+| serialized_goals     | a large goal stops the control loop         | rclpy 7.1        | [836]    |
+| parameter_types      | an unknown parameter type gets no answer    | rclpy 7.1        |          |
+| profiler             | MuJoCo reads the clock 20 times in a step   | MuJoCo 4.0       |          |
+| parse_cache          | every generator parses every definition     | rosidl 4.6       |          |
+| template_cache       | EmPy scans every template for every file    | EmPy 4           |          |
+
+Where the last column is empty, no upstream issue is known. rmw_fastrtps 8.4 is the version of ROS 2
+Jazzy and uses Fast DDS 2.14. `serialized_goals` is beside its controller, in
+`arm_control.controllers.joint_trajectory`; the last two belong to the build of `arm_interfaces`, in
+its `interface_build`.
+
+[6535]: https://github.com/eProsima/Fast-DDS/issues/6535
+[1144]: https://github.com/eProsima/Fast-DDS/issues/1144
+[653]: https://github.com/ros2/rmw_fastrtps/pull/653
+[836]: https://github.com/ros2/rclpy/issues/836
+[1378]: https://github.com/ros2/rclpy/issues/1378
+"""

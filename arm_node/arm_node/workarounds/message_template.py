@@ -1,0 +1,287 @@
+"""A message that is serialised once; later, stamps and float64 values are written into the bytes.
+
+It is for messages that are published in every control cycle. To set the lists of an rclpy message
+and serialise it costs more than the rest of the cycle. Names and lengths never change, so every
+number stays at its place in the bytes, and a new value is a write of eight bytes. Works around
+https://github.com/ros2/rclpy/issues/836; made for rclpy 7.1.
+
+The places are found by experiment: every number is set to a unique mark, the message is serialised,
+and each mark must be in exactly one aligned word. This is done twice with different marks. It
+assumes nothing about the encoding: a message whose numbers are not in aligned words is set and
+serialised by rclpy, as is every message if the workaround is off. Marks are not used again for the
+next message, because its padding bytes may contain marks from an earlier message's memory.
+"""
+
+import itertools
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from numpy.typing import NDArray
+from rclpy.publisher import Publisher
+from rclpy.serialization import deserialize_message, serialize_message
+
+from arm_node.workarounds.message_fields import (
+    Field,
+    Message,
+    MessageLayoutError,
+    float64_fields,
+    float64_fields_at,
+    time_fields,
+    time_fields_at,
+)
+from arm_node.workarounds.switch import is_on
+
+HEADER_BYTES = 4
+"""The header of the encoding; alignment is counted from its end."""
+
+# Marks: tag << 32 | number, which are small normal float64s; tag << 20 | number, positive int32s.
+_TAGS_64 = itertools.cycle(range(0x3FA00000, 0x3FB00000))
+_TAGS_32 = itertools.cycle(range(0x100, 0x800))
+_PASSES = 2
+_SECONDS_END = 2**31
+
+logger = logging.getLogger(__name__)
+
+
+class MessageTemplate:
+    """A message with fixed names and lengths, and writable stamps and float64 values.
+
+    One thread at a time. Other numbers keep the values of the prototype.
+
+        template = MessageTemplate(JointState(name=names, position=[0.0] * len(names)))
+        position = template.doubles("position")    # a view: write into it
+        template.set_stamps(now_ns)
+        template.publish(publisher)
+    """
+
+    def __init__(self, prototype: Message) -> None:
+        """Serialise the prototype and find its numbers.
+
+        Args:
+            prototype: has its final strings and the final length of every sequence. It is copied;
+                later changes to it have no effect.
+        """
+        self._layout = _layout_of(prototype)
+        self._message = self._layout.message
+        stamps = [field for field in time_fields(self._message) if isinstance(field.owner, Time)]
+        places = self._indices(stamps).tolist()
+        self._stamps = tuple(zip(places[0::2], places[1::2], strict=True))
+        # Setting an item of a memoryview takes a tenth of the time of an array's.
+        self._signed = self._layout.int32.data
+        self._unsigned = self._layout.int32.view(np.uint32).data
+
+    @property
+    def int32(self) -> NDArray[np.int32]:
+        """All times and durations, among other words; write only at indices from `time_indices`."""
+        return self._layout.int32
+
+    @property
+    def float64(self) -> NDArray[np.float64]:
+        """All float64 values, among other words; write only at indices from `indices`."""
+        return self._layout.float64
+
+    def indices(self, path: str) -> NDArray[np.intp]:
+        """Return the indices in `float64` of a field's values, in the message's order.
+
+        Args:
+            path: field names separated by dots. The last one is a float64, a sequence or array of
+                float64, or a message that contains only these. `[2]` selects one element of a
+                sequence of messages, and `[*]` all: "position", "interface_values[*].values",
+                "transforms[*].transform".
+
+        Raises:
+            MessageLayoutError: there is no such field, or it is not float64.
+        """
+        return self._indices(float64_fields_at(self._message, path))
+
+    def time_indices(self, path: str) -> NDArray[np.intp]:
+        """Return the indices in `int32` of the seconds and nanoseconds of a Time or Duration.
+
+        Args:
+            path: field names as for `indices`: "points[0].time_from_start".
+
+        Raises:
+            MessageLayoutError: there is no such field, or it is neither a time nor a duration.
+        """
+        return self._indices(time_fields_at(self._message, path))
+
+    def doubles(self, path: str) -> NDArray[np.float64]:
+        """Return a writable view, shape (n,), of a field whose values are contiguous.
+
+        Raises:
+            MessageLayoutError: as for `indices`, or the values are not contiguous.
+        """
+        where = self.indices(path)
+        if where.size == 0:
+            return self.float64[:0]
+        if where[-1] - where[0] != where.size - 1 or np.any(np.diff(where) != 1):
+            raise MessageLayoutError(
+                f"the values of '{path}' of {type(self._message).__name__} are not contiguous; "
+                "use indices()"
+            )
+        return self.float64[where[0] : where[-1] + 1]
+
+    def set_stamps(self, nanoseconds: int) -> None:
+        """Set every builtin_interfaces/Time of the message.
+
+        Raises:
+            OverflowError: a stamp cannot hold the time, which is before 1901 or after 2038.
+        """
+        seconds, rest = divmod(nanoseconds, 1_000_000_000)
+        if not -_SECONDS_END <= seconds < _SECONDS_END:
+            raise OverflowError(f"{seconds} s do not fit into a stamp's 32 bits")
+        for second, nanosecond in self._stamps:
+            self._signed[second] = seconds
+            self._unsigned[nanosecond] = rest
+
+    def to_bytes(self) -> bytes:
+        """Return the message with its current values, serialised."""
+        return self._layout.to_bytes()
+
+    def publish(self, publisher: Publisher) -> None:
+        """Publish the message with its current values.
+
+        Raises:
+            RCLError: the publisher has been destroyed.
+        """
+        self._layout.publish(publisher)
+
+    def _indices(self, fields: Iterable[Field]) -> NDArray[np.intp]:
+        places = self._layout.places
+        return np.concatenate([np.empty(0, np.intp), *(places[field.key] for field in fields)])
+
+
+class _SerializedLayout:
+    """Numbers in the bytes of a serialised message.
+
+    Attributes:
+        message: a copy of the prototype.
+        places: indices of each field's numbers in `float64` or `int32`.
+    """
+
+    def __init__(self, prototype: Message) -> None:
+        """Serialise the message and find its numbers.
+
+        Raises:
+            MessageLayoutError: the numbers cannot be found.
+        """
+        self._serialized = serialize_message(prototype)
+        self._size = len(self._serialized)
+        self.message = deserialize_message(self._serialized, type(prototype))
+        words = -(-(self._size - HEADER_BYTES) // 8)
+        # The body starts at a multiple of 8, so that all its views are aligned.
+        storage = np.zeros(8 + 8 * words, dtype=np.uint8)
+        start = 8 - HEADER_BYTES
+        self._payload = storage[start : start + self._size]
+        self._payload[:] = np.frombuffer(self._serialized, dtype=np.uint8)
+        self.float64 = storage[8:].view(np.float64)
+        self.int32 = storage[8:].view(np.int32)
+        doubles = self._locate(float64_fields, np.dtype(np.uint64), _TAGS_64, 32)
+        times = self._locate(time_fields, np.dtype(np.uint32), _TAGS_32, 20)
+        self.places = {
+            **_split(float64_fields(self.message), doubles),
+            **_split(time_fields(self.message), times),
+        }
+
+    def to_bytes(self) -> bytes:
+        return self._payload.tobytes()
+
+    def publish(self, publisher: Publisher) -> None:
+        publisher.publish(self._payload.tobytes())
+
+    def _locate(
+        self,
+        fields_of: Callable[[Message], Iterator[Field]],
+        word: np.dtype[Any],
+        tags: Iterator[int],
+        shift: int,
+    ) -> NDArray[np.intp]:
+        found: NDArray[np.bool_] | None = None
+        count = 0
+        marked = np.empty(0, dtype=word)
+        for tag in itertools.islice(tags, _PASSES):
+            message = deserialize_message(self._serialized, type(self.message))
+            count = _mark(fields_of(message), word, tag << shift)
+            marked = self._words(serialize_message(message), word)
+            here = marked >> shift == tag
+            # Text or a length may equal one mark, but not both.
+            found = here if found is None else found & here
+        where = np.flatnonzero(found) if found is not None else np.empty(0, dtype=np.intp)
+        numbers = marked[where] & word.type((1 << shift) - 1)
+        if not np.array_equal(np.sort(numbers), np.arange(count)):
+            raise MessageLayoutError(
+                f"cannot find the {count} marked numbers of {type(self.message).__name__} in its "
+                "bytes"
+            )
+        return where[np.argsort(numbers)]
+
+    def _words(self, serialized: bytes, word: np.dtype[Any]) -> NDArray[Any]:
+        if len(serialized) != self._size:
+            raise MessageLayoutError(
+                f"a {type(self.message).__name__} has {self._size} bytes at first, then "
+                f"{len(serialized)}"
+            )
+        count = (self._size - HEADER_BYTES) // word.itemsize
+        return np.frombuffer(serialized, dtype=word, offset=HEADER_BYTES, count=count)
+
+
+class _PlainLayout:
+    """Numbers beside a message that rclpy serialises; the attributes of `_SerializedLayout`."""
+
+    def __init__(self, prototype: Message) -> None:
+        self.message = deserialize_message(serialize_message(prototype), type(prototype))
+        self._doubles = list(float64_fields(self.message))
+        self._times = list(time_fields(self.message))
+        doubles = [number for field in self._doubles for number in field.numbers]
+        times = [number for field in self._times for number in field.numbers]
+        self.float64 = np.array(doubles, dtype=np.float64)
+        self.int32 = np.array(times, dtype=np.int64).astype(np.int32)
+        self.places = {
+            **_split(self._doubles, np.arange(len(doubles))),
+            **_split(self._times, np.arange(len(times))),
+        }
+
+    def to_bytes(self) -> bytes:
+        self._set_numbers()
+        return serialize_message(self.message)
+
+    def publish(self, publisher: Publisher) -> None:
+        self._set_numbers()
+        publisher.publish(self.message)
+
+    def _set_numbers(self) -> None:
+        for fields, numbers in ((self._doubles, self.float64), (self._times, self.int32)):
+            for field in fields:
+                field.set_numbers(numbers[self.places[field.key]].tolist())
+
+
+def _layout_of(prototype: Message) -> _SerializedLayout | _PlainLayout:
+    if is_on("message_template"):
+        try:
+            return _SerializedLayout(prototype)
+        except MessageLayoutError as error:
+            logger.info("workaround message_template is off for a message: %s", error)
+    return _PlainLayout(prototype)
+
+
+def _split(fields: Iterable[Field], where: NDArray[np.intp]) -> dict[tuple[int, str], Any]:
+    """Return the elements of `where` that belong to each field; it has the order of the fields."""
+    parts: dict[tuple[int, str], Any] = {}
+    start = 0
+    for field in fields:
+        parts[field.key] = where[start : start + field.size]
+        start += field.size
+    return parts
+
+
+def _mark(fields: Iterator[Field], word: np.dtype[Any], first: int) -> int:
+    """Set the fields' numbers to the marks `first`, `first` + 1 and so on; return how many."""
+    number = 0
+    for field in fields:
+        marks = np.arange(first + number, first + number + field.size, dtype=word)
+        field.set_numbers(marks.view(np.float64).tolist() if word.itemsize == 8 else marks.tolist())
+        number += field.size
+    return number

@@ -1,0 +1,63 @@
+"""Hides the files of the middleware from other users of this machine.
+
+Logs tell what a robot does, and all messages can be read in shared memory. The umask protects logs,
+locks and semaphores. Fast DDS sets the permissions of its segments itself, so this module changes
+them afterwards. Sending needs write permission, which other users never had.
+
+If this is switched off, only the shared memory keeps the permissions that Fast DDS 2.14 sets. No
+upstream issue is known.
+"""
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+from arm_node.workarounds.switch import is_on
+
+UMASK = 0o077
+OWNER_ONLY = 0o600
+_SHARED_MEMORY = re.compile(r"/dev/shm/(?:sem\.)?fastrtps_\w+")
+
+
+@contextmanager
+def made_private() -> Iterator[None]:
+    """Create files without permissions for other users while the context lasts."""
+    before = os.umask(UMASK)
+    try:
+        yield
+    finally:
+        os.umask(before)
+
+
+def hide_shared_memory(process: str = "/proc/self") -> list[str]:
+    """Remove other users' permissions from this process's shared memory; return the paths.
+
+    Call it after creating the process's first node; from any thread.
+
+    Args:
+        process: the process's folder in proc(5).
+    """
+    changed: list[str] = []
+    if not is_on("private_files"):
+        return changed
+    for path in sorted(_used(process)):
+        with suppress(OSError):
+            status = os.stat(path)
+            if status.st_uid == os.geteuid() and status.st_mode & UMASK:
+                os.chmod(path, OWNER_ONLY)
+                changed.append(path)
+    return changed
+
+
+def _used(process: str) -> set[str]:
+    """Return the mapped files (segments and semaphores) and the open ones (locks)."""
+    paths: set[str] = set()
+    with suppress(OSError), open(f"{process}/maps", encoding="utf-8", errors="replace") as file:
+        paths.update(_SHARED_MEMORY.findall(file.read()))
+    with suppress(OSError), os.scandir(f"{process}/fd") as entries:
+        for entry in entries:
+            with suppress(OSError):
+                if _SHARED_MEMORY.fullmatch(target := os.readlink(entry.path)):
+                    paths.add(target)
+    return paths

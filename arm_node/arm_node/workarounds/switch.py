@@ -1,0 +1,123 @@
+"""Decides which workarounds are on: by the version of the library, and by ARM_WITHOUT."""
+
+import os
+import re
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+VARIABLE = "ARM_WITHOUT"
+ALL = "all"
+_VERSION = re.compile(r"<version[^>]*>\s*([\d.]+)\s*</version>")
+_RMW = "rmw_fastrtps"
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """A library that has workarounds.
+
+    Attributes:
+        name: the name in messages.
+        made_for: the beginning of the versions that the workarounds are made for.
+        find_version: returns the version in use: empty if it is unknown or another library is
+            used instead, None if this process has not loaded the library.
+    """
+
+    name: str
+    made_for: str
+    find_version: Callable[[], str | None]
+
+    @property
+    def fits(self) -> bool:
+        """Whether the workarounds are made for the version in use."""
+        return f"{self.find_version()}.".startswith(f"{self.made_for}.")
+
+
+@cache
+def _rmw_version() -> str:
+    in_use = os.environ.get("RMW_IMPLEMENTATION", _RMW).startswith(_RMW)
+    return _package_version(f"{_RMW}_cpp") if in_use else ""
+
+
+@cache
+def _rclpy_version() -> str:
+    return _package_version("rclpy")
+
+
+def _mujoco_version() -> str | None:
+    mujoco = sys.modules.get("mujoco")
+    return None if mujoco is None else str(mujoco.__version__)
+
+
+def _package_version(name: str) -> str:
+    """Return the version of the first ROS package with this name; empty if there is none."""
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    for prefix in filter(None, [*prefixes, sys.prefix]):
+        # `importlib.metadata` takes ten times as long, and does not find a sourced ROS 2.
+        try:
+            text = Path(prefix, "share", name, "package.xml").read_text(encoding="utf-8")
+        except (OSError, ValueError):
+            continue
+        found = _VERSION.search(text)
+        return found[1] if found else ""
+    return ""
+
+
+RMW = Library("rmw_fastrtps", "8.4", _rmw_version)
+"""The version of ROS 2 Jazzy; it uses Fast DDS 2.14."""
+RCLPY = Library("rclpy", "7.1", _rclpy_version)
+MUJOCO = Library("MuJoCo", "4.0", _mujoco_version)
+
+LIBRARIES: Mapping[str, Library] = {
+    "discovery": RMW,
+    "signs_of_life": RMW,
+    "torn_ports": RMW,
+    "private_files": RMW,
+    "local_profile": RMW,
+    "message_template": RCLPY,
+    "stamp_clock": RCLPY,
+    "joint_state_encoding": RCLPY,
+    "parameter_types": RCLPY,
+    "serialized_goals": RCLPY,
+    "profiler": MUJOCO,
+}
+"""The library of each workaround, by the workaround's name."""
+
+OF_THE_BUILD = ("parse_cache", "template_cache")
+"""The workarounds in the build of arm_interfaces, which imports no package of the suite."""
+
+
+@cache
+def is_on(name: str) -> bool:
+    """Return whether a workaround of `LIBRARIES` is on; decided once in each process."""
+    return not is_off_by_hand(name, os.environ) and LIBRARIES[name].fits
+
+
+def switched_off(environ: Mapping[str, str] = os.environ) -> str:
+    """Return a line with the workarounds that are off, and why; empty if all are on."""
+    reasons: dict[str, list[str]] = {}
+    for name, library in LIBRARIES.items():
+        if is_off_by_hand(name, environ):
+            reasons.setdefault(f"by {VARIABLE}", []).append(name)
+        elif not library.fits and (version := library.find_version()) is not None:
+            found = version or "unknown or not in use"
+            why = f"made for {library.name} {library.made_for}; the version here is {found}"
+            reasons.setdefault(why, []).append(name)
+    parts = [f"{', '.join(names)} ({why})" for why, names in reasons.items()]
+    unknown = sorted(_named(environ) - {*LIBRARIES, *OF_THE_BUILD, ALL})
+    if unknown:
+        known = ", ".join([*LIBRARIES, *OF_THE_BUILD])
+        parts.append(f"unknown in {VARIABLE}: {', '.join(unknown)}; the names are {known}")
+    return f"workarounds that are off: {'; '.join(parts)}" if parts else ""
+
+
+def is_off_by_hand(name: str, environ: Mapping[str, str] = os.environ) -> bool:
+    """Return whether ARM_WITHOUT names a workaround."""
+    return not _named(environ).isdisjoint({name, ALL})
+
+
+def _named(environ: Mapping[str, str]) -> set[str]:
+    words = environ.get(VARIABLE, "").split(",")
+    return {word.strip() for word in words} - {""}

@@ -1,0 +1,7 @@
+"""The errors of the test bench."""
+
+from arm_sim.errors import ArmSimError
+
+
+class BenchError(ArmSimError):
+    """The bench cannot do what a test asks for; the message says why."""

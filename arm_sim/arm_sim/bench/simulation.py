@@ -1,0 +1,195 @@
+"""The simulation of a test: the library's, with assertions that look at all that has happened."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from shlex import quote
+from typing import Any
+
+from arm_gazebo.world.entity import WORLD_FRAME
+from arm_sim.bench.black_box import BlackBox
+from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
+from arm_sim.bench.history import StateHistory
+from arm_sim.bench.touches import Touch, TouchLog
+from arm_sim.faults import SimulationFaults
+from arm_sim.joints import Joints
+from arm_sim.robots import AnyPath
+from arm_sim.simulation import Simulation
+from arm_sim.snapshots import SavedState
+
+PLOT = "joints.png"
+RECORDING = "test.run"
+SHOWN_TOUCHES = 8
+
+
+class BenchSimulation(Simulation):
+    """A `Simulation` that remembers what happens, for the assertions and reports of a test.
+
+    Attributes:
+        history: the states of the joints since the test began.
+        touches: which bodies have touched each other since then.
+        faults: what goes wrong in a `with` block.
+        first_seed: seed of the noise at the start.
+    """
+
+    def __init__(self, *, robot: AnyPath = "arm", **arguments: Any) -> None:
+        """Build it; `robot` is the description, and the others are `Simulation`'s arguments."""
+        super().__init__(robot, **arguments)
+        self.first_seed = self.parts.settings.seed
+        joints = self._physics.built.joints
+        units = ["m" if joints[name].linear else "rad" for name in self.joints.names]
+        self.history = StateHistory(self.joints.names, units)
+        self.touches = TouchLog()
+        self.faults = SimulationFaults(self.parts, self.camera)
+        self._observer = _StateObserver(self.joints, self.history, self.touches)
+        self._tick.add_feed(self._observer)
+        self._black_box = BlackBox(self.parts)
+        self._begin()
+
+    def restore(self, snapshot: SavedState | AnyPath) -> None:
+        """Go back to a state; the history and the recording begin there. See `Simulation`."""
+        self._black_box.end()
+        super().restore(snapshot)
+        self._begin()
+
+    def reset(self, seed: int | None = None) -> None:
+        """Go back to the start; the history and the recording begin there. See `Simulation`."""
+        self._black_box.end()
+        super().reset(seed)
+        self._begin(at_start=seed == self.first_seed)
+
+    def close(self) -> None:
+        """End everything; may be called again."""
+        self._black_box.end()
+        super().close()
+
+    def _begin(self, at_start: bool = False) -> None:
+        self._black_box.begin(at_start)
+        self.history.clear()
+        self.touches.clear()
+        self.faults.log.restart()
+        self._observer.publish_due(self.time_s, self._physics.data)
+
+    # Assertions
+
+    def assert_reaches(
+        self,
+        target: Target,
+        *,
+        within_s: float = 5.0,
+        tolerance: float = 0.01,
+        hold_s: float = 0.0,
+    ) -> None:
+        """Run until the joints are at their targets, all at the same time.
+
+        Args:
+            target: positions by joint, or of all joints in their order, in rad or m.
+            within_s: simulated seconds to wait at most.
+            tolerance: largest distance of each joint from its target, in rad or m.
+            hold_s: how long they must stay there, in simulated seconds.
+
+        Raises:
+            AssertionError: they do not get there; the message says what they do instead.
+            CallError, UnknownNameError: this is not a target for these joints.
+        """
+        __tracebackhide__ = True
+        expect_reached(
+            self.history, self.run_until, target, within_s, tolerance, hold_s, self._circumstances
+        )
+
+    def assert_never_exceeds(
+        self,
+        *,
+        position: Limit | None = None,
+        velocity: Limit | None = None,
+        effort: Limit | None = None,
+    ) -> None:
+        """Check all states since the test began against bounds.
+
+        Each bound is a number that the magnitude must not exceed, or a tuple of the lowest and the
+        highest value; for all joints, or a mapping by joint.
+
+        Args:
+            position: in rad or m.
+            velocity: in rad/s or m/s.
+            effort: of the drives, in N m or N.
+
+        Raises:
+            AssertionError: a value was beyond its bound, or not a number; the message says when.
+            CallError, UnknownNameError: these are not bounds of these joints.
+        """
+        __tracebackhide__ = True
+        limits = {"position": position, "velocity": velocity, "effort": effort}
+        expect_within(self.history, limits, self._circumstances)
+
+    def assert_no_contact(self, name: str | None = None, *, allow: Sequence[str] = ()) -> None:
+        """Check that something has touched nothing since the test began.
+
+        Args:
+            name: an entity or a link; None for the robot.
+            allow: entities or links that it may touch; "world" for the world.
+
+        Raises:
+            AssertionError: it has touched something else; the message says what and when.
+            RequestError: there is no entity or link of that name.
+        """
+        __tracebackhide__ = True
+        whose = self._bodies(name)
+        allowed = {body for other in allow for body in self._bodies(other)}
+        found = [
+            touch
+            for touch in self.touches.touches
+            if whose.intersection(touch.bodies) and not allowed.intersection(touch.bodies)
+        ]
+        if found:
+            raise AssertionError("\n".join(map(str, _shown(found))))
+
+    def _bodies(self, name: str | None) -> frozenset[str]:
+        if name == WORLD_FRAME:
+            return frozenset((WORLD_FRAME,))
+        names = list(self._physics.built.robots) if name is None else [name]
+        return frozenset(body for each in names for body in self._open.things.bodies(each))
+
+    def _circumstances(self) -> Iterator[str]:
+        """Return sentences about what else was the case."""
+        for touch in _shown(self.touches.present):
+            yield f"meanwhile {touch}"
+        yield from map(str, self.faults.log.spans)
+
+    # The report
+
+    def report(self, folder: Path) -> Iterator[str]:
+        """Write what explains a failure; yield a line for each file.
+
+        Args:
+            folder: an existing folder for the files.
+
+        Raises:
+            OSError, GazeboError: a file cannot be written.
+        """
+        from arm_sim.bench.joint_plot import save_plot
+
+        save_plot(self.history, folder / PLOT, self.faults.log.spans)
+        yield f"joints: {folder / PLOT}"
+        if self._black_box.refusal:
+            yield f"not recorded: {self._black_box.refusal}"
+            return
+        self._black_box.write(folder / RECORDING)
+        yield f"run it again: arm sim replay {quote(str(folder / RECORDING))}"
+
+
+class _StateObserver:
+    """Adds the state after each tick to the history."""
+
+    def __init__(self, joints: Joints, history: StateHistory, touches: TouchLog) -> None:
+        self._joints, self._history, self._touches = joints, history, touches
+
+    def publish_due(self, time_s: float, data: Any) -> None:
+        joints = self._joints
+        self._history.add(time_s, joints.position, joints.velocity, joints.effort)
+        self._touches.note(time_s, data)
+
+
+def _shown(touches: Sequence[Touch]) -> Iterator[Touch | str]:
+    yield from touches[:SHOWN_TOUCHES]
+    if len(touches) > SHOWN_TOUCHES:
+        yield f"and {len(touches) - SHOWN_TOUCHES} more contacts"

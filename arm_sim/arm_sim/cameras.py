@@ -1,0 +1,99 @@
+"""The cameras of the simulated robot."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_gazebo.camera.on_demand import OnDemandCameras
+from arm_gazebo.physics.simulation import Simulation as Physics
+from arm_gazebo.sensors.camera import CameraSensor
+from arm_sim.errors import UnknownNameError
+
+
+class Camera:
+    """One camera; it draws the present state when it is asked.
+
+    Attributes:
+        name: its name.
+        width: of its images, in pixels.
+        height: of its images, in pixels.
+        is_dark: whether something covers its lens.
+    """
+
+    def __init__(self, cameras: OnDemandCameras, index: int, sensor: CameraSensor) -> None:
+        self._cameras = cameras
+        self._index = index
+        self._focal_length = sensor.focal_length
+        self.is_dark = False
+        self.name = sensor.name
+        self.width = sensor.width
+        self.height = sensor.height
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """The intrinsic matrix K in pixels, shape (3, 3)."""
+        f = self._focal_length
+        return np.array([[f, 0.0, self.width / 2], [0.0, f, self.height / 2], [0.0, 0.0, 1.0]])
+
+    def image(self) -> NDArray[np.uint8]:
+        """Return what it sees, with its noise: RGB, shape (height, width, 3).
+
+        Raises:
+            CameraError: no render backend works.
+        """
+        if self.is_dark:
+            return np.zeros((self.height, self.width, 3), np.uint8)
+        return self._cameras.picture(self._index)
+
+    def depth(self) -> NDArray[np.float32]:
+        """Return the distances along its axis in m, shape (height, width).
+
+        What is too near is -inf, what is too far inf.
+
+        Raises:
+            CameraError: no render backend works.
+        """
+        if self.is_dark:
+            return np.full((self.height, self.width), -np.inf, np.float32)
+        return self._cameras.depth(self._index)
+
+
+class RobotCameras:
+    """The cameras of the robot; they share one renderer, which is opened for the first picture.
+
+    Attributes:
+        names: names of the cameras.
+    """
+
+    def __init__(
+        self, physics: Physics, sensors: Sequence[CameraSensor], backend: str, seed: int
+    ) -> None:
+        self._drawn = OnDemandCameras(physics, sensors, backend, seed)
+        cameras = [Camera(self._drawn, index, sensor) for index, sensor in enumerate(sensors)]
+        self.names = tuple(camera.name for camera in cameras)
+        self._found = {
+            key: camera
+            for camera, sensor in zip(cameras, sensors, strict=True)
+            for key in (*(topic.strip("/") for topic in sensor.topics), sensor.name)
+        }
+
+    def find(self, name: str) -> Camera:
+        """Return a camera by its name, or by one of its topics.
+
+        Raises:
+            UnknownNameError: there is none of that name.
+        """
+        found = self._found.get(name.strip("/"))
+        if found is None:
+            existing = f"the robot has {', '.join(self.names) or 'none'}"
+            raise UnknownNameError(f"no camera '{name}'; {existing}")
+        return found
+
+    def reseed(self, seed: int) -> None:
+        """Draw the noise of another run from now on."""
+        self._drawn.reseed(seed)
+
+    def close(self) -> None:
+        """Free the renderer."""
+        self._drawn.close()

@@ -1,0 +1,182 @@
+"""Faults on demand in the library: each is a context manager."""
+
+import heapq
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from itertools import count
+from typing import Any
+
+from arm_gazebo.faults.fault import Fault, FaultKind
+from arm_gazebo.faults.injector import FaultInjector
+from arm_sim.assembled import Assembled
+from arm_sim.cameras import Camera
+from arm_sim.controllers import ControllerHandle
+from arm_sim.fault_log import FaultLog
+from arm_sim.faulty_link import FaultyLink, LinkFault
+
+TOLERANCE_S = 1e-9
+"""Rounding error of a time that is a sum of periods."""
+
+
+class SimulationFaults:
+    """Faults of one simulation; each lasts as long as its `with` block. The simulation's thread.
+
+    Attributes:
+        log: the faults so far.
+    """
+
+    def __init__(self, parts: Assembled, find_camera: Callable[[str], Camera]) -> None:
+        self.log = FaultLog(lambda: parts.physics.time_s)
+        self._parts = parts
+        self._find_camera = find_camera
+        self._injector = FaultInjector(
+            parts.physics, [parts.robot.manager], parts.tick, parts.robot.sensors
+        )
+
+    def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
+        """Let a joint stick where it is, whatever its drive does."""
+        return self._injected(Fault(FaultKind.JOINT_STALLED, joint))
+
+    def sensor_frozen(self, name: str) -> AbstractContextManager[None]:
+        """Let readings stay as they are.
+
+        Controllers and broadcasters see them; `sim.joints` shows the true states.
+
+        Args:
+            name: a channel such as j0/position; or a joint or sensor, for all of its channels.
+        """
+        return self._injected(Fault(FaultKind.SENSOR_FROZEN, name))
+
+    def sensor_noisy(
+        self, name: str, deviation: float, seed: int = 0
+    ) -> AbstractContextManager[None]:
+        """Add Gaussian noise to readings; see `sensor_frozen`.
+
+        Args:
+            name: as for `sensor_frozen`.
+            deviation: standard deviation, in the unit of the reading.
+            seed: of the noise.
+        """
+        return self._injected(Fault(FaultKind.SENSOR_NOISY, name, deviation, seed))
+
+    def sensor_nan(self, name: str) -> AbstractContextManager[None]:
+        """Let readings be NaN; see `sensor_frozen`."""
+        return self._injected(Fault(FaultKind.SENSOR_NAN, name))
+
+    def controller_raises(self, name: str) -> AbstractContextManager[None]:
+        """Let a controller's updates raise: the manager deactivates it, or starts its fallback.
+
+        It stays inactive after the block.
+        """
+        return self._injected(Fault(FaultKind.CONTROLLER_RAISES, name))
+
+    def slow_tick(self, seconds: float) -> AbstractContextManager[None]:
+        """Let each control period take longer, in seconds of wall time."""
+        return self._injected(Fault(FaultKind.SLOW_TICK, amount=seconds))
+
+    def messages_dropped(
+        self, controller: str, fraction: float = 1.0, seed: int = 0
+    ) -> AbstractContextManager[None]:
+        """Lose commands to a controller.
+
+        Args:
+            controller: its name.
+            fraction: of the commands, from 0 to 1.
+            seed: which ones.
+        """
+        return self._linked("dropped", controller, LinkFault(lost=fraction, seed=seed))
+
+    def messages_delayed(
+        self, controller: str, by_s: float, jitter_s: float = 0.0, seed: int = 0
+    ) -> AbstractContextManager[None]:
+        """Deliver commands later; what is under way at the end of the block arrives there.
+
+        Args:
+            controller: its name.
+            by_s: how late, in simulated seconds.
+            jitter_s: how much later than that at most, at random; commands may overtake others.
+            seed: of what is random.
+        """
+        fault = LinkFault(delay_s=by_s, jitter_s=jitter_s, seed=seed)
+        return self._linked("delayed", controller, fault)
+
+    def messages_doubled(
+        self, controller: str, fraction: float = 1.0, after_s: float = 0.0, seed: int = 0
+    ) -> AbstractContextManager[None]:
+        """Deliver commands twice.
+
+        Args:
+            controller: its name.
+            fraction: of the commands, from 0 to 1.
+            after_s: how long after the first copy the second arrives, in simulated seconds.
+            seed: which ones.
+        """
+        fault = LinkFault(doubled=fraction, again_s=after_s, seed=seed)
+        return self._linked("doubled", controller, fault)
+
+    @contextmanager
+    def camera_dark(self, name: str) -> Iterator[None]:
+        """Cover a camera's lens: images are black, and everything is too near."""
+        camera = self._find_camera(name)
+        with self.log.noted(f"{name} dark"):
+            camera.is_dark = True
+            try:
+                yield
+            finally:
+                camera.is_dark = False
+
+    @contextmanager
+    def _injected(self, fault: Fault) -> Iterator[None]:
+        self._injector.begin(fault)
+        with self.log.noted(str(fault)):
+            try:
+                yield
+            finally:
+                self._injector.end(fault)
+
+    @contextmanager
+    def _linked(self, how: str, controller: str, fault: LinkFault) -> Iterator[None]:
+        handle, parts = self._parts.controllers[controller], self._parts
+        line = _CommandLine(handle, FaultyLink(fault), lambda: parts.physics.time_s)
+        with self.log.noted(f"{controller} {how}"):
+            parts.tick.add_feed(line)
+            try:
+                yield
+            finally:
+                parts.tick.remove_feed(line)
+                line.close()
+
+
+class _CommandLine:
+    """Stands between a program and a controller, and delivers what is due after each tick."""
+
+    def __init__(
+        self, handle: ControllerHandle, link: FaultyLink, now_s: Callable[[], float]
+    ) -> None:
+        self._handle, self._link, self._now_s = handle, link, now_s
+        self._behind = handle.deliver
+        self._under_way: list[tuple[float, int, Sequence[float]]] = []
+        self._numbers = count()
+        handle.deliver = self._take
+
+    def _take(self, values: Sequence[float]) -> None:
+        for delay_s in self._link.delays_s():
+            item = (self._now_s() + delay_s, next(self._numbers), tuple(values))
+            heapq.heappush(self._under_way, item)
+        self._deliver(self._now_s())
+
+    def publish_due(self, time_s: float, data: Any) -> None:
+        """Deliver what is due before the next tick."""
+        self._deliver(time_s)
+
+    def close(self) -> None:
+        """Deliver the rest, and step aside."""
+        self._deliver(float("inf"))
+        self._handle.deliver = self._behind
+
+    def _deliver(self, time_s: float) -> None:
+        while self._under_way and self._under_way[0][0] <= time_s + TOLERANCE_S:
+            _, _, values = heapq.heappop(self._under_way)
+            # A controller that has stopped meanwhile takes nothing.
+            if self._handle.is_active:
+                self._behind(values)

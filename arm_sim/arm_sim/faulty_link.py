@@ -1,0 +1,56 @@
+"""A connection that loses, delays and repeats messages."""
+
+import math
+from dataclasses import dataclass
+
+from arm_sim.errors import CallError
+
+
+@dataclass(frozen=True, slots=True)
+class LinkFault:
+    """What is wrong with a connection.
+
+    Attributes:
+        lost: fraction of the messages that are lost.
+        doubled: fraction of the others that arrive twice.
+        delay_s: how late each message arrives.
+        jitter_s: how much later than that it may arrive, at random; messages may overtake others.
+        again_s: how long after the first copy the second one arrives.
+        seed: of what is random.
+    """
+
+    lost: float = 0.0
+    doubled: float = 0.0
+    delay_s: float = 0.0
+    jitter_s: float = 0.0
+    again_s: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Raise CallError if a value is not a fraction or not a time."""
+        for name in ("lost", "doubled"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise CallError(f"the fraction of messages that are {name} is from 0 to 1")
+        for name in ("delay_s", "jitter_s", "again_s"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise CallError(f"{name} is a time in seconds, not {getattr(self, name)}")
+
+
+class FaultyLink:
+    """Says when each message arrives; the same seed gives the same answers."""
+
+    def __init__(self, fault: LinkFault) -> None:
+        import numpy as np
+
+        self._fault = fault
+        self._random = np.random.default_rng(fault.seed)
+
+    def delays_s(self) -> list[float]:
+        """Return how late the next message arrives: nothing if it is lost, two times if doubled."""
+        fault = self._fault
+        # Three numbers for each message, so that what happens to one leaves the others alone.
+        is_lost, is_doubled, late = self._random.random(3).tolist()
+        if is_lost < fault.lost:
+            return []
+        delay_s = fault.delay_s + late * fault.jitter_s
+        return [delay_s, delay_s + fault.again_s] if is_doubled < fault.doubled else [delay_s]

@@ -1,0 +1,209 @@
+"""A Gymnasium environment of any robot: a policy in place of its controllers."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from arm_sim.errors import CallError
+from arm_sim.gym.actions import Commands, action_mode
+from arm_sim.gym.robot import CommandedRobot, RobotOptions
+from arm_sim.gym.task import Array, Task
+from arm_sim.robots import AnyPath
+from arm_sim.simulation import Simulation
+
+Images = NDArray[np.uint8]
+Observations = dict[str, Any]
+DECISION_S = 0.04
+CONTROL_RATE_HZ = 100
+
+
+class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
+    """One robot in its world; each action holds for `decision_s` of simulated time.
+
+    It runs the classes of the simulation node, as `Simulation` does. Equal seeds and actions give
+    equal bits.
+
+    Args:
+        description: URDF or xacro file, or "arm" or "mycobot"; see `Simulation`.
+        task: observations, reward, end and start of the episodes.
+        actions: "position", "step", "velocity" or "effort", see `ACTIONS`; an action has a number
+            from -1 to 1 for each joint.
+        cameras: cameras whose images are observations, under their names.
+        joints: the joints that actions command; None for all that can be commanded so.
+        decision_s: simulated time of one action, a whole number of control periods.
+        control_rate_hz: control rate.
+        restart: whether each episode starts from the robot's first pose. False lets the robot stay
+            where it is, with a new goal, unless `reset` gets a seed.
+        simulation: further arguments of `Simulation`, such as `world` or `arguments`.
+        render_mode: "rgb_array" for images of a camera, or None.
+        render_camera: the camera of `render`; None for the robot's first.
+
+    Attributes:
+        simulation: the simulation behind it.
+        lower: lowest positions of the commanded joints, shape (n,).
+        upper: highest positions of the commanded joints, shape (n,).
+        goal: what the task drew for this episode.
+    """
+
+    # Gymnasium reads it from the class, where it checks render modes before it makes one.
+    metadata = {"render_modes": ["rgb_array"], "render_fps": round(1.0 / DECISION_S)}  # noqa: RUF012
+
+    def __init__(
+        self,
+        description: AnyPath = "arm",
+        task: Task | None = None,
+        *,
+        actions: str = "position",
+        cameras: Sequence[str] = (),
+        joints: Sequence[str] | None = None,
+        decision_s: float = DECISION_S,
+        control_rate_hz: int = CONTROL_RATE_HZ,
+        restart: bool = True,
+        simulation: Mapping[str, Any] | None = None,
+        render_mode: str | None = None,
+        render_camera: str | None = None,
+    ) -> None:
+        """Build the simulation.
+
+        Raises:
+            CallError: an argument cannot be used.
+            UnknownNameError: a camera does not exist.
+            DescriptionError, GazeboError, ArmControlError: see `Simulation`.
+        """
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise CallError(f"no render mode '{render_mode}'; there is rgb_array")
+        self.render_mode = render_mode
+        self.task = task or Task()
+        options = RobotOptions(description, joints, decision_s, control_rate_hz, simulation or {})
+        self._robot = CommandedRobot(options, action_mode(actions).interface)
+        self.simulation: Simulation = self._robot.simulation
+        self.lower, self.upper = self._robot.lower, self._robot.upper
+        self._commands = Commands(actions, self._robot.joints, decision_s)
+        self._cameras = tuple(cameras)
+        self._render_camera = render_camera
+        self._restarts, self._started = restart, False
+        self.goal: Mapping[str, Array] = {}
+        self.metadata = {**self.metadata, "render_fps": round(1.0 / decision_s)}
+        self._begin(np.random.default_rng(0))
+        count = len(self._robot.joints)
+        self.action_space = spaces.Box(-1.0, 1.0, (count,), np.float32)
+        self.observation_space = spaces.Dict(self._spaces())
+
+    # The scene that the task's functions see
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the commanded joints."""
+        return tuple(joint.name for joint in self._robot.joints)
+
+    @property
+    def position(self) -> Array:
+        """Positions of the commanded joints, shape (n,)."""
+        return self._qpos[self._addresses]
+
+    @property
+    def velocity(self) -> Array:
+        """Velocities of the commanded joints, shape (n,)."""
+        return self._qvel[self._dofs]
+
+    @property
+    def command(self) -> Array:
+        """The last commands of the joints, shape (n,)."""
+        return self._last.copy()
+
+    def point(self, link: str) -> Array:
+        """Return the origin of a link, or of a thing in the world, in m, shape (3,)."""
+        state = self.simulation.parts.physics.observe()
+        return state.xpos[self._robot.body(link)].copy()
+
+    def point_at(self, link: str, positions: Array) -> Array:
+        """Return where a link would be, shape (3,), with the joints at positions, shape (n,)."""
+        return self._robot.point_at(link, positions)
+
+    # Gymnasium
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Start an episode; return the observations, and an empty info."""
+        super().reset(seed=seed)
+        if self._restarts or seed is not None or not self._started:
+            self._begin(self.np_random)
+        else:
+            self.goal = self.task.start(self, self.np_random)
+        self._started = True
+        return self._observe(), {}
+
+    def step(
+        self, action: NDArray[np.float32]
+    ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
+        """Apply an action; return observations, reward, terminated, truncated and info.
+
+        The episode is truncated if the physics became unstable; the info tells it as `failure`.
+        """
+        self._last = self._commands.of(action, self._last)
+        self._robot.command(self._last.tolist())
+        parts = self.simulation.parts
+        for _ in range(self._robot.periods):
+            parts.tick()
+        failures = parts.physics.take_failures()
+        info: dict[str, Any] = {"is_success": bool(self.task.succeeded(self))}
+        if failures:
+            info["failure"] = failures[0]
+        reward, terminated = float(self.task.reward(self)), bool(self.task.terminated(self))
+        return self._observe(), reward, terminated, bool(failures), info
+
+    def render(self) -> Images | None:
+        """Return an image of the camera, shape (h, w, 3), or None without a render mode."""
+        if self.render_mode is None:
+            return None
+        names = self.simulation.cameras
+        if not names:
+            raise CallError("the robot has no camera, so there is nothing to render with")
+        return self.simulation.camera(self._render_camera or names[0]).image().copy()
+
+    def close(self) -> None:
+        """Close the simulation; may be called again."""
+        self.simulation.close()
+
+    def _begin(self, random: np.random.Generator) -> None:
+        """Return to the start and draw a goal."""
+        self._robot.restart()
+        physics = self.simulation.parts.physics
+        self._qpos, self._qvel = physics.data.qpos, physics.data.qvel
+        self._addresses = np.array([joint.qpos_address for joint in self._robot.joints])
+        self._dofs = np.array([joint.dof_address for joint in self._robot.joints])
+        self._last = self._commands.home.copy()
+        self.goal = self.task.start(self, random)
+
+    def _observe(self) -> Observations:
+        observed: Observations = dict(self.task.observe(self))
+        for name in self._cameras:
+            observed[name] = self.simulation.camera(name).image().copy()
+        return observed
+
+    def _spaces(self) -> dict[str, spaces.Space[Any]]:
+        found: dict[str, spaces.Space[Any]] = task_spaces(self.task, self.task.observe(self))
+        for name in self._cameras:
+            camera = self.simulation.camera(name)
+            found[name] = spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8)
+        return found
+
+
+def task_spaces(
+    task: Task, observed: Mapping[str, NDArray[np.float32]]
+) -> dict[str, spaces.Space[Any]]:
+    """Return the spaces of a task's observations.
+
+    Args:
+        task: the task.
+        observed: observations of one environment.
+    """
+    return {
+        name: spaces.Box(one.low, one.high, observed[name].shape, np.float32)
+        for name, one in task.observations.items()
+    }

@@ -1,0 +1,93 @@
+"""The task of lifting the cylinder that stands before the myCobot."""
+
+from typing import Any
+
+import numpy as np
+
+from arm_sim.gym.arm_env import ArmEnv
+from arm_sim.gym.batch_env import BatchEnv
+from arm_sim.gym.task import (
+    JOINT_POSITIONS,
+    JOINT_VELOCITIES,
+    Array,
+    Flags,
+    Observation,
+    Scene,
+    Task,
+)
+
+OBJECT = "red_cylinder"
+FINGERS = ("gripper_left1", "gripper_right1")
+STANDING_M = 0.175
+"""Height of the cylinder's middle while it stands on the floor."""
+LOWEST_LIFT_M, HIGHEST_LIFT_M = 0.04, 0.08
+REWARD_PER_M = 20.0
+"""Reward for each metre of height, beside 1 for each metre nearer to the cylinder."""
+
+
+def pick_task() -> Task:
+    """Return the task of gripping the cylinder and lifting it to a height.
+
+    Observations are the joints' positions and velocities, the cylinder's middle `object`, the
+    vector `reach` to it from the midpoint of the fingers, and the height `rise` by which it must
+    still be lifted, in rad, m and s. The reward is minus the length of that vector, and 20 for each
+    metre that the cylinder is above its place, up to the height. An episode ends when it is that
+    high.
+    """
+
+    def reach(scene: Scene) -> Array:
+        left, right = (scene.point(finger) for finger in FINGERS)
+        return scene.point(OBJECT) - 0.5 * (left + right)
+
+    def lifted(scene: Scene) -> Array:
+        return scene.point(OBJECT)[..., 2] - STANDING_M
+
+    def reward(scene: Scene) -> Array:
+        distance = np.sqrt((reach(scene) ** 2).sum(axis=-1))
+        height = np.clip(lifted(scene), 0.0, scene.goal["lift"][..., 0])
+        return REWARD_PER_M * height - distance
+
+    def done(scene: Scene) -> Flags:
+        return lifted(scene) >= scene.goal["lift"][..., 0]
+
+    return Task(
+        observations={
+            "position": JOINT_POSITIONS,
+            "velocity": JOINT_VELOCITIES,
+            "object": Observation(lambda scene: scene.point(OBJECT), -10.0, 10.0),
+            "reach": Observation(reach, -10.0, 10.0),
+            "rise": Observation(
+                lambda scene: scene.goal["lift"] - lifted(scene)[..., None], -10.0, 10.0
+            ),
+        },
+        reward=reward,
+        terminated=done,
+        succeeded=done,
+        start=lambda scene, random: {"lift": random.uniform(LOWEST_LIFT_M, HIGHEST_LIFT_M, 1)},
+    )
+
+
+class ArmPick(ArmEnv):
+    """Grip the cylinder with the myCobot and lift it; the seventh joint is the gripper.
+
+    Args:
+        actions: see `ArmEnv`.
+        options: further arguments of `ArmEnv`.
+    """
+
+    def __init__(self, actions: str = "step", **options: Any) -> None:
+        super().__init__("mycobot", pick_task(), actions=actions, **options)
+
+
+def pick_batch(
+    num_envs: int, max_episode_steps: int, actions: str = "step", **options: Any
+) -> BatchEnv:
+    """Return `num_envs` copies of `ArmPick`; `gymnasium.make_vec` calls it."""
+    return BatchEnv(
+        num_envs,
+        "mycobot",
+        pick_task(),
+        actions=actions,
+        max_episode_steps=max_episode_steps,
+        **options,
+    )

@@ -1,0 +1,156 @@
+"""The pytest plugin: fixtures `arm_sim` and `arm_ros`, and their markers.
+
+Every pytest run of whoever has this installed loads this module, so it imports the rest only when
+a test uses it.
+"""
+
+import os
+import warnings
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from arm_sim.bench.evidence import Evidence
+    from arm_sim.bench.pool import SimulationPool
+    from arm_sim.bench.processes import LoggedProcess
+    from arm_sim.bench.ros_bench import RosBench
+    from arm_sim.bench.simulation import BenchSimulation
+
+MARKERS = (
+    "arm_sim(robot, world, controllers, ...): what the fixture arm_sim simulates; the arguments of "
+    "arm_sim.Simulation by name",
+    "arm_ros(robot, world, controllers, launch, arguments): what the fixture arm_ros launches",
+)
+ARTIFACTS = "arm-artifacts"
+
+_evidence = pytest.StashKey[list["Evidence"]]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options."""
+    parser.getgroup("arm", "simulated robots").addoption(
+        "--arm-artifacts",
+        metavar="DIR",
+        default=ARTIFACTS,
+        help="folder for plots, recordings and logs of failed tests; default: %(default)s, "
+        "relative to the root directory",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the markers."""
+    for line in MARKERS:
+        config.addinivalue_line("markers", line)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
+    """Explain a failure while the simulation still exists."""
+    report: pytest.TestReport = yield  # pyright: ignore
+    if report.failed and report.when == "call":
+        for value in item.stash.get(_evidence, []):
+            from arm_sim.bench.evidence import explain
+
+            folder = item.config.rootpath / str(item.config.getoption("--arm-artifacts"))
+            explain(item, report, Path(folder), value)
+    return report  # pyright: ignore
+
+
+@pytest.fixture(scope="session")
+def _arm_sim_pool() -> "Iterator[SimulationPool]":
+    from arm_sim.bench.pool import SimulationPool
+
+    pool = SimulationPool()
+    yield pool
+    pool.close()
+
+
+@pytest.fixture
+def arm_sim(request: pytest.FixtureRequest, _arm_sim_pool: "SimulationPool") -> "BenchSimulation":
+    """Return a simulation without ROS, in its first state: see `arm_sim.bench.simulation`.
+
+    The marker `arm_sim` says what it simulates; by default it is the 4-DOF arm.
+    """
+    simulation = _simulation(request.node, _arm_sim_pool)
+    if isinstance(simulation, str):
+        pytest.fail(simulation, pytrace=False)
+    request.node.stash.setdefault(_evidence, []).append(simulation)
+    return simulation
+
+
+def _simulation(item: pytest.Item, pool: "SimulationPool") -> "BenchSimulation | str":
+    """Return a simulation, or why there is none."""
+    from arm_control.errors import ArmControlError
+    from arm_description.errors import DescriptionError
+    from arm_gazebo.errors import GazeboError
+    from arm_node.parameter_values import ParameterValueError
+    from arm_sim.bench.configuration import arguments_of, marked_arguments
+    from arm_sim.errors import ArmSimError
+    from arm_sim.simulation import Simulation
+
+    user_errors = (
+        ArmSimError, ArmControlError, DescriptionError, GazeboError, ParameterValueError,
+    )  # fmt: skip
+    try:
+        # The bench records each test itself.
+        known = ["robot", *(name for name in arguments_of(Simulation.__init__) if name != "record")]
+        return pool.take(marked_arguments(item, "arm_sim", known))
+    except user_errors as error:
+        return str(error)
+
+
+@pytest.fixture
+def arm_ros(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> "Iterator[RosBench]":
+    """Return a launch in a ROS domain of its own: see `arm_sim.bench.ros_bench`.
+
+    The marker `arm_ros` says what it launches; by default it is the 4-DOF arm.
+    """
+    from arm_node.environment import UnusableEnvironmentError, prepare_environment
+    from arm_node.ros_domain import NoFreeDomainError, domain_of_its_own
+    from arm_sim.bench.configuration import arguments_of, marked_arguments
+    from arm_sim.bench.launch_command import launch_command
+    from arm_sim.bench.processes import LoggedProcess
+    from arm_sim.errors import ArmSimError
+
+    refusal, problems = "", list[str]()
+    with ExitStack() as ending:
+        try:
+            known = [name for name in arguments_of(launch_command) if name != "record_to"]
+            arguments = marked_arguments(request.node, "arm_ros", known)
+            recording = tmp_path / "recording" / "test.run"
+            command = launch_command(**arguments, record_to=recording)
+            domain_id = ending.enter_context(domain_of_its_own())
+            # A test's own nodes are in the same domain.
+            monkeypatch.setenv("ROS_DOMAIN_ID", str(domain_id))
+            monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+            prepare_environment()
+            environment = {**os.environ, "ROS_LOG_DIR": str(tmp_path / "ros_log")}
+            launch = LoggedProcess("the launch", command, environment)
+            bench = _ros_bench(launch, domain_id, recording)
+        except (ArmSimError, NoFreeDomainError, UnusableEnvironmentError) as error:
+            refusal = str(error)
+        else:
+            request.node.stash.setdefault(_evidence, []).append(bench)
+            yield bench
+            problems = bench.close()
+    if refusal or problems:
+        pytest.fail("\n".join([refusal, *problems]).strip(), pytrace=False)
+
+
+def _ros_bench(launch: "LoggedProcess", domain_id: int, recording: Path) -> "RosBench":
+    """Return a launch as objects; ROS is imported while the launch starts."""
+    with warnings.catch_warnings():
+        # Modules that rclpy imports warn; that must not fail a run that turns warnings into errors.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        try:
+            from arm_sim.bench.ros_bench import RosBench
+        except BaseException:
+            launch.end()
+            raise
+    return RosBench(launch, domain_id, recording)

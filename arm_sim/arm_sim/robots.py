@@ -1,0 +1,46 @@
+"""The robots that have a name, as the launch files of these robots set them up."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+
+AnyPath = str | PathLike[str]
+
+
+@dataclass(frozen=True, slots=True)
+class NamedRobot:
+    """A robot with its controllers and the world that it starts in.
+
+    Attributes:
+        model: URI of the xacro file.
+        controllers: URI of the parameter file.
+        spawn: controllers to start.
+        world: name of a shipped world.
+        arguments: xacro arguments.
+        pose: x y z roll pitch yaw of its root in the world, in m and rad; () for the default.
+    """
+
+    model: str
+    controllers: str
+    spawn: tuple[str, ...]
+    world: str = "empty"
+    arguments: Mapping[str, str] = field(default_factory=dict[str, str])
+    pose: tuple[float, ...] = ()
+
+
+NAMED_ROBOTS: Mapping[str, NamedRobot] = {
+    "arm": NamedRobot(
+        "package://arm_description/urdf/arm.urdf.xacro",
+        "package://arm_control/config/arm_control.yaml",
+        ("joint_state_broadcaster", "position_controller"),
+    ),
+    "mycobot": NamedRobot(
+        "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro",
+        "package://mycobot_moveit_config/config/mycobot_280/ros2_controllers_template.yaml",
+        ("joint_state_broadcaster", "arm_controller", "gripper_action_controller"),
+        "pick_and_place_demo",
+        {"use_gazebo": "true"},
+        (0.0, 0.0, 0.025, 0.0, 0.0, 0.0),
+    ),
+}
+"""By name; `arm_gazebo.launch.py` and `mycobot.gazebo.launch.py` start them over ROS."""

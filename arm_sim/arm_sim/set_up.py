@@ -1,0 +1,117 @@
+"""What a program asks for, as the settings of the simulation."""
+
+import shlex
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from os import fspath, pathsep
+from typing import Any
+
+from arm_control.manager.parameter_file import ParametersByNode
+from arm_gazebo.assembly.robot_settings import Parameters
+from arm_gazebo.assembly.settings import SimulationSettings, read_settings
+from arm_gazebo.launching.controllers_file import read_controllers
+from arm_gazebo.launching.robot_setup import SPAWN_AUTO, RobotSetup, set_up_robot
+from arm_node.parameter_values import Reader, Value, read_parameter
+from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
+
+
+@dataclass(frozen=True, slots=True)
+class SetUp:
+    """A robot and a simulation, ready to be built.
+
+    Attributes:
+        settings: the settings of the simulation with its one robot.
+        parameters: the parameters of the controller manager and its controllers.
+        remarks: one sentence for each default that was added.
+    """
+
+    settings: SimulationSettings
+    parameters: ParametersByNode
+    remarks: tuple[str, ...]
+
+
+def set_up(
+    description: AnyPath,
+    controllers: AnyPath | Mapping[str, Any] | None,
+    arguments: Mapping[str, object],
+    spawn: Iterable[str] | None,
+    package_path: Iterable[AnyPath],
+    settings: Mapping[str, object],
+) -> SetUp:
+    """Read the robot, and add the defaults that the launch files add.
+
+    Args:
+        description: URDF or xacro file, as a path or a URI; the text of a URDF; or a name of
+            `NAMED_ROBOTS`.
+        controllers: parameter file, or its content; None for the named robot's, or the default
+            controllers.
+        arguments: xacro arguments.
+        spawn: controllers to start; None for the named robot's, or all that can start together.
+        package_path: folders for package:// and model://.
+        settings: parameters of the simulation node by name; None for the default.
+
+    Raises:
+        SimSettingsError, DescriptionError, ParameterError, ParameterValueError: an argument is
+            invalid.
+    """
+    named = NAMED_ROBOTS.get(fspath(description))
+    robot = named or NamedRobot(fspath(description), "", ())
+    own_spawn = robot.spawn if named and controllers is None else None
+    names = own_spawn if spawn is None else spawn
+    setup = set_up_robot(
+        robot.model,
+        assignments({**robot.arguments, **arguments}),
+        _controllers(robot, controllers),
+        SPAWN_AUTO if names is None else ",".join(names),
+        pathsep.join(fspath(folder) for folder in package_path),
+    )
+    return SetUp(
+        read_settings(_parameters(_values(setup, robot, settings))),
+        ParametersByNode(read_controllers(setup.controllers), _source(setup)),
+        setup.remarks,
+    )
+
+
+def _controllers(
+    robot: NamedRobot, given: AnyPath | Mapping[str, Any] | None
+) -> str | Mapping[str, Any]:
+    if given is None:
+        return robot.controllers
+    return given if isinstance(given, Mapping) else fspath(given)
+
+
+def _values(
+    setup: RobotSetup, robot: NamedRobot, settings: Mapping[str, object]
+) -> dict[str, object]:
+    """Return the values of the simulation node's parameters."""
+    given = {name: value for name, value in settings.items() if value is not None}
+    return {"world": robot.world, "pose": robot.pose, **given, **setup.parameters()}
+
+
+def _parameters(values: Mapping[str, Any]) -> Parameters:
+    def value(
+        name: str,
+        default: object,
+        read: Reader[Value],
+        description: str,
+        /,
+        *,
+        read_only: bool = True,
+    ) -> Value:
+        return read_parameter(name, values.get(name, default), read)
+
+    return value
+
+
+def assignments(arguments: Mapping[str, object]) -> str:
+    """Return xacro arguments as one text, "a:=1 b:=2"."""
+    return shlex.join(f"{name}:={_word(value)}" for name, value in arguments.items())
+
+
+def _word(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _source(setup: RobotSetup) -> str:
+    is_file = not isinstance(setup.controllers, Mapping)
+    return f"parameter file '{setup.controllers}'" if is_file else "the controllers' parameters"

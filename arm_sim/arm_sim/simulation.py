@@ -1,0 +1,400 @@
+"""The simulation as a library: the robot in its world with its controllers, without ROS."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, ExitStack
+from os import fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from arm_sim.assembled import Assembled, assemble
+from arm_sim.controllers import ControllerHandle
+from arm_sim.errors import CallError, GoalError
+from arm_sim.goals import Goal, ResultT
+from arm_sim.pose import AnyPose, Matrix
+from arm_sim.robots import AnyPath
+from arm_sim.snapshots import SavedState, Snapshots
+from arm_sim.states import Sensors, States
+
+if TYPE_CHECKING:
+    from arm_control.controllers.gripper import GripperResult
+    from arm_control.controllers.joint_trajectory import GoalResult
+    from arm_gazebo.world.contacts import Contact
+    from arm_sim.cameras import Camera
+    from arm_sim.trajectory import AnyTrajectory
+
+GOAL_TIMEOUT_S = 60.0
+ROUNDING = 1e-6  # of a duration, in control periods
+
+
+class Simulation:
+    """A robot in a world with its controllers; time passes only in `step` and `run`.
+
+    It runs the classes of the simulation node in the same order, as fast as possible, in the
+    thread that calls it; use it from one thread. Use it as a context manager, or call `close`.
+
+    Attributes:
+        joints: the states of the joints: arrays in their order, or one joint by its name.
+        states: the state interfaces of the hardware by full name, such as 'j0/position'.
+        sensors: the present readings of the robot's sensors: `sim.sensors["imu"]` is a mapping.
+        controllers: the loaded controllers by name; `sim["NAME"]` is one of them.
+        parts: the parts behind it, for what this class does not offer.
+
+    Args:
+        description: URDF or xacro file, as a path or a package:// URI; the text of a URDF; or
+            "arm" for the 4-DOF arm, "mycobot" for the myCobot 280, with controllers and world.
+        world: a shipped world's name, or a MuJoCo XML or SDF file; default the named robot's,
+            or "empty".
+        controllers: parameter file of the controller manager and its controllers, or its content;
+            default the named robot's, or a position controller for every joint.
+        arguments: xacro arguments.
+        spawn: controllers to start; default the named robot's, or all of the file whose
+            joints are not claimed yet.
+        seed: seed of the noise of sensors and cameras.
+        base: "fixed" or "free", how a root link other than `world` is attached.
+        pose: x y z roll pitch yaw of the robot's root in the world, in m and rad.
+        package_path: folders searched for package:// and model://.
+        hold_joints: whether joints that no controller claims hold their position.
+        position_proportional_gain: from 0 to 1, as gz_ros2_control's; 0 moves joints as fast
+            as they can.
+        physics_step_s: physics step; None for one up to 2 ms that divides the control period.
+        self_collide: whether links of the robot collide with each other.
+        strict: whether a missing mesh is an error instead of a box.
+        render_backend: render backend of the cameras: auto, egl, osmesa or raycast.
+        record: file to record the run to, for `arm sim replay`; it must not exist.
+    """
+
+    def __init__(
+        self,
+        description: AnyPath = "arm",
+        *,
+        world: AnyPath | None = None,
+        controllers: AnyPath | Mapping[str, Any] | None = None,
+        arguments: Mapping[str, object] | None = None,
+        spawn: Iterable[str] | None = None,
+        seed: int = 0,
+        base: str = "fixed",
+        pose: Iterable[float] | None = None,
+        package_path: Iterable[AnyPath] = (),
+        hold_joints: bool = True,
+        position_proportional_gain: float = 0.0,
+        physics_step_s: float | None = None,
+        self_collide: bool = False,
+        strict: bool = False,
+        render_backend: str = "auto",
+        record: AnyPath | None = None,
+    ) -> None:
+        """Build the simulation and start its controllers.
+
+        Raises:
+            DescriptionError: the description does not exist, or is not a robot.
+            GazeboError: the world or the robot cannot be simulated.
+            ArmControlError: a parameter is wrong, or a controller that `spawn` names cannot start.
+            RecordingError: the recording cannot be written.
+            ParameterValueError: another argument is wrong.
+        """
+        self.parts = assemble(
+            description,
+            controllers,
+            arguments or {},
+            spawn,
+            package_path,
+            {
+                "world": None if world is None else fspath(world),
+                "seed": seed,
+                "base": base,
+                "pose": None if pose is None else [float(value) for value in pose],
+                "hold_joints": hold_joints,
+                "position_proportional_gain": position_proportional_gain,
+                "physics_step": physics_step_s,
+                "self_collide": self_collide,
+                "strict": strict,
+                "render_backend": render_backend,
+            },
+        )
+        self._physics = self.parts.physics
+        self._tick = self.parts.tick
+        self._ending = ExitStack()
+        self._closed = False
+        self.joints = self.parts.joints
+        self.states = States(self.parts.robot.manager.resources)
+        self.sensors = Sensors(self.parts.robot.sensors)
+        self.controllers = self.parts.controllers
+        self._start(record)
+
+    def _start(self, record: AnyPath | None) -> None:
+        """Begin the recording, then start the controllers."""
+        with ExitStack() as failing:
+            failing.callback(self.close)
+            self._ending.callback(self.parts.close)
+            if record is not None:
+                from arm_sim.recording import recording
+
+                self._ending.enter_context(recording(self.parts, Path(record)))
+            self.parts.start_controllers()
+            failing.pop_all()
+        self._snapshots = Snapshots(self.parts)
+
+    # Time
+
+    @property
+    def time_s(self) -> float:
+        """Simulation time."""
+        return self._physics.time_s
+
+    @property
+    def period_s(self) -> float:
+        """The control period: how far `step` advances."""
+        return self._physics.timing.period_s
+
+    def step(self) -> None:
+        """Advance by one control period.
+
+        Raises:
+            UnhandledFailureError: a controller or component raised, and the parameter
+                `handle_exceptions` is false. Otherwise only what raised is stopped, and logged.
+        """
+        parts = self._open
+        self._tick()
+        parts.log_findings()
+
+    def run(self, seconds: float) -> None:
+        """Advance by simulated seconds, to the first tick at or after their end.
+
+        Raises:
+            CallError: this is not a time; other errors as in `step`.
+        """
+        parts = self._open
+        for _ in range(self._periods_in(seconds)):
+            self._tick()
+        parts.log_findings()
+
+    def run_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        """Advance until a condition holds after a tick; return whether it did in time.
+
+        Args:
+            condition: called before the first tick and after each.
+            timeout_s: how long to run at most, in simulated seconds.
+        """
+        remaining = self._periods_in(timeout_s)
+        while not condition():
+            if not remaining:
+                return False
+            remaining -= 1
+            self.step()
+        return True
+
+    def _periods_in(self, seconds: float) -> int:
+        if not 0.0 <= seconds < math.inf:
+            raise CallError(f"the simulation cannot run for {seconds} s")
+        return math.ceil(seconds / self.period_s - ROUNDING)
+
+    # Controllers
+
+    def __getitem__(self, controller: str) -> ControllerHandle:
+        """Return a loaded controller.
+
+        Raises:
+            UnknownNameError: there is none of that name.
+        """
+        return self.controllers[controller]
+
+    def follow(
+        self, controller: str, trajectory: "AnyTrajectory", *, timeout_s: float = GOAL_TIMEOUT_S
+    ) -> "GoalResult":
+        """Run until a trajectory controller has followed a trajectory; return the result.
+
+        Args:
+            controller: name of the controller.
+            trajectory: the waypoints; see `ControllerHandle.follow`, which does not run.
+            timeout_s: how long to run at most, in simulated seconds; then the goal is cancelled.
+
+        Raises:
+            GoalError: it was rejected, aborted or cancelled, or did not end in time.
+        """
+        return self._finished(self[controller].follow(trajectory), timeout_s)
+
+    def grip(
+        self,
+        controller: str,
+        position: float,
+        max_effort: float | None = None,
+        *,
+        timeout_s: float = GOAL_TIMEOUT_S,
+    ) -> "GripperResult":
+        """Run until a gripper has reached a position, or has stalled on a thing.
+
+        Args:
+            controller: name of the controller.
+            position: where to move the joint, in rad or m.
+            max_effort: effort limit in N m or N; None for the controller's parameter.
+            timeout_s: how long to run at most, in simulated seconds; then the goal is cancelled.
+
+        Raises:
+            GoalError: see `follow`.
+        """
+        return self._finished(self[controller].grip(position, max_effort), timeout_s)
+
+    def _finished(self, goal: Goal[ResultT], timeout_s: float) -> ResultT:
+        if not self.run_until(lambda: goal.done, timeout_s):
+            goal.cancel()
+            raise GoalError(f"the goal of '{goal.controller}' has not ended after {timeout_s:g} s")
+        return goal.result
+
+    # The world
+
+    @property
+    def entities(self) -> tuple[str, ...]:
+        """Names of the things in the world: robots, parts of the world, spawned models."""
+        return self._open.things.names
+
+    def spawn(
+        self, model: AnyPath, *, name: str = "", pose: AnyPose = None, frame: str = ""
+    ) -> str:
+        """Spawn a model; return its name.
+
+        Args:
+            model: URDF, SDF or MJCF: a file as a path or URI, or the text itself.
+            name: name of the entity; "" for the model's name, with a number if that is taken.
+            pose: its pose in `frame`, see `AnyPose`.
+            frame: an entity or a link; "" for the world.
+
+        Raises:
+            RequestError: it cannot be spawned; the world is unchanged.
+        """
+        return self._open.things.spawn(model, name, pose, frame)
+
+    def delete(self, name: str) -> None:
+        """Delete an entity of the world that is not a robot with controllers.
+
+        Raises:
+            RequestError: it cannot be deleted.
+        """
+        self._open.things.delete(name)
+
+    def place(self, name: str, pose: AnyPose, frame: str = "") -> None:
+        """Move an entity, which is at rest afterwards.
+
+        Args:
+            name: name of the entity.
+            pose: its pose in `frame`, see `AnyPose`.
+            frame: an entity or a link; "" for the world.
+
+        Raises:
+            RequestError: it cannot be moved.
+        """
+        self._open.things.place(name, pose, frame)
+
+    def pose(self, name: str, frame: str = "") -> Matrix:
+        """Return the pose of an entity or a link, shape (4, 4).
+
+        Args:
+            name: the entity or link.
+            frame: the entity or link to see it from; "" for the world.
+
+        Raises:
+            RequestError: there is none of that name.
+        """
+        return self._open.things.pose(name, frame)
+
+    def contacts(self, name: str | None = None) -> "tuple[Contact, ...]":
+        """Return the contacts of an entity or a link in the present state.
+
+        Args:
+            name: the entity or link; None for all contacts.
+
+        Raises:
+            RequestError: there is none of that name.
+        """
+        return self._open.things.contacts(name)
+
+    # Cameras
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the robot's cameras."""
+        return tuple(sensor.name for sensor in self.parts.robot.cameras)
+
+    def camera(self, name: str) -> "Camera":
+        """Return a camera by its name or one of its topics; it draws when it is asked.
+
+        Raises:
+            UnknownNameError: the robot has none of that name.
+        """
+        return self._open.cameras.find(name)
+
+    # States
+
+    def save(self, path: AnyPath | None = None) -> SavedState:
+        """Return the complete state: physics, drives, controllers, goals, things, noise, time.
+
+        Args:
+            path: also write it to this file, as `arm sim save` does.
+
+        Raises:
+            StateError, RequestError: a controller cannot be saved, or the file cannot be written.
+        """
+        self._check_open()
+        return self._snapshots.save(path)
+
+    def restore(self, snapshot: SavedState | AnyPath) -> None:
+        """Go back to a state of this simulation, to go on from there to the last bit.
+
+        Goals that the state does not have are aborted. Parameters are settings and stay.
+
+        Args:
+            snapshot: the state; or a file of `save` or `arm sim save` of this robot and world.
+
+        Raises:
+            StateError, RequestError: the state does not fit, or the file cannot be read.
+            CallError: another simulation saved it, or the run is recorded and keeps its seed.
+        """
+        self._check_open()
+        self._snapshots.restore(snapshot)
+
+    def reset(self, seed: int | None = None) -> None:
+        """Go back to the start, as if the simulation had just been made.
+
+        Args:
+            seed: seed of the noise from now on; None for the present one.
+
+        Raises:
+            StateError: a controller cannot be saved.
+            CallError: the run is recorded and would get another seed.
+        """
+        self._check_open()
+        self._snapshots.reset(seed)
+
+    def record(self, path: AnyPath) -> AbstractContextManager[None]:
+        """Record the run from now on, for `arm sim replay`, until the returned context ends.
+
+        Raises:
+            RecordingError: the file exists or cannot be written, or a controller cannot be saved.
+        """
+        from arm_sim.recording import recording
+
+        return recording(self._open, Path(path))
+
+    # The end
+
+    def close(self) -> None:
+        """End the recording, controllers and components; may be called again."""
+        self._closed = True
+        self._ending.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: Any) -> None:
+        self._closed = True
+        self._ending.__exit__(*raised)
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise CallError("the simulation is closed")
+
+    @property
+    def _open(self) -> Assembled:
+        """The parts of the simulation, unless it is closed."""
+        self._check_open()
+        return self.parts

@@ -1,0 +1,104 @@
+"""The results of a study's runs, appended as they come, so that a kill loses none."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Self, TextIO
+
+from arm_sim.sweep.study import Study, StudyError, Value, Values
+
+FILE_NAME = "runs.jsonl"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of a run.
+
+    Attributes:
+        number: the run's number.
+        values: its values.
+        results: what its task returned; empty if it failed.
+        error: why it failed; "" if it did not.
+        replay: the command that runs a failed run again; "" if there is none.
+        wall_s: how long it took.
+    """
+
+    number: int
+    values: Values
+    results: Mapping[str, Value]
+    error: str = ""
+    replay: str = ""
+    wall_s: float = 0.0
+
+
+class Journal:
+    """Appends outcomes to a file in a study's folder; a context manager. One process.
+
+    Args:
+        folder: the folder; it is made if it does not exist.
+        study: the study; a folder with the runs of another one is refused.
+
+    Raises:
+        StudyError: the folder cannot be used.
+
+    Attributes:
+        outcomes: those of earlier sessions and of this one, by number of their run.
+    """
+
+    def __init__(self, folder: Path, study: Study) -> None:
+        self.folder = folder
+        self.outcomes: dict[int, Outcome] = {}
+        path = folder / FILE_NAME
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            is_new = not path.exists()
+            if not is_new:
+                self._read(path, study)
+            self._file: TextIO = path.open("a", encoding="utf-8")
+        except OSError as error:
+            raise StudyError(f"cannot use the folder {folder}: {error.strerror}") from error
+        if is_new:
+            self._append({"study": study.digest})
+
+    def add(self, outcome: Outcome) -> None:
+        """Note what came of a run; it is in the file when this returns."""
+        self.outcomes[outcome.number] = outcome
+        self._append(asdict(outcome))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_raised: object) -> None:
+        self._file.close()
+
+    def _append(self, item: Mapping[str, Any]) -> None:
+        self._file.write(json.dumps(item) + "\n")
+        self._file.flush()
+
+    def _read(self, path: Path, study: Study) -> None:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        items = list(_whole_items(lines))
+        found = items[0].get("study") if items else None
+        if found != study.digest:
+            raise StudyError(
+                f"{path.parent} holds the runs of another study, or of this one before it was "
+                "changed; choose another folder with --output"
+            )
+        for item in items[1:]:
+            self.outcomes[int(item["number"])] = Outcome(**item)
+        if len(items) < len(lines):
+            # A kill in the middle of a line: what follows must not be glued to it.
+            path.write_text("".join(json.dumps(item) + "\n" for item in items), encoding="utf-8")
+
+
+def _whole_items(lines: list[str]) -> Iterator[dict[str, Any]]:
+    """Return the items up to the first line that is not whole."""
+    for line in lines:
+        try:
+            item = json.loads(line)
+        except ValueError:
+            return
+        if not isinstance(item, dict):
+            return
+        yield item

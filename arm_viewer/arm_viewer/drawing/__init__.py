@@ -1,1 +1,0 @@
-"""Graphs and their pictures, for the page and for `arm graph`. Knows nothing of ROS or viser."""

@@ -1,0 +1,1 @@
+"""Our additions to viser's page: title, icon, style and scripts."""

@@ -1,0 +1,140 @@
+/* Send numbers typed beside the sliders when they are complete, exactly as typed.
+
+viser's own field sends a number at every key: "-0.5" is first 0 and then 0.5, because the sign is
+lost. It also overwrites the typed text with the joint's position. This script therefore puts its own
+field over viser's while the user types. Enter, Tab or leaving the field sends the text to the
+server, which answers with the problem, or with nothing. */
+(() => {
+  "use strict";
+  const FIELD = "input.mantine-NumberInput-input";
+  const PATH = "/typed_numbers";
+  const NO_CONTACT = "The page's server does not answer: the number was not taken.";
+  const SHOWN_MS = 10000;
+
+  let editor = null;
+  let socket = null;
+  let last = 0;
+  let tabbing = false;
+  const waiting = new Map();
+
+  function sliderOf(field) {
+    const row = field.closest(".mantine-Flex-root");
+    return row ? row.querySelector(".mantine-Slider-root") : null;
+  }
+
+  function isNumberOfSlider(target) {
+    return target instanceof HTMLInputElement && target.matches(FIELD) && sliderOf(target);
+  }
+
+  function connect() {
+    socket = new WebSocket(`ws://${location.host}${PATH}`);
+    socket.onopen = () => waiting.forEach(({ message }) => socket.send(message));
+    socket.onmessage = (event) => {
+      const { number, problem } = JSON.parse(event.data);
+      const sent = waiting.get(number);
+      waiting.delete(number);
+      if (sent && problem) showProblem(sent.field, problem);
+    };
+    socket.onclose = () => {
+      socket = null;
+      waiting.forEach(({ field }) => showProblem(field, NO_CONTACT));
+      waiting.clear();
+    };
+  }
+
+  function send(field, slider, text) {
+    const number = ++last;
+    const message = JSON.stringify({ number, slider, text });
+    waiting.set(number, { field, message });
+    if (!socket) connect();
+    else if (socket.readyState === WebSocket.OPEN) socket.send(message);
+  }
+
+  function showProblem(field, problem) {
+    const note = document.createElement("div");
+    note.setAttribute("role", "status");
+    note.className = "arm-problem";
+    note.textContent = problem;
+    document.body.append(note);
+    const place = field.getBoundingClientRect();
+    note.style.top = `${place.bottom + 4}px`;
+    note.style.right = `${Math.max(innerWidth - place.right, 8)}px`;
+    setTimeout(() => note.remove(), SHOWN_MS);
+  }
+
+  function coverField(field) {
+    const place = field.getBoundingClientRect();
+    for (const side of ["left", "top", "width", "height"]) editor.style[side] = `${place[side]}px`;
+  }
+
+  function edit(field) {
+    const slider = sliderOf(field).id;
+    let sent = field.value;
+    const own = document.createElement("input");
+    editor = own;
+    own.type = "text";
+    own.inputMode = "decimal";
+    own.autocomplete = "off";
+    own.spellcheck = false;
+    own.className = `${field.className} arm-editor`;
+    own.setAttribute("aria-label", "position");
+    own.value = sent;
+    coverField(field);
+    document.body.append(own);
+    const follow = () => coverField(field);
+    const commit = () => {
+      if (own.value !== sent) send(field, slider, own.value);
+      sent = own.value;
+    };
+    const close = () => {
+      if (editor !== own) return;
+      editor = null;
+      commit();
+      removeEventListener("scroll", follow, true);
+      removeEventListener("resize", follow);
+      own.remove();
+    };
+    own.addEventListener("blur", close);
+    own.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter") {
+        sent = null;
+        commit();
+        own.select();
+      } else if (event.key === "Escape") {
+        own.value = sent;
+        close();
+      } else if (event.key === "Tab") {
+        // Tab then continues from viser's field, as if the user had typed there.
+        tabbing = true;
+        field.focus();
+        tabbing = false;
+      }
+    });
+    addEventListener("scroll", follow, true);
+    addEventListener("resize", follow);
+    own.focus();
+    own.select();
+  }
+
+  function guard(kind, handle) {
+    // In the capture phase, before viser's page sees the event.
+    addEventListener(
+      kind,
+      (event) => {
+        if (!isNumberOfSlider(event.target)) return;
+        event.stopImmediatePropagation();
+        handle(event.target);
+      },
+      true,
+    );
+  }
+
+  guard("focusin", (field) => {
+    if (!tabbing) edit(field);
+  });
+  guard("focusout", () => {});
+  guard("keydown", () => {});
+  // Text dropped on the field, or set by a program.
+  guard("input", (field) => send(field, sliderOf(field).id, field.value));
+})();

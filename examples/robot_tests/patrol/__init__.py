@@ -1,0 +1,1 @@
+"""Moves an arm between poses, again and again."""

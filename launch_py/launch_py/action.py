@@ -1,0 +1,98 @@
+"""The base class of launch actions, and the steps that they add to the plan."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
+
+from launch_py.conditions import Condition
+from launch_py.errors import LaunchFileError, errors_attributed_to
+from launch_py.events import ProcessEvent
+from launch_py.launch_context import LaunchContext
+from launch_py.launch_description_entity import LaunchDescriptionEntity, LaunchSurvey
+from launch_py.plan.steps import DeferredStep, Step
+
+
+class Action(LaunchDescriptionEntity, ABC):
+    """One entry of a launch description, switched on or off by its condition.
+
+    Expanding an action starts nothing: it only adds steps to the plan or changes the context for
+    the actions that follow. Processes start after the whole description has been expanded.
+    """
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self.condition = condition
+
+    def visit(self, context: LaunchContext) -> None:
+        """Expand the action if its condition holds.
+
+        Raises:
+            LaunchError: the action is invalid, or an argument of it has the wrong type.
+        """
+        with errors_attributed_to(self.describe):
+            if self.condition is None or self.condition.evaluate(context):
+                with context.plan.expanding(self):
+                    self.expand(context)
+
+    @abstractmethod
+    def expand(self, context: LaunchContext) -> None:
+        """Add this action's steps to the plan, or change the context.
+
+        Raises:
+            LaunchError: the action is invalid.
+        """
+
+    def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
+        """Record this action and all actions inside it, whatever their conditions say."""
+        survey.actions.add(self)
+
+
+def check_actions(actions: Iterable[Action] | Action, owner: str) -> list[Action]:
+    """Return the actions as a list, without the None entries of optional actions.
+
+    Raises:
+        LaunchFileError: an entry is neither an action nor None.
+    """
+    if isinstance(actions, Action):
+        return [actions]
+    checked = [action for action in actions if action is not None]
+    for action in checked:
+        if not isinstance(action, Action):
+            raise LaunchFileError(
+                f"{owner} takes actions, not {action!r} of type {type(action).__name__}"
+            )
+    return checked
+
+
+EventT = TypeVar("EventT")
+DeferredFunction = Callable[[EventT, LaunchContext], Iterable[Action] | Action | None]
+
+
+def deferred_step(
+    context: LaunchContext, function: DeferredFunction[ProcessEvent | None]
+) -> DeferredStep:
+    """Return a step that calls `function(event, context)` for its actions when it is due."""
+    return DeferredStep(
+        after=context.after, delay_s=context.delay_s, expand=steps_at_event(context, function)
+    )
+
+
+def steps_at_event(
+    context: LaunchContext, function: DeferredFunction[EventT]
+) -> Callable[[EventT], Sequence[Step]]:
+    """Return a function that turns an event into the steps of `function(event, context)`'s actions.
+
+    That function raises a LaunchError if `function` fails or returns invalid actions.
+    """
+
+    def expand(event: EventT) -> Sequence[Step]:
+        inner = context.scoped()
+        inner.after, inner.delay_s, inner.event = (), 0.0, event
+        owner = "an event handler"
+        with errors_attributed_to(lambda: owner):
+            for action in check_actions(function(event, inner) or (), owner):
+                action.visit(inner)
+            return context.plan.finish_steps()
+
+    return expand

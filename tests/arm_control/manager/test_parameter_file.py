@@ -1,0 +1,113 @@
+"""Where a parameter file may speak of a controller."""
+
+from pathlib import Path
+
+import pytest
+
+from arm_control.errors import ParameterError
+from arm_control.manager.parameter_file import ControllerParameterFile
+
+TYPE = "{ros__parameters: {type: a/B}}"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "controllers.yaml"
+
+
+def lookup(path: Path, text: str, namespace: str = "/") -> object:
+    path.write_text(text)
+    return ControllerParameterFile(str(path)).lookup("ctrl", namespace, "type")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"ctrl: {TYPE}",
+        f"/ctrl: {TYPE}",
+        f"/**/ctrl: {TYPE}",
+        f"/**: {{ctrl: {TYPE}}}",
+        f"/**: {TYPE}",
+        "controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+        "/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+        "{ctrl: {ros__parameters: {x: 1}}, "
+        "controller_manager: {ros__parameters: {ctrl: {type: a/B}}}}",
+        "/**/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+        f"{{ctrl: {{ros__parameters: {{x: 1}}}}, /**: {TYPE}}}",
+        f"{{ctrl: {TYPE}, /**: {{ros__parameters: {{type: c/D}}}}}}",
+        f"{{/**/ctrl: {{ros__parameters: {{x: 1}}}}, /**: {{ctrl: {TYPE}}}}}",
+        f"/**: {{other: {{no: parameters}}, ctrl: {TYPE}}}",
+    ],
+)
+def test_it_is_found(path: Path, text: str) -> None:
+    assert lookup(path, text) == "a/B"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"/ns/ctrl: {TYPE}",
+        f"/**/ctrl: {TYPE}",
+        f"/**/ns/ctrl: {TYPE}",
+        f"/**: {{ctrl: {TYPE}}}",
+        f"/**: {TYPE}",
+        f"{{ctrl: {{ros__parameters: {{}}}}, /ns/ctrl: {TYPE}}}",
+        "/ns/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
+    ],
+)
+def test_it_is_found_in_a_namespace(path: Path, text: str) -> None:
+    assert lookup(path, text, "/ns") == "a/B"
+
+
+def test_the_own_entry_wins_over_the_managers(path: Path) -> None:
+    text = f"{{ctrl: {TYPE}, controller_manager: {{ros__parameters: {{ctrl: {{type: c/D}}}}}}}}"
+    assert lookup(path, text) == "a/B"
+
+
+@pytest.mark.parametrize("text", [f"other: {TYPE}", f"/other/ctrl: {TYPE}"])
+def test_a_missing_parameter_is_none(path: Path, text: str) -> None:
+    assert lookup(path, text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "mentioned"),
+    [
+        (f"ctrl: {TYPE}", True),
+        ("/**: {ros__parameters: {}}", True),
+        (f"other: {TYPE}", False),
+        ("controller_manager: {ros__parameters: {ctrl: {type: a/B}}}", False),
+    ],
+)
+def test_only_parameters_of_its_own_node_mention_a_controller(
+    path: Path, text: str, mentioned: bool
+) -> None:
+    path.write_text(text)
+    assert ControllerParameterFile(str(path)).mentions("ctrl", "/") is mentioned
+
+
+def test_a_bare_name_does_not_serve_in_a_namespace(path: Path) -> None:
+    with pytest.raises(ParameterError, match="without its namespace: write '/ns/ctrl' or"):
+        lookup(path, f"ctrl: {TYPE}", "/ns")
+
+
+def test_an_entry_without_parameters_is_refused(path: Path) -> None:
+    with pytest.raises(ParameterError, match="'ctrl' has no mapping ros__parameters"):
+        lookup(path, "ctrl: {type: a/B}")
+
+
+def test_a_missing_file_is_named(path: Path) -> None:
+    with pytest.raises(ParameterError, match=f"cannot read parameter file '{path}'"):
+        ControllerParameterFile(str(path))
+
+
+@pytest.mark.parametrize(("text", "says"), [("a: [", "is not YAML"), ("- a", "contains no nodes")])
+def test_a_file_of_another_kind_is_refused(path: Path, text: str, says: str) -> None:
+    path.write_text(text)
+    with pytest.raises(ParameterError, match=says):
+        ControllerParameterFile(str(path))
+
+
+def test_a_relative_path_becomes_absolute(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path.write_text("a: {}")
+    monkeypatch.chdir(path.parent)
+    assert ControllerParameterFile(path.name).path == path

@@ -1,0 +1,47 @@
+"""Mesh files that trimesh reads: where their parts stand, and their colours."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import trimesh
+
+from arm_description.mesh.data import merged
+from arm_description.mesh.file import read_mesh_file
+
+
+def volume(mesh):
+    return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).volume
+
+
+def test_parts_are_placed_as_in_the_file_and_a_mirrored_one_keeps_its_outside(tmp_path):
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box([0.1, 0.2, 0.3]), transform=np.diag([-1, 2, 1, 1]))
+    moved = trimesh.transformations.compose_matrix(
+        translate=[1, 2, 3], angles=[0.0, 0.0, np.pi / 2]
+    )
+    scene.add_geometry(trimesh.creation.box([0.1, 0.2, 0.3]), transform=moved)
+    scene.export(tmp_path / "two.glb")
+    mirrored, turned = sorted(read_mesh_file(tmp_path / "two.glb"), key=volume, reverse=True)
+    assert np.ptp(mirrored.vertices, axis=0) == pytest.approx([0.1, 0.4, 0.3])
+    assert volume(mirrored) == pytest.approx(0.012)
+    assert np.ptp(turned.vertices, axis=0) == pytest.approx([0.2, 0.1, 0.3])
+    assert turned.vertices.mean(axis=0) == pytest.approx([1.0, 2.0, 3.0])
+    assert volume(turned) == pytest.approx(0.006)
+
+
+def test_a_part_has_the_colour_of_most_of_its_faces(tmp_path):
+    box = trimesh.creation.box([0.1, 0.2, 0.3])
+    box.visual.face_colors = [[255, 0, 0, 255]] * 8 + [[0, 0, 255, 255]] * 4
+    box.export(tmp_path / "red.ply")
+    (part,) = read_mesh_file(tmp_path / "red.ply")
+    assert part.rgba == (1.0, 0.0, 0.0, 1.0)
+
+
+def test_corners_are_merged_in_seven_times_their_memory():
+    corners = np.random.default_rng(0).random((60_000, 3), dtype=np.float32)
+    tracemalloc.start()
+    merged(corners)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 7 * corners.nbytes

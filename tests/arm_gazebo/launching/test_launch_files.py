@@ -1,0 +1,233 @@
+"""Launch files: their arguments reach the description, the world and every node."""
+
+import json
+import os
+import runpy
+import shlex
+
+import pytest
+from lxml import etree
+
+from arm_cli.main import main
+from arm_description import parse_urdf
+from arm_description.resources import find_package
+from arm_description.urdf.description_source import DescriptionSource, source_of
+from arm_description.xacro.expansion import arguments_of_text, expand_xacro_file
+from arm_gazebo.sensors.camera_reader import parse_cameras
+from launch_py.errors import UsageError
+from launch_py.launch_description import expand_description
+from launch_py.launch_description_sources import read_launch_file
+from launch_py.plan.steps import GeneratedFile
+
+SWITCHED = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="camera" default="false"/>
+  <link name="base"/>
+  <xacro:if value="$(arg camera)"><link name="lens"/></xacro:if>
+</robot>
+"""
+
+
+@pytest.fixture
+def launch_file():
+    return runpy.run_path(str(find_package("arm_gazebo") / "launch" / "arm_world.launch.py"))
+
+
+@pytest.fixture
+def defaults(launch_file):
+    return {name: default for name, (default, *_) in launch_file["DESCRIPTION_ARGUMENTS"].items()}
+
+
+def test_a_model_that_has_an_argument_of_the_arms_in_another_sense_keeps_its_default(
+    capsys, tmp_path
+):
+    model = tmp_path / "other.urdf.xacro"
+    model.write_text(SWITCHED)
+    line = ["launch", "arm_gazebo", "arm_world.launch.py", "--print", f"model:={model}"]
+    assert main([*line, "controllers:="]) == 0
+    assert "arm_gazebo_node" in capsys.readouterr().out
+
+
+def test_what_is_given_is_passed_on(launch_file, defaults):
+    given = defaults | {"prefix": "x y", "j1_limit": "0.25"}
+    passed = launch_file["assignments"](**given)
+    assert arguments_of_text(passed) == {"prefix": "x y", "j1_limit": "0.25"}
+    assert len(shlex.split(passed)) == 2
+
+
+def test_what_is_left_out_is_the_same_in_the_description(launch_file, defaults):
+    assert launch_file["assignments"](**defaults) == ""
+    model = find_package("arm_description") / "urdf" / "arm.urdf.xacro"
+    assert defaults.items() <= expand_xacro_file(model).arguments.items()
+
+
+LINE = ["launch", "arm_gazebo", "sim.launch.py", "--print"]
+
+
+def test_every_node_gets_the_source_of_the_description(capsys, tmp_path, parts):
+    model = tmp_path / "arm_x" / "urdf" / "arm.urdf"
+    model.parent.mkdir(parents=True)
+    model.write_text(parts.pendulum())
+    elsewhere = tmp_path / "elsewhere"
+    assert main([*LINE, "viewer:=true", f"model:={model}", f"package_path:={elsewhere}"]) == 0
+    printed = capsys.readouterr().out
+    told = [line for line in printed.splitlines() if "<?description_source" in line]
+    sources = [source_of(line[line.index("<?description_source") :]) for line in told]
+    assert sources == [DescriptionSource(model, (elsewhere,))] * 2
+
+
+def test_a_missing_world_is_refused_before_anything_starts(capsys):
+    assert main([*LINE, "model:=any.urdf", "world:=object"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "no world 'object': there is no file" in captured.err
+    assert "the shipped worlds are empty, house, objects" in captured.err
+
+
+def plan_of(name: str, **arguments: str):
+    file = find_package("arm_gazebo") / "launch" / name
+    environ = {**os.environ, "PATH": "/bin"}
+    return expand_description(read_launch_file(file), arguments, environ, file)
+
+
+def parameters_of(plan, name: str) -> str:
+    (step,) = (step for step in plan.processes if step.name == name)
+    return "".join(word.text for word in step.command if isinstance(word, GeneratedFile))
+
+
+def test_rviz_that_is_not_installed_is_a_warning_and_the_page():
+    plan = plan_of("arm_world.launch.py", use_rviz="true")
+    assert "arm_viewer_node" in [step.name for step in plan.processes]
+    assert [w for w in plan.warnings if "RViz (rviz2) is not installed" in w]
+    opened = plan_of("arm_world.launch.py", use_rviz="true", viewer="true")
+    assert [step.name for step in opened.processes].count("arm_viewer_node") == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"), [({}, ""), ({"rviz_config_file": "/my/lab.rviz"}, "/my/lab.rviz")]
+)
+def test_the_page_in_rviz_s_place_shows_the_configuration_that_is_given(given, shown):
+    plan = plan_of("arm_world.launch.py", use_rviz="true", **given)
+    parameters = parameters_of(plan, "arm_viewer_node")
+    assert f'"display_config": "{shown}"' in parameters
+
+
+def test_without_controllers_the_arm_falls_unless_it_is_held():
+    for given, held in (
+        ({}, "false"),
+        ({"spawn": "joint_state_broadcaster"}, "true"),
+        ({"hold_joints": "true"}, "true"),
+    ):
+        plan = plan_of("arm_world.launch.py", **given)
+        assert f'"hold_joints": {held}' in parameters_of(plan, "arm_gazebo_node")
+
+
+def test_the_arguments_of_ros_1_are_taken():
+    plan = plan_of(
+        "arm_gazebo.launch.py",
+        interface="ros1",
+        robot_name="left",
+        paused="true",
+        gui="false",
+        debug="true",
+        hardware_interface="hardware_interface/PositionJointInterface",
+        use_sim_time="true",
+    )
+    assert '"paused": true' in parameters_of(plan, "arm_gazebo_node")
+    for step in plan.processes:
+        assert "__ns:=/left" in step.command, step.name
+    with pytest.raises(UsageError, match="'hardware_interface' cannot be 'EffortJointInterface'"):
+        plan_of("arm_world.launch.py", hardware_interface="EffortJointInterface")
+
+
+def description_of(**arguments):
+    """Return the text of the robot that arm_world.launch.py simulates."""
+    plan = plan_of("arm_world.launch.py", **arguments)
+    _, _, rest = parameters_of(plan, "arm_gazebo_node").partition('"robot_description": ')
+    description, _ = json.JSONDecoder().raw_decode(rest)
+    return description
+
+
+def camera_of(**arguments):
+    (camera,) = parse_cameras(description_of(**arguments))
+    return camera
+
+
+def test_ros_1_has_the_side_camera_on_its_own_topics():
+    ros1 = camera_of(interface="ros1")
+    assert (ros1.width, ros1.height, ros1.hfov) == (800, 800, 1.3962634)
+    assert ros1.noise_stddev == 0.007
+    assert "/camera/image_raw" in ros1.image_topics
+    assert "/camera/camera_info" in ros1.info_topics
+    chosen = camera_of(interface="ros1", camera="front", camera_profile="standard")
+    assert chosen == camera_of()
+    assert chosen.image_topics == ("videocamera",)
+
+
+# Where the camera is in base_link, and the colour of the box around it, by course.
+COURSE_CAMERAS = {
+    "S0": ((0.0, -0.05, 0.0), (0.0, -0.2, -1.57), None),
+    "S1": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.8, 0.0, 1.0)),
+    "S2": ((0.0, 0.0, 0.0), (0.0, 0.0, -1.57), (0.208, 0.024, 0.243, 1.0)),
+    "S3": ((0.75, 0.0, 0.5), (0.0, 0.3, -3.14), (0.8, 0.8, 0.8, 1.0)),
+}
+
+
+@pytest.mark.parametrize("course", COURSE_CAMERAS)
+def test_a_course_has_the_original_s_camera(course):
+    xyz, rpy, colour = COURSE_CAMERAS[course]
+    robot = parse_urdf(description_of(course=course))
+    joint = robot.joint("camera_joint")
+    assert (joint.origin.xyz, joint.origin.rpy) == (xyz, rpy)
+    materials = (visual.material for visual in robot.link("camera_link").visuals)
+    boxes = [m.rgba for m in materials if m and m.name == "camera_box"]
+    assert boxes == ([colour] if colour else [])
+
+
+@pytest.mark.parametrize("course", COURSE_CAMERAS)
+def test_joints_of_a_course_are_commanded_by_position_as_in_the_original(course):
+    description = etree.fromstring(description_of(course=course).encode())
+    commands = description.findall("ros2_control/joint/command_interface")
+    assert [command.get("name") for command in commands] == ["position"] * 4
+
+
+def test_course_s2_has_grey_servos_a_shorter_way_of_j1_and_touches_itself():
+    robot = parse_urdf(description_of(course="S2"))
+    limit = robot.joint("j1").limit
+    assert limit is not None
+    assert (limit.lower, limit.upper) == (-2.0, 2.0)
+    materials = {v.material for v in robot.link("dyn2").visuals if v.material}
+    assert {m.rgba for m in materials if m.name == "servo"} == {(0.5, 0.5, 0.5, 1.0)}
+    plan = plan_of("arm_world.launch.py", course="S2")
+    assert '"self_collide": true' in parameters_of(plan, "arm_gazebo_node")
+
+
+def test_gazebos_words_without_r_start_paused():
+    paused = plan_of("arm_world.launch.py", gz_args="empty.sdf")
+    assert '"paused": true' in parameters_of(paused, "arm_gazebo_node")
+    running = plan_of("arm_world.launch.py", gz_args="-r empty.sdf")
+    assert '"paused": false' in parameters_of(running, "arm_gazebo_node")
+
+
+def test_gui_is_the_window(monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(UsageError, match="headless:=false opens a window, and there is no display"):
+        plan_of("arm_world.launch.py", gui="true")
+    assert plan_of("arm_world.launch.py", gui="true", headless="true").processes
+
+
+def test_the_description_is_uploaded_if_requested():
+    plan = plan_of("arm_upload.launch.py", robot_name="arm", origin_xyz="0 0 0.4567")
+    (publisher,) = plan.processes
+    assert "__ns:=/arm" in publisher.command
+    # Its foot stands 0.0313 m above the world's link.
+    assert "0.0 0.0 0.488" in parameters_of(plan, "robot_state_publisher")
+    assert plan_of("arm_upload.launch.py").processes
+    with pytest.raises(UsageError, match="origin_rpy:='a b' is not three numbers"):
+        plan_of("arm_upload.launch.py", origin_rpy="a b")
+
+
+def test_the_ros_1_names_of_launch_files_are_found(capsys):
+    assert main(["launch", "arm_gazebo", "arm_upload.launch", "--show-args"]) == 0
+    assert "origin_xyz  (default '0 0 0')" in capsys.readouterr().out

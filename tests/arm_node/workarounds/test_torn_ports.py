@@ -1,0 +1,71 @@
+"""Shared-memory ports whose creator died before it had filled them."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from arm_node.workarounds.torn_ports import LEAST_AGE_S, SHM_FOLDER, remove_torn_ports
+
+pytestmark = pytest.mark.workaround("torn_ports")
+
+FILLED, BEGUN = b"\x02\0\0\0" + bytes(60), b"\x01\0\0\0" + bytes(60)
+NODE = """
+from arm_node.environment import prepare_environment
+prepare_environment()
+import rclpy
+rclpy.init()
+rclpy.create_node("node")
+"""
+
+
+def make(folder: Path, name: str, content: bytes = b"", age_s: float = LEAST_AGE_S + 1.0) -> Path:
+    path = folder / name
+    path.write_bytes(content)
+    then_s = time.time() - age_s
+    os.utime(path, (then_s, then_s))
+    return path
+
+
+@pytest.mark.parametrize("content", [b"", b"\x02", bytes(64), BEGUN])
+def test_a_port_that_was_never_finished_goes(tmp_path: Path, content: bytes) -> None:
+    port = make(tmp_path, "fastrtps_port7661", content)
+    assert remove_torn_ports(str(tmp_path)) == ["fastrtps_port7661"]
+    assert not port.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "age_s"),
+    [
+        ("fastrtps_port7661", FILLED, 1000.0),
+        ("fastrtps_port7661", b"", 0.0),
+        ("fastrtps_port7661_el", b"", 1000.0),
+        ("fastrtps_0564232d5403faab_el", b"", 1000.0),
+        ("somebody_elses", b"", 1000.0),
+    ],
+)
+def test_everything_else_stays(tmp_path: Path, name: str, content: bytes, age_s: float) -> None:
+    path = make(tmp_path, name, content, age_s)
+    assert remove_torn_ports(str(tmp_path)) == []
+    assert path.exists()
+
+
+def test_a_missing_folder_is_not_an_error(tmp_path: Path) -> None:
+    assert remove_torn_ports(str(tmp_path / "none")) == []
+
+
+@pytest.mark.ros
+def test_a_node_starts_where_a_port_of_its_domain_is_torn() -> None:
+    domain = int(os.environ["ROS_DOMAIN_ID"])
+    # Where the domain's first participant receives data (DDSI-RTPS 2.5, 9.6.2.3).
+    port = Path(SHM_FOLDER, f"fastrtps_port{7400 + 250 * domain + 11}")
+    port.unlink(missing_ok=True)
+    make(port.parent, port.name)
+    try:
+        node = subprocess.run([sys.executable, "-c", NODE], capture_output=True, timeout=60.0)
+        assert node.returncode == 0, node.stderr.decode()
+    finally:
+        port.unlink(missing_ok=True)

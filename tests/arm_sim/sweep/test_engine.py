@@ -1,0 +1,145 @@
+import csv
+import json
+
+import pyarrow.parquet
+import pytest
+
+from arm_gazebo.recording.replay import Replay
+from arm_gazebo.recording.run_file import RunFile
+from arm_sim.sweep.engine import Engine
+from arm_sim.sweep.journal import FILE_NAME, Journal
+from arm_sim.sweep.study import Study, StudyError
+from arm_sim.sweep.table import write_tables
+
+TASK = """
+import os, signal, time
+from pathlib import Path
+
+HERE = Path(__file__).parent
+
+def square(run):
+    with (HERE / "made.txt").open("a") as file:
+        file.write(f"{run.number}\\n")
+    return {"square": run.values["x"] ** 2, "seed": run.seed}
+
+def sometimes(run):
+    x = run.values["x"]
+    if x == 1:
+        raise ValueError("x is 1")
+    if x == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if x == 3:
+        time.sleep(100.0)
+    if x == 4:
+        return {"bad": float("nan")}
+    return {"fine": True}
+
+def killed_once(run):
+    mark = HERE / f"mark{run.number}"
+    if not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"fine": True}
+
+def reach(run):
+    sim = run.simulation("arm", arguments={"camera": "none"})
+    sim["position_controller"].command([run.values["x"]] * 4)
+    sim.run(0.5)
+    if run.values["x"] > 0.2:
+        raise RuntimeError("too far")
+    return {"j0": sim.joints["j0"].position}
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    (tmp_path / "task.py").write_text(TASK)
+
+    def make(function: str, xs, **more) -> Study:
+        return Study(f"{tmp_path / 'task.py'}:{function}", {"x": tuple(xs)}, **more)
+
+    return make
+
+
+def made(study: Study, folder, processes: int = 2):
+    """Make the runs; return the outcomes by number."""
+    with Journal(folder, study) as journal:
+        Engine(study, journal, processes).run()
+    return journal.outcomes
+
+
+def test_every_run_is_made_once_and_has_a_seed_of_its_own(study, tmp_path):
+    outcomes = made(study("square", range(20)), tmp_path / "out")
+    assert {n: o.results["square"] for n, o in outcomes.items()} == {n: n**2 for n in range(20)}
+    assert len({o.results["seed"] for o in outcomes.values()}) == 20
+    assert sorted(map(int, (tmp_path / "made.txt").read_text().split())) == list(range(20))
+
+
+def test_an_interrupted_study_goes_on_without_losing_or_repeating_a_run(study, tmp_path):
+    xs = study("square", range(10))
+    made(xs, tmp_path / "out")
+    path = tmp_path / "out" / FILE_NAME
+    lines = path.read_text().splitlines(keepends=True)
+    # As after a kill: some runs are missing, and the last line is not whole.
+    path.write_text("".join(lines[:5]) + lines[5][:20])
+    (tmp_path / "made.txt").unlink()
+    outcomes = made(xs, tmp_path / "out")
+    assert sorted(outcomes) == list(range(10))
+    there = {json.loads(line)["number"] for line in lines[1:5]}
+    again = set(map(int, (tmp_path / "made.txt").read_text().split()))
+    assert again == set(range(10)) - there
+    with Journal(tmp_path / "out", xs) as journal:
+        assert sorted(journal.outcomes) == list(range(10))
+
+
+def test_failures_have_their_reason(study, tmp_path):
+    outcomes = made(study("sometimes", [0, 1, 2, 4, 5]), tmp_path / "out")
+    assert outcomes[0].results == {"fine": True}
+    assert outcomes[4].error == ""
+    assert outcomes[1].error.startswith("ValueError: x is 1 (task.py:")
+    assert outcomes[2].error == "its process ended with exit code -9"
+    assert "result 'bad' is nan, which is not a finite number" in outcomes[3].error
+
+
+def test_a_run_that_takes_too_long_has_failed_and_the_next_is_made(study, tmp_path):
+    outcomes = made(study("sometimes", [3, 3], timeout_s=0.5), tmp_path / "out", processes=1)
+    assert [outcomes[n].error for n in range(2)] == ["it took more than 0.5 s"] * 2
+
+
+def test_a_run_whose_process_is_killed_once_is_made_again(study, tmp_path):
+    outcomes = made(study("killed_once", range(3)), tmp_path / "out")
+    assert [outcomes[n].results for n in range(3)] == [{"fine": True}] * 3
+
+
+def test_a_failed_run_of_a_simulation_is_recorded_and_replays(study, tmp_path):
+    outcomes = made(study("reach", [0.1, 0.3]), tmp_path / "out", processes=1)
+    assert outcomes[0].results["j0"] == pytest.approx(0.1, abs=0.01)
+    recording = tmp_path / "out" / "run_1.run"
+    assert outcomes[1].replay == f"arm sim replay {recording}"
+    result = Replay(RunFile(recording)).run()
+    assert result.difference is None
+    assert result.time_s == pytest.approx(0.5)
+    assert not (tmp_path / "out" / "run_0.run").exists()
+
+
+def test_a_folder_of_another_study_is_refused(study, tmp_path):
+    made(study("square", range(2)), tmp_path / "out")
+    with pytest.raises(StudyError, match="holds the runs of another study"):
+        Journal(tmp_path / "out", study("square", range(3)))
+
+
+def test_a_task_that_cannot_be_imported_ends_the_study(study, tmp_path):
+    with pytest.raises(StudyError, match="has no function 'nothing'"):
+        made(study("nothing", range(2)), tmp_path / "out")
+
+
+def test_tables_have_a_row_for_each_run(study, tmp_path):
+    outcomes = made(study("sometimes", [0, 1]), tmp_path / "out")
+    paths = write_tables(tmp_path / "out", outcomes.values())
+    with paths[0].open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["run"] for row in rows] == ["0", "1"]
+    assert rows[1]["error"].startswith("ValueError: x is 1")
+    table = pyarrow.parquet.read_table(paths[1]).to_pydict()
+    assert table["x"] == [0, 1]
+    assert table["fine"] == [True, None]

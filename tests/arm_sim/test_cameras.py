@@ -1,0 +1,89 @@
+"""Pictures of the present state."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from arm_sim import Simulation, UnknownNameError
+
+pytestmark = pytest.mark.gl
+NAME = "videocamera"
+WALL = """<sdf version='1.9'><model name='wall'><static>true</static><link name='link'>
+<visual name='v'><geometry><box><size>0.1 4 4</size></box></geometry></visual>
+</link></model></sdf>"""
+
+
+@pytest.fixture(scope="module", params=["auto", "raycast"])
+def seen(request: pytest.FixtureRequest) -> Iterator[Simulation]:
+    with Simulation(
+        "arm", arguments={"camera": "side"}, world="objects", render_backend=request.param
+    ) as simulation:
+        yield simulation
+
+
+def test_an_image_shows_the_present_state(seen: Simulation):
+    camera = seen.camera(NAME)
+    before = camera.image()
+    assert before.shape == (camera.height, camera.width, 3)
+    assert before.dtype == np.uint8
+    assert before.std() > 5.0
+    seen["position_controller"].command([1.0, 0.5, 0.1, 0.5])
+    seen.run(1.0)
+    after = camera.image()
+    assert (before != after).any()
+    assert (after == camera.image()).all()
+
+
+def test_depth_is_in_metres_and_infinite_beyond_the_range(seen: Simulation):
+    camera = seen.camera(NAME)
+    depth = camera.depth()
+    assert depth.shape == (camera.height, camera.width)
+    finite = depth[np.isfinite(depth)]
+    assert finite.size
+    assert finite.min() > 0.0
+    assert finite.max() <= 100.0
+
+
+def test_a_depth_image_leaves_the_next_image_as_it_was(seen: Simulation):
+    camera = seen.camera(NAME)
+    before = camera.image()
+    camera.depth()
+    assert (camera.image() == before).all()
+
+
+def test_a_camera_is_found_by_its_name_and_its_topic(seen: Simulation):
+    assert seen.cameras == ("camera",)
+    assert seen.camera("camera") is seen.camera("videocamera") is seen.camera("/videocamera")
+
+
+def test_a_spawned_thing_is_seen(seen: Simulation):
+    camera = seen.camera(NAME)
+    before = camera.image()
+    name = seen.spawn(WALL, pose=(0.5, 0.0, 0.0), frame="camera_link")
+    assert (camera.image() != before).mean() > 0.2
+    seen.delete(name)
+    assert (camera.image() == before).all()
+
+
+def test_two_simulations_draw_side_by_side():
+    with Simulation("arm") as one, Simulation("arm", world="objects") as other:
+        camera = one.camera(NAME)
+        before = camera.image()
+        assert (other.camera(NAME).image() != before).any()
+        assert (camera.image() == before).all()
+        other.close()
+        assert (camera.image() == before).all()
+
+
+def test_the_intrinsic_matrix_has_its_centre_in_the_middle(seen: Simulation):
+    camera = seen.camera(NAME)
+    assert camera.matrix[0, 2] == camera.width / 2
+    assert camera.matrix[0, 0] == camera.matrix[1, 1] > 0
+
+
+def test_an_unknown_camera_is_named_with_those_that_exist(seen: Simulation, sim: Simulation):
+    with pytest.raises(UnknownNameError, match="no camera 'x'; the robot has camera"):
+        seen.camera("x")
+    with pytest.raises(UnknownNameError, match="no camera 'x'; the robot has none"):
+        sim.camera("x")

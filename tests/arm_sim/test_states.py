@@ -1,0 +1,35 @@
+"""State interfaces and sensor readings."""
+
+from pathlib import Path
+
+import pytest
+
+from arm_sim import Simulation, UnknownNameError
+
+IMU = """<robot name='box'><link name='base'/><link name='bob'><inertial><mass value='1'/>
+<inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link>
+<joint name='hinge' type='revolute'><parent link='base'/><child link='bob'/><origin xyz='0 0 1'/>
+<axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='20' velocity='3'/></joint>
+<gazebo reference='bob'><sensor name='imu' type='imu'><always_on>1</always_on></sensor></gazebo>
+</robot>"""
+
+
+def test_states_are_those_that_controllers_read(sim: Simulation):
+    sim["position_controller"].command([0.5, 0.0, 0.0, 0.0])
+    sim.run(1.0)
+    assert sim.states["j0/position"] == sim.joints["j0"].position
+    assert set(sim.states) >= {"j0/position", "j3/velocity", "j3/effort"}
+    assert len(sim.states) == 12
+    with pytest.raises(UnknownNameError, match="no state interface 'j9/position'; the hardware"):
+        sim.states["j9/position"]
+
+
+def test_a_sensor_is_read_by_its_channels(tmp_path: Path):
+    file = tmp_path / "box.urdf"
+    file.write_text(IMU)
+    with Simulation(file) as sim:
+        sim.run(1.0)
+        assert list(sim.sensors) == ["imu"]
+        assert sim.sensors["imu"]["linear_acceleration.z"] == pytest.approx(9.81, abs=1e-3)
+        with pytest.raises(UnknownNameError, match="no sensor 'x'; the robot has imu"):
+            sim.sensors["x"]

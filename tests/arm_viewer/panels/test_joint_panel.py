@@ -1,0 +1,99 @@
+"""The ranges of sliders, and when a slider follows its joint."""
+
+import math
+
+import pytest
+
+from arm_description.urdf.parser import parse_urdf
+from arm_viewer.panels.joint_panel import (
+    MAX_HOLD_S,
+    STILL_S,
+    HeldSlider,
+    JointRange,
+    joint_ranges,
+)
+
+ROBOT = """<robot name='r'><link name='base'/><link name='a'/><link name='b'/><link name='c'/>
+  <link name='d'/><link name='e'/><link name='f'/>
+  <joint name='turn' type='revolute'><parent link='base'/><child link='a'/>
+    <limit lower='0.2' upper='2.0' effort='1' velocity='1'/></joint>
+  <joint name='wheel' type='continuous'><parent link='base'/><child link='b'/></joint>
+  <joint name='push' type='prismatic'><parent link='base'/><child link='c'/>
+    <limit lower='0' upper='0.05' effort='1' velocity='1'/></joint>
+  <joint name='finger' type='prismatic'><parent link='base'/><child link='d'/>
+    <limit lower='0' upper='0.05' effort='1' velocity='1'/><mimic joint='push'/></joint>
+  <joint name='stuck' type='revolute'><parent link='base'/><child link='e'/>
+    <limit lower='0' upper='0' effort='1' velocity='1'/></joint>
+  <joint name='free' type='floating'><parent link='base'/><child link='f'/></joint>
+</robot>"""
+
+
+def test_only_joints_with_a_position_of_their_own_and_room_have_one():
+    turn, wheel, push = joint_ranges(parse_urdf(ROBOT).joints)
+    assert (turn.name, turn.lower, turn.upper) == ("turn", 0.2, 2.0)
+    assert (wheel.name, wheel.lower, wheel.upper) == ("wheel", -math.pi, math.pi)
+    assert (push.name, push.lower, push.upper) == ("push", 0.0, 0.05)
+
+
+def test_soft_limits_narrow_the_range_as_joint_state_publisher_gui_has_it():
+    (joint,) = joint_ranges(
+        parse_urdf("""<robot name='r'><link name='base'/><link name='a'/>
+          <joint name='j' type='revolute'><parent link='base'/><child link='a'/>
+            <limit lower='-1' upper='1' effort='1' velocity='1'/>
+            <safety_controller k_velocity='1' soft_lower_limit='0.5' soft_upper_limit='9'/>
+          </joint></robot>""").joints
+    )
+    assert (joint.lower, joint.upper, joint.centre) == (0.5, 1.0, 0.75)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "centre"), [(-1.0, 3.0, 0.0), (0.0, 1.0, 0.0), (0.2, 2.0, 1.1), (-3, -1, -2)]
+)
+def test_the_centre_is_zero_if_it_is_within_the_limits(lower, upper, centre):
+    assert JointRange("j", lower, upper).centre == pytest.approx(centre)
+
+
+def test_steps_are_powers_of_ten_and_positions_whole_steps_within_the_limits():
+    joint = JointRange("j", -2.57, 2.57)
+    assert joint.step == pytest.approx(0.001)
+    assert joint.nearest(0.12345) == pytest.approx(0.123)
+    assert joint.nearest(9.0) == 2.57
+    assert math.copysign(1.0, joint.nearest(-1e-9)) == 1.0
+    assert JointRange("j", 0.0, 0.05).step == pytest.approx(0.00001)
+
+
+def test_it_follows_any_motion_of_the_joint():
+    follower = HeldSlider(0.001)
+    assert follower.shown(0.5, 0.0) == 0.5
+    assert follower.shown(0.8, 0.1) == 0.8
+
+
+def test_a_joint_that_trembles_moves_nothing():
+    follower = HeldSlider(0.001)
+    follower.shown(0.5, 0.0)
+    assert follower.shown(0.5004, 0.1) == 0.5
+
+
+def test_nan_is_not_shown():
+    assert HeldSlider(0.001).shown(float("nan"), 0.0) is None
+
+
+def test_it_stays_where_the_user_put_it_until_the_joint_rests():
+    follower = HeldSlider(0.001)
+    follower.shown(0.0, 0.0)
+    follower.hold(1.0)
+    for k in range(10):
+        assert follower.shown(0.1 * k, 1.0 + 0.1 * k) is None
+    # It went on moving until 1.9 s.
+    assert follower.shown(0.9, 1.9 + 0.9 * STILL_S) is None
+    assert follower.is_held(1.9 + 0.9 * STILL_S)
+    assert follower.shown(0.9, 1.9 + 1.1 * STILL_S) == 0.9
+
+
+def test_a_joint_that_others_keep_moving_does_not_hold_it_for_ever():
+    follower = HeldSlider(0.001)
+    follower.hold(0.0)
+    times = [0.1 * k for k in range(int(MAX_HOLD_S * 10) + 2)]
+    shown = [follower.shown(time_s, time_s) for time_s in times]
+    assert shown[-3] is None
+    assert shown[-1] == times[-1]

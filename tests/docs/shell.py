@@ -1,0 +1,153 @@
+"""A shell that runs commands as a page prints them, and compares what they say."""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+TIMEOUT_S = 60.0
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+ANYTHING = "..."
+INTERRUPT = "^C"
+PREFIX = "/home/me/arm/.venv"
+"""What the pages print in place of the virtual environment's folder."""
+
+
+def pattern(lines: list[str] | tuple[str, ...], exact: bool) -> re.Pattern[str]:
+    """Return what matches output whose lines are these.
+
+    A line `...` stands for any lines, `...` within a line for any words. Unless `exact`, one
+    number is as good as another, and so is the room that it takes.
+    """
+    text = ""
+    for line in lines:
+        if line == ANYTHING:
+            text += r"(?:.*\n)*"
+            continue
+        plain = line.replace(PREFIX, sys.prefix)
+        parts = (re.escape(_comparable(part, exact)) for part in plain.split(ANYTHING))
+        text += ".*".join(parts) + r"\n"
+    return re.compile(text)
+
+
+def comparable(output: str, exact: bool) -> str:
+    """Return output as `pattern` takes it, without empty lines."""
+    return "".join(f"{_comparable(line, exact)}\n" for line in output.splitlines() if line.strip())
+
+
+def _comparable(line: str, exact: bool) -> str:
+    return line if exact else re.sub(r"[ \t]+", " ", NUMBER.sub("#", line))
+
+
+class Running:
+    """A command that has been started; what it prints is collected."""
+
+    def __init__(self, line: str, folder: Path, terminal: bool = False) -> None:
+        search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+        environment = {**os.environ, "PATH": search, "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
+        near, far = pty.openpty() if terminal else os.pipe()
+        self._near = near
+        writer = far
+        self.process = subprocess.Popen(
+            ["/bin/bash", "-c", line],
+            stdin=far if terminal else subprocess.DEVNULL,
+            stdout=writer,
+            stderr=writer,
+            env=environment,
+            cwd=folder,
+            start_new_session=True,
+        )
+        os.close(far)
+        self._output = b""
+        self._changed = threading.Condition()
+        self._ended = False
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        while True:
+            try:
+                more = os.read(self._near, 65536)
+            except OSError:  # a terminal whose other side has closed
+                more = b""
+            with self._changed:
+                self._output += more
+                self._ended = not more
+                self._changed.notify_all()
+            if not more:
+                return
+
+    @property
+    def output(self) -> str:
+        """What has been printed so far."""
+        return self._output.decode(errors="replace").replace("\r\n", "\n")
+
+    def type(self, text: str) -> None:
+        """Type on the command's terminal."""
+        os.write(self._near, text.encode())
+
+    def wait_until_shown(self, lines: list[str], exact: bool = False) -> None:
+        """Block until these lines have been printed, with anything behind them."""
+        wanted = pattern([*lines, ANYTHING], exact)
+        self.wait_for(lambda output: bool(wanted.fullmatch(comparable(output, exact))), lines)
+
+    def wait_for(self, is_right: Callable[[str], bool], what: object) -> None:
+        """Block until the output so far is right."""
+        deadline = time.monotonic() + TIMEOUT_S
+        with self._changed:
+            while not is_right(self.output):
+                left = deadline - time.monotonic()
+                assert not self._ended, f"it ended without {what}:\n{self.output}"
+                assert left > 0, f"no {what} in {TIMEOUT_S:g} s:\n{self.output}"
+                self._changed.wait(left)
+
+    def interrupt(self) -> None:
+        """Do what Ctrl-C in its terminal does."""
+        os.killpg(self.process.pid, signal.SIGINT)
+
+    def wait(self) -> int:
+        """Wait for the end, and return the exit code."""
+        code = self.process.wait(TIMEOUT_S)
+        with self._changed:
+            assert self._changed.wait_for(lambda: self._ended, TIMEOUT_S), self.output
+        return code
+
+    def close(self) -> None:
+        """End it, whatever state it is in."""
+        if self.process.poll() is None:
+            self.interrupt()
+            try:
+                self.process.wait(20.0)
+            except subprocess.TimeoutExpired:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait(10.0)
+        os.close(self._near)
+
+
+class Background:
+    """What a page leaves running; one command at a time."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._line = ""
+        self._running: Running | None = None
+
+    def start(self, line: str, output: tuple[str, ...]) -> None:
+        """Start a command and wait for what its page shows, unless it is running already."""
+        if line == self._line:
+            return
+        self.stop()
+        self._running = Running(line, self._folder)
+        self._line = line
+        self._running.wait_until_shown([*output] or [ANYTHING, "ready 1.43 s"])
+
+    def stop(self) -> None:
+        """End it."""
+        if self._running is not None:
+            self._running.close()
+        self._running, self._line = None, ""

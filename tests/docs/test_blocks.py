@@ -1,0 +1,150 @@
+"""Every command and code block of the README and the manual does what its page says."""
+
+import runpy
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+from blocks import PAGES, Block, Command, blocks_of, commands_of
+from lxml import etree
+from shell import ANYTHING, INTERRUPT, Background, Running, comparable, pattern
+
+LANGUAGES = {"console", "bash", "python", "yaml", "xml", "toml", "text", "dockerfile"}
+
+
+def first_launch(page: Path) -> str:
+    """Return what a page starts first, so that pages with the same launch follow each other."""
+    started = (commands_of(b)[0].line for b in blocks_of(page) if b.directive == "background")
+    return next(started, "")
+
+
+RUNNING_PAGES = sorted(
+    (page for page in PAGES if any(b.language == "console" for b in blocks_of(page))),
+    key=first_launch,
+)
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.parametrize("page", RUNNING_PAGES, ids=lambda page: page.stem)
+def test_the_commands_of_a_page_print_what_it_says(
+    page: Path, folder: Path, background: Background
+):
+    for block in blocks_of(page):
+        if block.language == "console" and not block.directive.startswith("not run"):
+            for command in commands_of(block):
+                run(command, block, folder, background)
+
+
+def run(command: Command, block: Block, folder: Path, background: Background) -> None:
+    how, _, words = block.directive.partition(" ")
+    if how == "background":
+        background.start(command.line, command.output)
+        return
+    line = f"{command.line} --print" if how == "print" else command.line
+    running = Running(line, folder, terminal=how == "typed")
+    try:
+        if how == "typed":
+            running.wait_until_shown([f"{command.output[0].removesuffix(words)}..."])
+            running.type(f"{words}\n")
+        if INTERRUPT in command.output:
+            before = command.output[: command.output.index(INTERRUPT)]
+            running.wait_until_shown(list(before), exact=how == "exact")
+            running.interrupt()
+        code = running.wait()
+        output = running.output
+    finally:
+        running.close()
+    where = f"{block.place}: {line}\n{output}"
+    if INTERRUPT not in command.output and words != "any":
+        assert code == (int(words) if how == "exit" else 0), where
+    lines = [line for line in command.output if line != INTERRUPT]
+    if how != "print":
+        wanted = pattern(lines or [ANYTHING], how == "exact")
+        assert wanted.fullmatch(comparable(output, how == "exact")), where
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_blocks_that_are_files_are_well_formed(page: Path):
+    for block in blocks_of(page):
+        assert block.language in LANGUAGES, block.place
+        if block.language == "python":
+            compile(block.text, block.place, "exec")
+        elif block.language == "yaml":
+            yaml.safe_load(block.text)
+        elif block.language == "xml":
+            etree.fromstring(block.text)
+        elif block.language == "toml":
+            tomllib.loads(block.text)
+
+
+def test_blocks_that_cannot_run_say_why():
+    blocks = [block for page in PAGES for block in blocks_of(page)]
+    assert len(blocks) > 50
+    for block in blocks:
+        if block.language in ("bash", "dockerfile"):
+            assert block.directive.startswith("not run, "), block.place
+        if block.directive.startswith("not run"):
+            assert len(block.directive) > len("not run, "), block.place
+
+
+@pytest.mark.ros
+def test_the_table_of_topics_is_that_of_a_running_arm(folder: Path, background: Background):
+    page = Path(__file__).parents[2] / "docs" / "reference" / "topics.md"
+    rows = [line.split("|") for line in page.read_text().splitlines() if line.startswith("| `/")]
+    table = {row[1].strip(" `"): row[2].strip() for row in rows if "/msg/" in row[2]}
+    background.start("arm launch", ())
+
+    wanted = {topic: f"[{type_}]" for topic, type_ in table.items()}.items()
+    assert len(wanted) > 15
+    # The topics of the introspection come some seconds after the services.
+    missing = wanted
+    deadline = time.monotonic() + 60.0
+    while missing and time.monotonic() < deadline:
+        running = Running("arm topic list -t", folder)
+        assert running.wait() == 0
+        missing = wanted - dict(line.split(" ") for line in running.output.splitlines()).items()
+        running.close()
+    assert not missing
+
+
+@pytest.mark.ros
+def test_the_table_of_services_is_that_of_a_running_arm(folder: Path, background: Background):
+    page = Path(__file__).parents[2] / "docs" / "reference" / "topics.md"
+    rows = [line.split("|") for line in page.read_text().splitlines() if line.startswith("| `/")]
+    table = {row[1].strip(" `"): row[2].strip() for row in rows if "/srv/" in row[2]}
+    background.start("arm launch", ())
+
+    own = ("controller_manager_msgs/", "simulation_interfaces/")
+    # The services of the simulation come some time after those of the controller manager.
+    offered: dict[str, str] = {}
+    deadline = time.monotonic() + 60.0
+    while offered != table and time.monotonic() < deadline:
+        running = Running("arm service list -t", folder)
+        assert running.wait() == 0
+        lines = (
+            line.replace("[", "").rstrip("]").split(" ") for line in running.output.splitlines()
+        )
+        offered = {n: kind for n, kind in lines if kind.startswith(own) or n in table}
+        running.close()
+    assert offered == table
+
+
+def test_the_drawings_are_those_of_their_script():
+    docs = Path(__file__).parents[2] / "docs"
+    made = runpy.run_path(str(docs / "make_drawings.py"))
+    for name in made["DRAWINGS"]:
+        assert (docs / "images" / name).read_text() == made["drawing"](name)
+
+
+def test_each_term_of_the_glossary_stands_once():
+    page = Path(__file__).parents[2] / "docs" / "reference" / "glossary.md"
+    terms = [line.strip("*") for line in page.read_text().splitlines() if line.startswith("**")]
+    assert len(terms) > 40
+    assert terms == sorted(set(terms), key=str.lower)
+
+
+def test_the_readme_stays_short():
+    assert len(PAGES[0].read_text().splitlines()) <= 200

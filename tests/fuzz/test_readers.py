@@ -1,0 +1,27 @@
+"""Each reader takes 300 broken inputs: a result or a sentence, no other error, no end of all."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FUZZ = Path(__file__).with_name("fuzz.py")
+TARGETS = ("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments")
+INPUTS = 300
+MOST_MB = 1000
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_every_input_is_a_result_or_a_sentence(target):
+    done = subprocess.run(
+        [sys.executable, str(FUZZ), target, "--inputs", str(INPUTS)],
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    result = json.loads(done.stdout)
+    assert result["failures"] == []
+    assert result["inputs"] == INPUTS
+    assert 0 < result["refused"] < INPUTS
+    assert result["most_mb"] < MOST_MB

@@ -1,0 +1,18 @@
+"""The pages of the 4-DOF arm, each from its first line to its last."""
+
+import pytest
+from originals_table import Row
+from walk import Walk, rows_of
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+
+@pytest.mark.parametrize(
+    ("page", "row"),
+    [
+        pytest.param(page, row, id=f"{page}-{row.name}")
+        for page, row in rows_of("S0", "S1", "S2", "S3")
+    ],
+)
+def test_a_row_comes_as_the_table_says(walk: Walk, page: str, row: Row):
+    walk.assert_row(page, row)

@@ -1,0 +1,27 @@
+"""No two classes of the product have the same name."""
+
+import ast
+import tomllib
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PACKAGES = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
+
+DEMANDED = {
+    "Shutdown",  # An action and an event of ROS 2's launch.
+    "Simulation",  # The physics, and the library's front, which is what its users call it.
+}
+
+
+def test_no_class_name_stands_twice():
+    places = defaultdict(list)
+    for package in (*PACKAGES, "arm_interfaces"):
+        for file in (ROOT / package).rglob("*.py"):
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.ClassDef):
+                    places[node.name].append(f"{file.relative_to(ROOT)}:{node.lineno}")
+    assert len(places) > 500
+    twice = {name: where for name, where in places.items() if len(where) > 1}
+    assert twice.keys() == DEMANDED, twice

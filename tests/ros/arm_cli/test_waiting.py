@@ -1,0 +1,109 @@
+"""Verbs report what they wait for, and stop at their timeout."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from control_msgs.action import GripperCommand
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from arm_cli.main import main
+
+pytestmark = pytest.mark.ros
+
+ACTION = "control_msgs/action/GripperCommand"
+
+
+@pytest.fixture
+def arm(capfd: Any) -> Callable[..., Any]:
+    """Return a function that runs a verb in this process and returns its output."""
+
+    def run(*words: str, code: int) -> Any:
+        capfd.readouterr()
+        assert main(list(words)) == code
+        return capfd.readouterr()
+
+    return run
+
+
+def test_a_missing_service(arm: Any) -> None:
+    said = arm("service", "call", "/no", "std_srvs/srv/Trigger", "--timeout", "1.5", code=1)
+    waiting, gave_up = said.err.splitlines()
+    assert waiting.startswith("waiting for service to become available... /no")
+    assert gave_up == "arm service call: service /no has no server (waited 1.5 s)"
+
+
+def test_a_service_that_does_not_answer(arm: Any, client: Any) -> None:
+    # Nobody spins this node, which shares the client's context.
+    from rclpy.node import Node
+
+    silent = Node("silent", context=client.context)
+    silent.create_service(Trigger, "/silent", lambda _, response: response)
+    try:
+        said = arm("service", "call", "/silent", "std_srvs/srv/Trigger", "--timeout", "2", code=1)
+    finally:
+        silent.destroy_node()
+    assert said.err.splitlines()[-2:] == [
+        "waiting for the answer of /silent...",
+        "arm service call: no answer from /silent within 2 s",
+    ]
+
+
+def test_a_missing_action(arm: Any) -> None:
+    said = arm("action", "send_goal", "/no", ACTION, "--timeout", "0.2", code=1)
+    assert said.err == "arm action send_goal: action /no has no server (waited 0.2 s)\n"
+
+
+@pytest.fixture
+def endless_action(client: Any) -> Iterator[list[str]]:
+    """An action that ends only by cancelling; yields the cancelled goals."""
+    cancelled: list[str] = []
+
+    async def execute(handle: Any) -> GripperCommand.Result:
+        future = client.executor.create_task(lambda: None)
+        while not handle.is_cancel_requested:
+            await future
+            future = client.executor.create_task(lambda: None)
+        handle.canceled()
+        cancelled.append("goal")
+        return GripperCommand.Result()
+
+    server = ActionServer(
+        client.node,
+        GripperCommand,
+        "/endless",
+        execute,
+        callback_group=ReentrantCallbackGroup(),
+        cancel_callback=lambda _: CancelResponse.ACCEPT,
+    )
+    yield cancelled
+    client.run(server.destroy, "the end of the action")
+
+
+def test_a_goal_is_cancelled_at_its_timeout(
+    arm: Any, client: Any, endless_action: list[str]
+) -> None:
+    said = arm("action", "send_goal", "/endless", ACTION, "--timeout", "2", code=1)
+    assert said.err.splitlines()[-2:] == [
+        "waiting for the result of /endless...",
+        "arm action send_goal: no result from /endless within 2 s",
+    ]
+    assert said.out.endswith("Canceling goal...\nGoal canceled.\n")
+    client.wait_until(lambda: endless_action, "the goal cancelled")
+
+
+def test_simulated_stamps_are_explained(client: Any, start: Any) -> None:
+    publisher = client.node.create_publisher(JointState, "/joint_states", 10)
+    state = JointState()
+    state.header.stamp.sec = 12
+    client.node.create_timer(0.05, lambda: publisher.publish(state))
+    command = start("arm topic delay /joint_states")
+    command.wait_for("average delay")
+    command.interrupt()
+    assert command.err == (
+        "the stamps of /joint_states are about 12 s after the start of a clock, not the time of "
+        "day: use -s to measure the delay in simulation time (/clock)\n"
+    )

@@ -1,0 +1,88 @@
+"""Verbs without a simulation: publishing a file, service events, and Tab completion."""
+
+import re
+import shlex
+from typing import Any
+
+import pytest
+from rclpy.qos import qos_profile_system_default
+from rclpy.service_introspection import ServiceIntrospectionState
+from std_srvs.srv import SetBool
+
+pytestmark = pytest.mark.ros
+
+ECHOED = "data: one\n---\n---\ndata: two\n---\n"
+
+
+@pytest.mark.parametrize(
+    ("option", "words"), [("", ["one", "two"]), ("-t 5", ["one", "two"]), ("--once", ["one"])]
+)
+def test_the_messages_of_a_file_are_published_once(run, tmp_path, option, words):
+    (tmp_path / "f.yaml").write_text(ECHOED)
+    line = "arm topic pub -w 0 -r 50 /chat std_msgs/msg/String --yaml-file f.yaml"
+    assert re.findall(r"#\d: .*data='(.*)'", run(f"{line} {option}")) == words
+
+
+def test_a_message_of_the_command_line_is_published_repeatedly(run):
+    text = run("arm topic pub -w 0 -r 50 -t 3 /chat std_msgs/msg/String 'data: one'")
+    assert re.findall(r"#(\d): .*data='one'", text) == ["1", "2", "3"]
+
+
+def answer(_request: Any, response: Any) -> Any:
+    response.message = "a\x1b[2J"
+    return response
+
+
+def test_requests_and_responses_are_shown(client: Any, start: Any) -> None:
+    service = client.node.create_service(SetBool, "/switch", answer)
+    service.configure_introspection(
+        client.node.get_clock(), qos_profile_system_default, ServiceIntrospectionState.CONTENTS
+    )
+    caller = client.node.create_client(SetBool, "/switch")
+    client.node.create_timer(0.1, lambda: caller.call_async(SetBool.Request(data=True)))
+    command = start("arm service echo /switch")
+    command.wait_for("event_type: 2")
+    # The one after it, whole.
+    command.wait_for("request:\n- data: true\nresponse: []\n---\n")
+    command.wait_for(r'message: "a\e[2J"')
+    command.interrupt()
+    requests = [event for event in command.out.split("---\n") if "- data: true" in event]
+    assert all("event_type: 1" in event for event in requests)
+
+
+def test_a_service_that_publishes_nothing_is_explained(client: Any, run: Any) -> None:
+    client.node.create_service(SetBool, "/silent", answer)
+    said = run("arm service echo /silent --timeout 1.5", code=1)
+    assert "is service introspection enabled in its node?" in said
+    assert "no event of /silent within 1.5 s" in said
+
+
+TAB = (
+    "env _ARGCOMPLETE=1 _ARGCOMPLETE_IFS=, _ARGCOMPLETE_STDOUT_FILENAME=words "
+    "COMP_TYPE=9 COMP_POINT={point} COMP_LINE={line} arm"
+)
+
+
+@pytest.fixture
+def offered(start, tmp_path):
+    """Return a function that presses Tab until a word is offered."""
+
+    def press(line: str) -> list[str]:
+        answer = tmp_path / "words"
+        answer.unlink(missing_ok=True)
+        assert start(TAB.format(point=len(line), line=shlex.quote(line))).wait() == 0
+        return [word.strip() for word in answer.read_text().split(",")]
+
+    return press
+
+
+def test_tab_knows_parameters_and_their_values(client, offered):
+    client.node.declare_parameter("flag", False)
+    client.node.declare_parameter("size", [1.0, 2.5])
+    client.wait_until(
+        lambda: "/test_client" in offered("arm param set /test_c"), "the node offered"
+    )
+    assert {"flag", "size"} <= set(offered("arm param set /test_client "))
+    assert offered("arm param set /test_client flag ") == ["true", "false"]
+    assert offered("arm param get /test_client fl") == ["flag"]
+    assert "/test_client/set_parameters" in offered("arm service call /test_client/set")

@@ -1,0 +1,108 @@
+"""/position_controller/commands, from a client's message to /joint_states."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+COMMANDS = "/position_controller/commands"
+
+
+@pytest.fixture
+def publish(client: Any) -> Callable[..., None]:
+    """Return a function that publishes one command."""
+    from std_msgs.msg import Float64MultiArray
+
+    publishers: list[Any] = []
+
+    def send(*data: float) -> None:
+        if not publishers:
+            publishers.append(client.publisher(Float64MultiArray, COMMANDS))
+        publishers[0].publish(Float64MultiArray(data=list(data)))
+
+    return send
+
+
+@pytest.fixture
+def positions(control: Any, client: Any) -> Any:
+    """Start both controllers; return what is published as joint states."""
+    from sensor_msgs.msg import JointState
+
+    control.start("joint_state_broadcaster", "position_controller")
+    states = client.subscribe(JointState, "/joint_states")
+    states.wait_for(1)
+    return states
+
+
+def wait_for(positions: Any, *expected: float) -> Any:
+    """Wait until these positions are published; return their message."""
+    messages = positions.wait_until(
+        lambda messages: list(messages[-1].position) == list(expected), f"position {expected}"
+    )
+    return messages[-1]
+
+
+def test_a_command_shows_in_the_joint_states(positions: Any, publish: Any) -> None:
+    publish(0.1, 0.2, 0.3, 0.4)
+    assert wait_for(positions, 0.1, 0.2, 0.3, 0.4).name == ["j0", "j1", "j2", "j3"]
+
+
+def test_messages_of_a_best_effort_publisher_arrive(positions: Any, client: Any) -> None:
+    from rclpy.qos import qos_profile_sensor_data
+    from std_msgs.msg import Float64MultiArray
+
+    publisher = client.publisher(Float64MultiArray, COMMANDS, qos_profile_sensor_data)
+    publisher.publish(Float64MultiArray(data=[0.5, 0.0, 0.0, 0.0]))
+    assert wait_for(positions, 0.5, 0.0, 0.0, 0.0).name == ["j0", "j1", "j2", "j3"]
+
+
+def test_a_wrong_length_deactivates_it_and_the_log_says_how_to_go_on(
+    control: Any, positions: Any, publish: Any, manager: Any
+) -> None:
+    publish(0.1, 0.2)
+    manager.wait_for_line("command size (2) does not match number of interfaces (4)")
+    manager.wait_for_line(
+        "Deactivating controllers : [ position_controller ] as their update resulted in an error!"
+    )
+    manager.wait_for_line("activate again with: spawner position_controller")
+    control.wait_for_states(position_controller="inactive", joint_state_broadcaster="active")
+    assert control.switch(["position_controller"]).ok
+    publish(0.7, 0.0, 0.0, 0.0)
+    wait_for(positions, 0.7, 0.0, 0.0, 0.0)
+
+
+def test_a_command_with_a_nan_is_dropped_with_a_warning(
+    control: Any, positions: Any, publish: Any, manager: Any
+) -> None:
+    publish(0.2, 0.2, 0.2, 0.2)
+    wait_for(positions, 0.2, 0.2, 0.2, 0.2)
+    publish(0.9, float("nan"), 0.9, 0.9)
+    manager.wait_for_line("a command with a NaN or an infinity was dropped: [0.9, nan, 0.9, 0.9]")
+    assert list(positions.wait_for(1)[-1].position) == [0.2, 0.2, 0.2, 0.2]
+    assert control.states()["position_controller"] == "active"
+
+
+def test_an_empty_command_changes_nothing(control: Any, positions: Any, publish: Any) -> None:
+    publish(0.3, 0.3, 0.3, 0.3)
+    wait_for(positions, 0.3, 0.3, 0.3, 0.3)
+    publish()
+    publish(0.4, 0.3, 0.3, 0.3)
+    wait_for(positions, 0.4, 0.3, 0.3, 0.3)
+    assert control.states()["position_controller"] == "active"
+
+
+def test_what_was_sent_while_it_was_inactive_is_not_replayed(
+    control: Any, positions: Any, publish: Any, get_parameter: Any
+) -> None:
+    publish(0.1, 0.1, 0.1, 0.1)
+    wait_for(positions, 0.1, 0.1, 0.1, 0.1)
+    control.switch([], ["position_controller"])
+    publish(0.8, 0.8, 0.8, 0.8)
+    # The node answers this request only after it has received the command.
+    assert get_parameter("/position_controller", "joints") == ["j0", "j1", "j2", "j3"]
+    control.switch(["position_controller"])
+    positions.clear()
+    messages = positions.wait_for(5)
+    assert all(list(message.position) == [0.1, 0.1, 0.1, 0.1] for message in messages)

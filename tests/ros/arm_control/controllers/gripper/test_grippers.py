@@ -1,0 +1,167 @@
+"""Gripper controllers on the simulated arm's last joint, from a client's goal to its result."""
+
+import math
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+GRIPPER, EFFORT, PARALLEL = "gripper_controller", "effort_gripper", "parallel_gripper"
+SEND_GOAL = f"/{GRIPPER}/gripper_cmd/_action/send_goal"
+BEYOND_ITS_LIMIT = -4.0
+
+
+@pytest.fixture
+def active(control: Any) -> Any:
+    """Start the gripper that commands positions; return the manager's client."""
+    control.start(GRIPPER)
+    return control
+
+
+@pytest.fixture
+def patient(active: Any, set_parameter: Any) -> Any:
+    """Let goals beyond the joint's limit last for ever; return the manager's client."""
+    assert set_parameter(f"/{GRIPPER}", "stall_timeout", 1e6).successful
+    return active
+
+
+def count_actions(client: Any) -> int:
+    return client.node.count_services(SEND_GOAL)
+
+
+def test_the_action_is_there_from_the_first_activation_on(
+    control: Any, client: Any, grip: Any, manager: Any
+) -> None:
+    control.load(GRIPPER)
+    control.configure(GRIPPER)
+    assert count_actions(client) == 0
+    manager.wait_for_line("[Deprecated] position_controllers/GripperActionController")
+
+    assert control.switch([GRIPPER]).ok
+    client.wait_until(lambda: count_actions(client) == 1, "the action")
+    types = dict(client.node.get_service_names_and_types())
+    assert types[SEND_GOAL] == ["control_msgs/action/GripperCommand_SendGoal"]
+
+    assert control.switch([], [GRIPPER]).ok
+    assert not grip(0.1).accepted
+    manager.wait_for_line("Can't accept new action goals. Controller is not running.")
+    assert control.unload(GRIPPER)
+    client.wait_until(lambda: count_actions(client) == 0, "the end of the action")
+
+
+def test_a_goal_is_reached(active: Any, grip: Any) -> None:
+    answer = grip(-0.5, max_effort=5.0).wait()
+    assert answer.status == SUCCEEDED
+    assert (answer.result.reached_goal, answer.result.stalled) == (True, False)
+    assert answer.result.position == pytest.approx(-0.5, abs=0.01)
+    assert answer.result.effort == 5.0
+
+
+def test_a_joint_that_cannot_go_on_aborts_the_goal(active: Any, grip: Any, manager: Any) -> None:
+    answer = grip(BEYOND_ITS_LIMIT).wait()
+    assert answer.status == ABORTED
+    assert (answer.result.reached_goal, answer.result.stalled) == (False, True)
+    assert answer.result.position == pytest.approx(-3.14, abs=0.02)
+    manager.wait_for_line("joint 'j3': position command -4 rad is beyond its limit of -3.14 rad")
+
+
+def test_a_joint_that_cannot_go_on_is_a_success_where_stalling_is_allowed(
+    active: Any, grip: Any, set_parameter: Any
+) -> None:
+    assert set_parameter(f"/{GRIPPER}", "allow_stalling", True).successful
+    answer = grip(BEYOND_ITS_LIMIT).wait()
+    assert answer.status == SUCCEEDED
+    assert (answer.result.reached_goal, answer.result.stalled) == (False, True)
+
+
+def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> None:
+    goal = grip(BEYOND_ITS_LIMIT)
+    assert goal.cancel() == 1
+    answer = goal.wait()
+    assert answer.status == CANCELED
+    assert (answer.result.position, answer.result.effort) == (0.0, 0.0)
+    assert not answer.result.stalled
+
+
+def test_a_new_goal_cancels_the_one_before(patient: Any, grip: Any) -> None:
+    first = grip(BEYOND_ITS_LIMIT)
+    second = grip(-0.3)
+    assert first.wait().status == CANCELED
+    assert second.wait().status == SUCCEEDED
+
+
+def test_deactivation_aborts_the_goal(patient: Any, grip: Any) -> None:
+    goal = grip(BEYOND_ITS_LIMIT)
+    assert patient.switch([], [GRIPPER]).ok
+    answer = goal.wait()
+    assert answer.status == ABORTED
+    assert not answer.result.reached_goal
+
+
+def test_a_goal_that_is_not_a_number_is_rejected_with_the_reason(
+    active: Any, grip: Any, manager: Any
+) -> None:
+    assert not grip(math.nan).accepted
+    manager.wait_for_line("Received action goal whose position is not finite: nan")
+
+
+def test_the_action_works_again_after_another_configure(
+    active: Any, caller_of: Any, grip: Any
+) -> None:
+    assert grip(-0.1).wait().status == SUCCEEDED
+    assert active.switch([], [GRIPPER]).ok
+    assert active.configure(GRIPPER)
+    assert active.switch([GRIPPER]).ok
+    caller_of(GRIPPER).wait_for_server()
+    assert grip(-0.2).wait().status == SUCCEEDED
+
+
+def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(
+    control: Any, grip: Any
+) -> None:
+    control.start(EFFORT)
+    answer = grip(-0.4, max_effort=3.0, controller=EFFORT).wait()
+    assert (answer.status, answer.result.reached_goal) == (SUCCEEDED, True)
+    assert 0.0 < abs(answer.result.effort) <= 3.0
+    answer = grip(1.5, max_effort=1.0, controller=EFFORT).wait()
+    assert (answer.status, answer.result.stalled) == (ABORTED, True)
+    assert answer.result.effort == pytest.approx(1.0)
+    assert 0.2 < answer.result.position < 1.0
+
+
+def test_parallel_reaches_its_goal_with_a_joint_state(control: Any, grip_parallel: Any) -> None:
+    control.start(PARALLEL)
+    answer = grip_parallel(-0.4, effort=[4.0]).wait()
+    state = answer.result.state
+    assert (answer.status, answer.result.reached_goal) == (SUCCEEDED, True)
+    assert (list(state.name), list(state.effort)) == (["j3"], [4.0])
+    assert state.position[0] == pytest.approx(-0.4, abs=0.01)
+    answer = grip_parallel(BEYOND_ITS_LIMIT).wait()
+    assert (answer.status, answer.result.stalled) == (ABORTED, True)
+    assert list(answer.result.state.effort) == [10.0]
+
+
+def test_parallel_takes_exactly_one_position(
+    control: Any, grip_parallel: Any, manager: Any
+) -> None:
+    control.start(PARALLEL)
+    assert not grip_parallel().accepted
+    assert not grip_parallel(0.1, 0.2).accepted
+    for count in (0, 2):
+        manager.wait_for_line(
+            f"Received action goal with wrong number of position values, expects 1, got {count}"
+        )
+
+
+def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
+    active: Any, grip: Any, send_and_die: Any, manager: Any
+) -> None:
+    from control_msgs.action import GripperCommand
+
+    goal = GripperCommand.Goal()
+    goal.command.position = BEYOND_ITS_LIMIT
+    send_and_die(GripperCommand, f"/{GRIPPER}/gripper_cmd", goal)
+    assert grip(-0.2).wait().status == SUCCEEDED
+    assert "callback failed" not in manager.output

@@ -1,0 +1,260 @@
+"""The action ~/follow_joint_trajectory, from a client's goal to its result."""
+
+import threading
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+NAME = "joint_trajectory_controller"
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+HERE = (0.0, 0.0, 0.0, 0.0)
+THERE = (0.1, 0.2, 0.3, 0.4)
+FOR_EVER_S = 1000.0
+
+PREEMPTED = (ABORTED, -1, "Current goal preempted by new incoming action.")
+REACHED = (SUCCEEDED, 0, "Goal successfully reached!")
+
+
+@pytest.fixture
+def paused(manager: Any) -> Iterator[Any]:
+    """Return a manager whose time a test may stop; it goes on afterwards."""
+    yield manager
+    manager.tell("resume")
+
+
+def test_a_goal_is_reached(active: Any, send: Any, states: Any) -> None:
+    goal = send((0.1, HERE), (0.2, THERE))
+    assert goal.result() == REACHED
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == list(THERE),
+        "the arm is there",
+    )
+
+
+def test_joints_may_come_in_any_order(active: Any, send: Any, states: Any) -> None:
+    assert send((0.1, (4, 3, 2, 1)), joints=("j3", "j2", "j1", "j0")).result() == REACHED
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == [1, 2, 3, 4],
+        "each at its own",
+    )
+
+
+def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
+    goal = send((0.5, THERE))
+    goal.result()
+    messages = goal.feedback.wait_for(9)  # The result may be taken before the last of it.
+    stamps = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages]
+    assert all(
+        after - before == pytest.approx(0.05, abs=1e-6) for before, after in pairwise(stamps)
+    )
+    last = messages[-1]
+    assert list(last.joint_names) == ["j0", "j1", "j2", "j3"]
+    assert last.error.positions[0] == pytest.approx(
+        last.desired.positions[0] - last.actual.positions[0]
+    )
+    assert len(last.actual.velocities) == 4
+
+
+def test_no_goal_succeeds_on_a_state_that_is_not_a_number(
+    active: Any, send: Any, manager: Any, client: Any
+) -> None:
+    from diagnostic_msgs.msg import DiagnosticArray
+
+    reports = client.subscribe(DiagnosticArray, "/diagnostics")
+    manager.tell("unmeasure j1/velocity")
+    try:
+        status, _, sentence = send((0.1, THERE)).result()
+        assert status == ABORTED
+        assert "state j1/velocity is not a number, so the goal cannot be checked" in sentence
+        reports.wait_until(
+            lambda messages: any(
+                "Measured state j1/velocity is not a number" in status.message
+                for message in messages
+                for status in message.status
+            ),
+            "the report on the state",
+        )
+        manager.wait_for_line("Measured state j1/velocity is not a number")
+    finally:
+        manager.tell("measure")
+    assert send((0.1, HERE)).result() == REACHED
+
+
+@pytest.mark.parametrize(
+    ("points", "joints", "reason"),
+    [
+        ([], ("j0", "j1", "j2", "j3"), "Empty trajectory received."),
+        (
+            [(1.0, (0.0,))],
+            ("j0",),
+            "Joints on incoming trajectory don't match the controller joints.",
+        ),
+        (
+            [(1.0, HERE)],
+            ("j0", "j1", "j2", "j9"),
+            "Incoming joint j9 doesn't match the controller's joints.",
+        ),
+        (
+            [(1.0, HERE), (1.0, HERE)],
+            ("j0", "j1", "j2", "j3"),
+            "Time between points 0 and 1 is not strictly increasing",
+        ),
+        (
+            [(1.0, (0.0, float("nan"), 0.0, 0.0))],
+            ("j0", "j1", "j2", "j3"),
+            "The positions of joint j1 at point #0 are not finite: nan.",
+        ),
+        (
+            [(1.0, (0.0, 0.0, 1e300, 0.0))],
+            ("j0", "j1", "j2", "j3"),
+            "The positions of joint j2 at point #0 are too large: 1e+300.",
+        ),
+        ([(1.0, HERE)], ("j0", "j1", "j0", "j3"), "Incoming joint j0 is named more than once."),
+    ],
+    ids=["empty", "too few joints", "unknown joint", "time", "nan", "too large", "twice"],
+)
+def test_an_invalid_goal_is_rejected_with_the_reason(
+    active: Any, send: Any, manager: Any, points: Any, joints: Any, reason: str
+) -> None:
+    assert not send(*points, joints=joints).accepted
+    manager.wait_for_line(reason)
+
+
+def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(
+    active: Any, send: Any, set_parameter: Any
+) -> None:
+    assert set_parameter(f"/{NAME}", "reject_with_reason", True).successful
+    status, code, text = send((1.0, HERE), joints=("j0", "j1", "j2", "j9")).result()
+    assert (status, code) == (ABORTED, -2)
+    assert text == "Incoming joint j9 doesn't match the controller's joints."
+
+
+def test_an_inactive_controller_rejects_goals(control: Any, send: Any, manager: Any) -> None:
+    control.load(NAME)
+    control.configure(NAME)
+    assert not send((0.1, THERE)).accepted
+    manager.wait_for_line("Can't accept new action goals. Controller is not running.")
+
+
+def test_a_new_goal_preempts_the_one_before(active: Any, send: Any) -> None:
+    first = send((FOR_EVER_S, THERE))
+    second = send((0.1, THERE))
+    assert first.result() == PREEMPTED
+    assert second.result() == REACHED
+
+
+def test_a_goal_is_preempted_while_paused(active: Any, send: Any, paused: Any) -> None:
+    first = send((FOR_EVER_S, THERE))
+    paused.tell("pause")
+    second = send((0.1, THERE))
+    assert first.result() == PREEMPTED
+    assert not second.ended()
+    paused.tell("resume")
+    assert second.result() == REACHED
+
+
+def test_a_cancelled_goal_ends_with_an_empty_result(active: Any, send: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    assert goal.cancel() == 1
+    assert goal.result() == (CANCELED, 0, "")
+
+
+def test_a_goal_is_cancelled_while_paused(active: Any, send: Any, paused: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    paused.tell("pause")
+    assert goal.cancel() == 1
+    assert goal.result() == (CANCELED, 0, "")
+
+
+def test_a_goal_that_has_ended_cannot_be_cancelled(active: Any, send: Any) -> None:
+    goal = send((0.1, THERE))
+    assert goal.result() == REACHED
+    assert goal.cancel() == 0
+
+
+def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
+    from control_msgs.msg import JointTolerance
+
+    goal = send(
+        (0.0, (9, 9, 9, 9)), (1.0, HERE), path_tolerance=[JointTolerance(name="j1", position=0.01)]
+    )
+    assert goal.result() == (ABORTED, -4, "Aborted due to path tolerance violation")
+
+
+def test_a_goal_without_any_motion_is_reached_at_once(active: Any, send: Any) -> None:
+    assert send((0.0, THERE)).result() == REACHED
+
+
+def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:
+    longest_s = 2.0e9
+    goal = send((1.0, HERE), (longest_s, THERE))
+    goal.wait_until_running()
+    points = [(0.01 * (i + 1), THERE) for i in range(3000)]
+    assert send(*points).accepted
+    assert goal.result() == PREEMPTED
+    assert send((0.1, THERE)).result() == REACHED
+
+
+def test_a_flood_of_goals_leaves_the_last_one(
+    active: Any, client: Any, send: Any, manager: Any
+) -> None:
+    assert send((0.1, THERE)).result() == REACHED
+    sent = threading.Event()
+    left = iter(range(100))
+
+    def send_another() -> None:
+        if next(left, None) is None:
+            sent.set()
+        else:
+            send.send_and_forget((FOR_EVER_S, THERE))
+
+    timer = client.node.create_timer(0.01, send_another)
+    assert sent.wait(100.0)
+    client.node.destroy_timer(timer)
+    assert send((0.1, HERE)).result() == REACHED
+    assert "callback failed" not in manager.output
+    assert "Traceback" not in manager.output
+
+
+def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
+    goal = send((FOR_EVER_S, THERE))
+    goal.wait_until_running()
+    assert active.switch([], [NAME]).ok
+    assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
+
+
+def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
+    # Then the server knows its client whole: who asks for a result unknown to it has none coming.
+    assert send((0.1, THERE)).result() == REACHED
+    goal = send((FOR_EVER_S, HERE))
+    goal.wait_until_running()
+    assert active.call("reload_controller_libraries", force_kill=True).ok
+    assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
+
+
+def test_the_action_works_again_after_another_configure(active: Any, send: Any) -> None:
+    assert send((0.1, THERE)).result() == REACHED
+    assert active.switch([], [NAME]).ok
+    assert active.configure(NAME)
+    assert active.switch([NAME]).ok
+    send.wait_for_server()
+    assert send((0.1, HERE)).result() == REACHED
+
+
+def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
+    active: Any, send: Any, send_and_die: Any, trajectory: Any, states: Any, manager: Any
+) -> None:
+    from control_msgs.action import FollowJointTrajectory
+
+    goal = FollowJointTrajectory.Goal(trajectory=trajectory((1.0, [0.5] * 4)))
+    send_and_die(FollowJointTrajectory, f"/{NAME}/follow_joint_trajectory", goal)
+    states.wait_until(
+        lambda messages: messages and list(messages[-1].feedback.positions) == [0.5] * 4,
+        "the goal goes on",
+    )
+    assert send((0.1, HERE)).result() == REACHED
+    assert "callback failed" not in manager.output

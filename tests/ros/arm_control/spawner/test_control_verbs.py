@@ -1,0 +1,96 @@
+"""`arm control` says what ros2 control says, on both ways: done, and refused."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arm_cli.main import main
+
+pytestmark = pytest.mark.ros
+
+POSITION = "position_controller"
+
+
+@pytest.fixture
+def arm_control(control: Any, capfd: Any) -> Callable[..., str]:
+    """Return a function that carries out one verb and returns what it prints."""
+    control.start("joint_state_broadcaster")
+
+    def run(*words: str, code: int = 0) -> str:
+        capfd.readouterr()
+        assert main(["control", *words]) == code
+        said = capfd.readouterr()
+        return said.err if code else said.out
+
+    return run
+
+
+def test_load_says_each_step_and_skips_what_is_loaded(arm_control: Any, control: Any) -> None:
+    assert arm_control("load_controller", POSITION, "--set-state", "inactive") == (
+        f"Successfully loaded controller {POSITION}\n"
+        f"Successfully loaded controller {POSITION} into state inactive\n"
+    )
+    skipped = f"Controller : {POSITION} already loaded, skipping load_controller!\n"
+    assert arm_control("load_controller", POSITION) == skipped
+    assert arm_control("load_controller", POSITION, "--set-state", "active") == (
+        f"{skipped}Successfully loaded controller {POSITION} into state active\n"
+    )
+    # It is active: neither of the steps is possible any more.
+    assert arm_control("load_controller", POSITION, "--set-state", "active", code=1) == (
+        f"Error configuring controller : {POSITION}\n"
+    )
+    assert arm_control("cleanup_controller", POSITION, code=1) == (
+        f"Error cleaning up controller {POSITION}, check controller_manager logs\n"
+    )
+    assert control.states()[POSITION] == "active"
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence", "meant"),
+    [
+        (
+            ("load_controller", "position_controler"),
+            "Failed loading controller position_controler check controller_manager logs",
+            "position_controller",
+        ),
+        (
+            ("cleanup_controller", "joint_state_broadcastr"),
+            "Error cleaning up controller joint_state_broadcastr, check controller_manager logs",
+            "joint_state_broadcaster",
+        ),
+        (
+            ("unload_controller", "joint_state_broadcastr"),
+            "Error unloading controller joint_state_broadcastr, check controller_manager logs",
+            "joint_state_broadcaster",
+        ),
+        (
+            ("set_controller_state", "joint_state_broadcastr", "active"),
+            "controller joint_state_broadcastr does not seem to be loaded",
+            "joint_state_broadcaster",
+        ),
+        (
+            ("switch_controllers", "--deactivate", "joint_state_broadcastr", "--strict"),
+            "arm control switch_controllers",
+            "joint_state_broadcaster",
+        ),
+    ],
+)
+def test_a_misspelt_controller_gets_a_suggestion(
+    arm_control: Any, words: tuple[str, ...], sentence: str, meant: str
+) -> None:
+    said = arm_control(*words, code=1)
+    assert said.startswith(sentence)
+    assert f" did you mean '{meant}'" in said
+
+
+@pytest.mark.parametrize(
+    ("state", "step"),
+    [("unconfigured", "cleaning up"), ("inactive", "stopping"), ("active", "activating")],
+)
+def test_a_refused_hardware_state_is_reported_like_ros2_control(
+    arm_control: Any, state: str, step: str
+) -> None:
+    assert arm_control("set_hardware_component_state", "nothere", state, code=1) == (
+        f"Error {step} hardware component, check controller_manager logs\n"
+    )

@@ -1,0 +1,129 @@
+"""A simulation waits for a controller in another process, and both repeat to the last bit."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.ros
+
+PARTNER = Path(__file__).with_name("lock_step_partner.py")
+TIMEOUT_S = 120.0
+LAST = 400
+PAUSED, PLAYING = 2, 1
+OK = 1
+
+
+@pytest.fixture(scope="module")
+def start(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[], Path]]:
+    """Start a simulation in lock-step with /partner, as fast as possible; return its log."""
+    from arm_description.resources import resolve_uri
+    from arm_description.xacro.expansion import expand_xacro
+
+    arm = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
+    settings = {
+        "robot_description": expand_xacro(arm, {"camera": "none"}),
+        "spawn": "joint_state_broadcaster,mover",
+        "real_time_factor": 0,
+        "lockstep": "/partner",
+        "lockstep_timeout": 30,
+    }
+    parameters = {
+        "arm_gazebo": settings,
+        "controller_manager": {
+            "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
+            "mover": {"type": "position_controllers/JointGroupPositionController"},
+        },
+        "mover": {"joints": ["j0", "j1", "j2", "j3"]},
+    }
+    folder = tmp_path_factory.mktemp("lock_step")
+    path = folder / "parameters.yaml"
+    path.write_text(yaml.safe_dump({n: {"ros__parameters": v} for n, v in parameters.items()}))
+    running: list[subprocess.Popen] = []
+
+    def end() -> None:
+        while running:
+            process = running.pop()
+            process.send_signal(signal.SIGINT)
+            try:
+                assert process.wait(60.0) == 0
+            finally:
+                process.kill()
+
+    def run() -> Path:
+        end()
+        log = folder / f"log_{len(list(folder.iterdir()))}"
+        arguments = ["-m", "arm_gazebo.arm_gazebo_node", "--ros-args", "--params-file", str(path)]
+        with log.open("w") as file:
+            running.append(subprocess.Popen([sys.executable, *arguments], stderr=file))
+        return log
+
+    yield run
+    end()
+
+
+def partner_until(last: int) -> list[tuple[int, tuple[str, ...]]]:
+    """Run a partner; return the control periods that it saw, each with the joints' positions."""
+    out = subprocess.run(
+        [sys.executable, str(PARTNER), str(last)],
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=True,
+    ).stdout
+    lines = [line.split() for line in out.splitlines()]
+    return [(int(period), tuple(positions)) for period, *positions in lines]
+
+
+Seen = list[tuple[int, tuple[str, ...]]]
+
+
+@pytest.fixture(scope="module")
+def runs(start) -> tuple[Seen, Seen, Path]:
+    """What partners saw in two runs, and the log of the second simulation, which is still there."""
+    start()
+    first = partner_until(LAST)
+    log = start()
+    return first, partner_until(LAST), log
+
+
+def test_the_partner_sees_every_control_period(runs):
+    assert [period for period, _ in runs[0]] == list(range(1, LAST + 1))
+
+
+def test_the_run_repeats_to_the_last_bit(runs):
+    assert runs[0] == runs[1]
+    assert len({positions for _, positions in runs[0]}) > LAST // 2
+
+
+def test_a_silent_partner_pauses_the_run_and_another_one_continues_it(runs, client):
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+    from simulation_interfaces.srv import GetSimulationState, SetSimulationState
+
+    parameter = Parameter("lockstep_timeout", value=0.2).to_parameter_msg()
+    request = SetParameters.Request(parameters=[parameter])
+    answer = client.call(SetParameters, "/arm_gazebo/set_parameters", request, TIMEOUT_S)
+    assert answer.results[0].successful, answer
+
+    def state() -> int:
+        request = GetSimulationState.Request()
+        return client.call(GetSimulationState, "/get_simulation_state", request).state.state
+
+    client.wait_until(lambda: state() == PAUSED, "the pause")
+    text = runs[2].read_text()
+    time_s = f"{LAST / 100:.3f}"
+    assert f"lock-step: nothing from /partner for the time {time_s} s within" in text, text
+    parameter = Parameter("lockstep_timeout", value=60.0).to_parameter_msg()
+    request = SetParameters.Request(parameters=[parameter])
+    assert client.call(SetParameters, "/arm_gazebo/set_parameters", request).results[0].successful
+    request = SetSimulationState.Request()
+    request.state.state = PLAYING
+    answer = client.call(SetSimulationState, "/set_simulation_state", request)
+    assert answer.result.result == OK, answer
+    seen = partner_until(LAST + 50)
+    assert [period for period, _ in seen] == list(range(LAST + 1, LAST + 51))

@@ -1,0 +1,29 @@
+"""The learned policy drives the real launch over ROS."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+NODE = Path(__file__).parents[2] / "examples" / "reach_policy" / "drive_node.py"
+TIMEOUT_S = 150.0
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_the_policy_reaches_random_goals_over_ros(launch):
+    # At half speed, so that a busy machine does not miss a goal.
+    launched = launch("camera:=none", "real_time_factor:=0.5")
+    launched.wait_until_ready()
+    done = subprocess.run(
+        [sys.executable, str(NODE), "--goals", "8", "--seed", "5"],
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    said = re.search(r"(\d+) of 8 goals reached", done.stdout)
+    assert said, done.stdout + done.stderr
+    assert int(said[1]) >= 7, done.stderr

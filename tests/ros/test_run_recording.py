@@ -1,0 +1,126 @@
+"""A run over ROS is recorded, and runs again to the last bit, without ROS."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import psutil
+import pytest
+
+from arm_gazebo.recording.replay import Replay
+from arm_gazebo.recording.run_file import RunFile
+
+pytestmark = pytest.mark.ros
+
+TIMEOUT_S = 60.0
+
+
+def arm(*words: str, **options) -> "subprocess.Popen[str]":
+    """Start a verb of `arm`."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "arm_cli", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        stdin=subprocess.DEVNULL,
+        text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        **options,
+    )
+
+
+def move(client, commands, states, *positions: float) -> None:
+    """Command the arm, and wait until it is there."""
+    from std_msgs.msg import Float64MultiArray
+
+    commands.publish(Float64MultiArray(data=list(positions)))
+    states.wait_until(
+        lambda m: bool(m) and abs(m[-1].position[0] - positions[0]) < 0.01, "the arm there"
+    )
+
+
+def states_of(client):
+    from sensor_msgs.msg import JointState
+
+    return client.subscribe(JointState, "/joint_states")
+
+
+def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
+    launch, client, tmp_path
+):
+    from std_msgs.msg import Float64MultiArray
+
+    path = tmp_path / "killed.run"
+    running = launch(f"record_run:={path}", "camera:=none")
+    running.wait_until_ready()
+    commands = client.publisher(Float64MultiArray, "/position_controller/commands")
+    states = states_of(client)
+    move(client, commands, states, 0.5, 0.2, 0.1, 0.3)
+    # What came before this move has reached the file by its end.
+    move(client, commands, states, -0.5, 0.2, 0.1, 0.3)
+    (simulation,) = (
+        process
+        for process in psutil.Process(running.process.pid).children(recursive=True)
+        if any("arm_gazebo_node" in word for word in process.cmdline())
+    )
+    simulation.kill()
+    running.wait()
+    result = Replay(RunFile(path)).run()
+    assert result.difference is None
+    assert result.is_cut_off
+    assert result.time_s > 0.5
+
+
+def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter(
+    launch, client, tmp_path
+):
+    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+    from rcl_interfaces.srv import SetParameters
+    from simulation_interfaces.srv import ResetSimulation
+    from std_msgs.msg import Float64MultiArray
+    from std_srvs.srv import SetBool
+
+    def record_to(file) -> str:
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=str(file))
+        request = SetParameters.Request(parameters=[Parameter(name="record_run", value=value)])
+        answer = client.call(SetParameters, "/arm_gazebo/set_parameters", request)
+        return answer.results[0].reason
+
+    path = tmp_path / "middle.run"
+    launch("camera:=none").wait_until_ready()
+    commands = client.publisher(Float64MultiArray, "/position_controller/commands")
+    states = states_of(client)
+    move(client, commands, states, 0.3, 0.2, 0.1, 0.3)
+    assert "No such file or directory" in record_to(tmp_path / "none" / "a.run")
+    assert record_to(path) == ""
+    assert f"a recording to {path} goes on" in record_to(tmp_path / "other.run")
+    move(client, commands, states, -0.5, 0.2, 0.1, 0.3)
+    for is_engaged in (True, False):
+        client.call(SetBool, "/emergency_stop", SetBool.Request(data=is_engaged))
+    # Also the clock goes back to 0.
+    client.call(ResetSimulation, "/reset_simulation", ResetSimulation.Request())
+    move(client, commands, states, 0.4, 0.2, 0.1, 0.3)
+    assert record_to("") == ""
+    assert f"{path} exists already" in record_to(path)
+    result = Replay(RunFile(path)).run()
+    assert result.difference is None
+    assert not result.is_cut_off
+    assert result.periods > 20
+
+    verb = arm("sim", "record", str(tmp_path / "verb.run"))
+    try:
+        assert verb.stdout is not None
+        assert "recording to" in verb.stdout.readline()
+        move(client, commands, states, 0.5, 0.2, 0.1, 0.3)
+        verb.send_signal(signal.SIGINT)
+        printed, _ = verb.communicate(timeout=TIMEOUT_S)
+        assert verb.returncode == 0, printed
+        assert "control periods in" in printed
+    finally:
+        if verb.poll() is None:
+            verb.kill()
+            verb.communicate()
+    replay = arm("sim", "replay", str(tmp_path / "verb.run"))
+    printed, _ = replay.communicate(timeout=TIMEOUT_S)
+    assert replay.returncode == 0, printed
+    assert "control periods are equal" in printed

@@ -1,0 +1,1 @@
+"""The parts of the arm, one file for each kind of part."""
