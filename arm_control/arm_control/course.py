@@ -1,4 +1,4 @@
-"""The courses on the 4-DOF arm: their settings, one parameter file a course."""
+"""Settings of the courses on the 4-DOF arm: one parameter file for each course."""
 
 from collections.abc import Mapping, MutableMapping
 from functools import cache

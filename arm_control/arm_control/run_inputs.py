@@ -1,4 +1,4 @@
-"""Inputs of a run: the calls by which anything outside of it changes it.
+"""Inputs of a run: the calls by which something outside the run changes it.
 
 A run of a simulation repeats to the last bit if the same inputs take effect between the same two
 ticks. A method marked with `run_input` is such an input. Usually it is an ordinary method. While a
@@ -41,7 +41,7 @@ class InputTarget(Protocol):
     """An object with inputs.
 
     Attributes:
-        input_gate: notes the inputs; None while nobody records.
+        input_gate: notes the inputs; None while the run is not recorded.
     """
 
     input_gate: InputGate | None

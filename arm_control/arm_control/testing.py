@@ -35,7 +35,7 @@ class FakeHardware:
         write_result: what `write` returns.
         refused: life-cycle methods that fail, such as 'on_activate'; also
             'prepare_command_mode_switch' and 'perform_command_mode_switch'.
-        unmeasured: states that are NaN; one that is taken out has its initial value again.
+        unmeasured: states that are NaN; a state removed from it returns to its initial value.
         events: names of the life-cycle methods called, in order.
         mode_switches: (start, stop) of each mode switch performed.
     """

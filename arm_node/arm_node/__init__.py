@@ -12,7 +12,7 @@ __all__ = ["UnusableEnvironmentError", "prepare_environment"]
 
 
 def __getattr__(name: str) -> Any:
-    # Imported on first use: `arm --help` needs only this package's text functions, and to import
+    # Imported on first use: `arm --help` needs only this package's text functions, and importing
     # the environment would take a fifth of its time.
     if name not in __all__:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

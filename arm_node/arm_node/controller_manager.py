@@ -52,7 +52,7 @@ _STATE_IDS = {
 
 
 class ServiceTransport(Protocol):
-    """Calls the services of one manager; decides how to wait, and what to do without an answer."""
+    """Calls the services of one manager; decides how to wait, and what to do if no answer comes."""
 
     def query(self, service: str, request: Any) -> Any:
         """Call a service that changes nothing; return the answer."""

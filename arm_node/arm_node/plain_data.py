@@ -27,8 +27,8 @@ def to_plain(value: object, path: str = "value") -> Any:
     """Return what `json.dumps` takes for a value.
 
     Args:
-        value: None, bool, int, float, str, bytes, an array (which is read back as numpy's), a
-            number of numpy, an Enum, or a tuple, list, set, mapping or dataclass of them.
+        value: None, bool, int, float, str, bytes, an array (read back as a NumPy array), a NumPy
+            number, an Enum, or a tuple, list, set, mapping or dataclass of them.
         path: what the value is, for error messages.
 
     Raises:
@@ -125,7 +125,7 @@ def class_name(cls: type) -> str:
 
 
 def class_named(name: str) -> Any:
-    """Return what has the name 'module:Name', or None; see `PACKAGES`.
+    """Return the object named 'module:Name', or None if there is none; see `PACKAGES`.
 
     Raises:
         ImportError: a module of the suite does not exist, or cannot be imported.

@@ -158,7 +158,7 @@ def _run_with_ros(
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     words = list(sys.argv if argv is None else argv)
     try:
-        # rcl opens the files by itself: a FIFO blocks it for good.
+        # rcl opens the files by itself: a FIFO blocks it for ever.
         for flag, file in pairwise(words):
             if flag in FILE_ARGUMENTS:
                 check_file(file, MAX_TEXT_BYTES)

@@ -20,9 +20,9 @@ class NoFreeDomainError(RuntimeError):
 
 @contextmanager
 def domain_of_its_own() -> Iterator[int]:
-    """Return the id of a domain in which nothing on this machine listens, and hold it.
+    """Return the id of a domain in which nothing on this machine listens, and reserve it.
 
-    Whoever else asks this function gets another one, until the `with` block or the process ends.
+    Other callers of this function get other domains until the `with` block or the process ends.
 
     Raises:
         NoFreeDomainError: all of them are in use.

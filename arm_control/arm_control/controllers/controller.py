@@ -168,11 +168,11 @@ class Controller(ABC, Generic[ParametersT]):
             `arm_control.parameters`.
         adapter: the ROS half as 'module:Class', imported only if there is a node; empty for a
             controller without topics.
-        configured_with: the latest parameters that it was given; None before the first ones.
+        configured_with: the latest parameters that it was given; None before that.
         input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
         halted_by: why the manager keeps the active controller from running, such as "emergency
-            stop"; empty while it runs. `on_deactivate` has been called then, and `on_activate`
-            will be before the next update.
+            stop"; empty while it runs. `on_deactivate` has been called by then, and `on_activate`
+            is called before the next update.
         transient: names of attributes that are not part of the state: what follows from the
             parameters, queues of requests, connections.
     """
@@ -297,23 +297,23 @@ class Controller(ABC, Generic[ParametersT]):
         return save_attributes(self, left_out | {*_SETTINGS})
 
     def load_state(self, state: Any) -> None:
-        """Go on from a state that this controller, or another one with its parameters, has saved.
+        """Continue from a state that this controller, or one with its parameters, has saved.
 
-        The manager has brought it to the life-cycle state that it had then.
+        The manager has already brought it to the life-cycle state of that moment.
         """
         load_attributes(self, state)
 
     def fingerprint(self) -> bytes:
-        """Return bytes that differ if the state does; a recording takes them in every cycle.
+        """Return bytes that differ if the state does; a recording reads them in every cycle.
 
         Override it where encoding the whole state would take too long.
         """
         return encode(self.save_state())
 
     def on_reset(self) -> None:
-        """Begin anew, because the world was reset while the controller is active.
+        """Start over, because the world was reset while the controller is active.
 
-        The states are those of the start, and each command is the value that keeps its joint in
+        The states have their initial values, and each command is the value that keeps its joint in
         place. By default this deactivates and activates the controller, which keeps its interfaces.
         """
         self.on_deactivate()

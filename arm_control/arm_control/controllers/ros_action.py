@@ -106,15 +106,15 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
     # Loop thread
 
     def handle_of(self, goal_id: bytes) -> ServerGoalHandle | None:
-        """Return the handle of a goal; None if its client has got a result already.
+        """Return the handle of a goal; None if its client has already received a result.
 
-        That is so for a goal of a restored snapshot.
+        The goal of a restored snapshot has none either.
         """
         running = self._running.get(goal_id)
         return running and running.handle
 
     def finish(self, goal_id: bytes, result: ResultT) -> None:
-        """End a goal, unless its client has got a result already; any thread."""
+        """End a goal, unless its client has already received a result; any thread."""
         running = self._running.get(goal_id)
         if running is not None:
             settle(running.ended, result, self._executor)

@@ -83,7 +83,7 @@ class HardwareComponent:
             runs.clear()
 
     def reset(self) -> None:
-        """Begin anew after the simulation was reset."""
+        """Start over after the simulation was reset."""
         self.restart_cadence()
         if isinstance(self.hardware, Resettable):
             self.hardware.reset()
@@ -103,7 +103,7 @@ class HardwareComponent:
         return self._reading.save_state(), self._writing.save_state(), driver.save_state()
 
     def load_state(self, state: Any) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         reading, writing, driver = state
         self._reading.load_state(reading)
         self._writing.load_state(writing)

@@ -122,7 +122,7 @@ class StoppableHardware(Protocol):
 
 @runtime_checkable
 class Resettable(Protocol):
-    """A driver of simulated hardware that can begin anew."""
+    """A driver of simulated hardware that can start over."""
 
     def reset(self) -> None:
         """Set each command to the value that keeps its joint in place, and fill the states.

@@ -169,7 +169,7 @@ def _mimics(info: HardwareInfo) -> list[tuple[int, int, Mimic]]:
     mimics = {joint.name: mimic for joint, mimic in followers}
     resolved: dict[str, Mimic] = {}
     for name in mimics:
-        # Not an error yet: the message names all joints of the circle, and those that hang on it.
+        # Not an error yet: the message names all joints of the circle, and those that depend on it.
         with suppress(MimicCycleError):
             resolved[name] = resolve_leader(name, mimics)
     if len(resolved) < len(mimics):

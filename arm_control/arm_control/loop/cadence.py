@@ -30,11 +30,11 @@ class Cadence:
         self._last_s = nan
 
     def save_state(self) -> tuple[float, float]:
-        """Return where it stands."""
+        """Return the state, for `load_state`."""
         return self._last_s, self._elapsed_s
 
     def load_state(self, state: tuple[float, float]) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         self._last_s, self._elapsed_s = state
 
     def due_period_s(self, time_s: float, cycle_s: float) -> float | None:

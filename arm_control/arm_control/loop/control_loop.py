@@ -50,8 +50,8 @@ class ControlLoop:
             on_failure: called on the loop thread with what the tick raised, after it is logged.
             priority: chooses the scheduler of the loop thread; default the ordinary one.
             outbox: collects what ticks publish; by default the loop makes one.
-            lock_step: holds each tick back until partners have answered the one before; the owner
-                of the tick tells it the time at the end of each.
+            lock_step: delays each tick until the partners have answered the previous one; at the
+                end of each tick, its owner passes the time to it.
         """
         self.pacer = pacer
         self.outbox = outbox or Outbox()
@@ -116,7 +116,7 @@ class ControlLoop:
         return call.future
 
     def wake(self) -> None:
-        """Let a loop that waits look again whether it may go on; cheaper than a call."""
+        """Make a waiting loop check again whether it may go on; cheaper than a call."""
         self._calls.put(_WAKE)
 
     def pause(self) -> "Future[None]":
@@ -295,7 +295,7 @@ class _Call:
 
 
 class _Wake(_Call):
-    """A call that does nothing but end a wait, over and over."""
+    """A reusable call that only ends a wait."""
 
     def __init__(self) -> None:
         super().__init__(lambda: None)

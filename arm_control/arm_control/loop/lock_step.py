@@ -15,8 +15,9 @@ logger = logging.getLogger(__name__)
 class LockStep:
     """A gate before each tick: it opens when every partner has answered the time of the last one.
 
-    A partner answers with a stamp: that time or a later one. One that has not been heard since the
-    start, or since it was given up, answers with any stamp; so a partner says that it is there.
+    A partner answers with a stamp: that time or a later one. A partner that has not been heard
+    since the start, or since the loop gave up on it, may answer with any stamp; that is how it
+    announces itself.
 
     `hear` may be called on any thread, one at a time; everything else is for the loop thread.
 
@@ -45,10 +46,10 @@ class LockStep:
         self._closed_since_s = math.nan
 
     def hear(self, partner: str, stamp_ns: int) -> bool:
-        """Note an answer; return whether it opens the gate, so that the loop must be woken."""
+        """Record an answer; return whether it opens the gate, so that the loop must be woken."""
         answered_ns = self._answered_ns[partner]
         if answered_ns == NEVER_NS:
-            # Whatever it has missed, it waits for the next tick.
+            # It has answered no earlier tick, so its first answer counts for the present one.
             stamp_ns = max(stamp_ns, self._tick_ns)
         if stamp_ns <= answered_ns:
             return False
@@ -60,11 +61,11 @@ class LockStep:
         self._timeout_s = timeout_s
 
     def add_source(self, take: Callable[[], None]) -> None:
-        """Call this before each tick: it takes what the partners have sent before they answered."""
+        """Call `take` before each tick, to receive what the partners sent before they answered."""
         self._sources.append(take)
 
     def begin_tick(self) -> None:
-        """Take what the partners have sent."""
+        """Receive what the partners have sent."""
         for take in self._sources:
             take()
 
@@ -86,18 +87,18 @@ class LockStep:
         return True
 
     def remaining_s(self) -> float:
-        """Return how long the closed gate may stay closed; 0 or less when that is over."""
+        """Return the time left until the wait times out; 0 or less once it has."""
         now_s = self._now_s()
         if math.isnan(self._closed_since_s):
             self._closed_since_s = now_s
         return self._closed_since_s + self._timeout_s - now_s
 
     def rest(self) -> None:
-        """Do not count the time from now until the loop wants to tick again, as in a pause."""
+        """Stop the time-out until the loop wants to tick again, for example during a pause."""
         self._closed_since_s = math.nan
 
     def give_up(self) -> None:
-        """Wait no longer: note the silent partners, which must say again that they are there."""
+        """Stop waiting: record the silent partners, which must announce themselves again."""
         silent = self._missing()
         for partner in silent:
             self._answered_ns[partner] = NEVER_NS

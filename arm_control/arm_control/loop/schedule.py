@@ -41,11 +41,11 @@ class Schedule:
         self._last_s = math.inf
 
     def save_state(self) -> tuple[float, ...]:
-        """Return where it stands."""
+        """Return the state, for `load_state`."""
         return self._start_s, self._last_s, self.next_s, self.number
 
     def load_state(self, state: tuple[float, float, float, int]) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         self._start_s, self._last_s, self.next_s, self.number = state
 
     def is_due(self, time_s: float) -> bool:

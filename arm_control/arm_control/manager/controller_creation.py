@@ -84,7 +84,7 @@ def given_values(specs: Iterable[ParameterSpec], given: Mapping[str, Any]) -> di
 
 
 def given_value(spec: ParameterSpec, given: Mapping[str, Any]) -> Any:
-    """Return the value of a parameter; a given None, which stands for no value, counts as none."""
+    """Return the value of a parameter; a given None counts as not given."""
     value = given.get(spec.name)
     return spec.default if value is None else spec.convert(value)
 

@@ -38,7 +38,7 @@ logger = logging.getLogger(__name__)
 
 
 def _describe_load(arguments: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return what a recording notes of `load_controller`: the name, not the controller."""
+    """Return what a recording stores for `load_controller`: the name, not the controller."""
     return {**arguments, "controller": arguments["controller"].name}
 
 
@@ -128,7 +128,7 @@ class ControllerManager:
         self._observers.append(observer)
 
     def set_input_gate(self, gate: InputGate | None) -> None:
-        """Let the inputs of the manager and its controllers go through a gate; None ends that."""
+        """Route the inputs of the manager and its controllers through a gate; None removes it."""
         self.input_gate = gate
         for managed in self._controllers.values():
             managed.controller.input_gate = gate
@@ -178,7 +178,7 @@ class ControllerManager:
 
     @run_input
     def set_emergency_stop(self, engaged: bool) -> bool:
-        """Engage or release the emergency stop; return False if it is so already."""
+        """Engage or release the emergency stop; return False if that changes nothing."""
         if engaged == self._emergency.is_engaged:
             return False
         if engaged:
@@ -374,7 +374,7 @@ class ControllerManager:
                 self._select_active()
 
     def _activity(self) -> tuple[int, list[str], list[LifecycleState]]:
-        """Return what decides which controllers run, in which order."""
+        """Return the data that decide which controllers run and in which order."""
         components = self.resources.components.values()
         return self._changes, list(self._controllers), [c.state for c in components]
 

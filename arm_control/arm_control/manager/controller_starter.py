@@ -57,7 +57,7 @@ class ControllerStarter:
         robot_description: Description = "",
         namespace: str = ROOT,
     ) -> None:
-        """Take a manager whose components are brought up.
+        """Take a manager whose components are already brought up.
 
         Args:
             manager: runs the controllers.

@@ -56,7 +56,7 @@ class EmergencyStop:
         self._resources.commands[:] = self._held
 
     def release(self, controllers: Sequence[ManagedController]) -> list[ManagedController]:
-        """Let the controllers go on from rest; return those that cannot.
+        """Let the controllers continue from rest; return those that cannot.
 
         Args:
             controllers: the active controllers that command, in order of execution.

@@ -22,7 +22,7 @@ class ManagedController:
         type_name: its ros2_control type string.
         fallback_names: controllers to activate in its place when an update fails.
         state: its life-cycle state.
-        requested_rate_hz: the update rate that was asked for; 0 for the manager's.
+        requested_rate_hz: the requested update rate; 0 for the manager's.
         commands: full names of the command interfaces it requests; empty while unconfigured.
         states: full names of the state interfaces it requests; empty while unconfigured.
         named_states: `states` if it requests them by name; else empty.
@@ -121,7 +121,7 @@ class ManagedController:
         return self._cadence.save_state(), self.controller.save_state()
 
     def load_state(self, state: Any) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         cadence, controller = state
         self._cadence.load_state(cadence)
         self.controller.load_state(controller)
@@ -132,7 +132,7 @@ class ManagedController:
         return bool(self.controller.halted_by)
 
     def halt(self, reason: str) -> None:
-        """Do what it does at a deactivation, but keep its state and its interfaces."""
+        """Call its `on_deactivate`, but keep its life-cycle state and its interfaces."""
         self.controller.halted_by = reason
         failure = failure_of(
             self.controller.on_deactivate, f"on_deactivate of controller '{self.name}'"
@@ -141,7 +141,7 @@ class ManagedController:
             logger.error("controller '%s' did not stop by itself: %s", self.name, failure)
 
     def go_on(self) -> bool:
-        """Do what it does at an activation, after `halt`; return whether it can go on."""
+        """Call its `on_activate`, after `halt`; return whether it can continue."""
         if not self.is_halted:
             return True
         self.controller.halted_by = ""

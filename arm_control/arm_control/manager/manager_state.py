@@ -123,7 +123,7 @@ class ManagerState:
             self._limiter.load_state(state["limits"])
 
     def reset(self) -> None:
-        """Let components and active controllers begin anew, after the simulation was reset.
+        """Make components and active controllers start over, after the simulation was reset.
 
         Raises:
             StateError: some controllers refuse; the message names all of them.

@@ -18,7 +18,7 @@ class Stateful(Protocol):
         ...
 
     def load_state(self, state: State, /) -> None:
-        """Restore a state that this object, or one that was set up alike, has saved."""
+        """Restore a state that this object, or one set up in the same way, has saved."""
         ...
 
 

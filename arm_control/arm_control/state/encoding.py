@@ -30,7 +30,7 @@ MOST_LEVELS = 100
 
 
 class StateValue:
-    """Base of an immutable class whose attributes are plain values, so that it is one itself."""
+    """Base of an immutable class whose attributes are plain values, which makes it one as well."""
 
     __slots__ = ()
 
@@ -40,7 +40,7 @@ class NotPlainError(StateError):
 
     Attributes:
         path: where it is, such as '.queue[3]'; empty for the value that was to be encoded.
-        reason: what it is.
+        reason: why it cannot be encoded, as the predicate of a sentence.
     """
 
     def __init__(self, path: str, reason: str) -> None:

@@ -78,8 +78,8 @@ def merged(vertices: NDArray[np.float32], rgba: Color | None = None) -> MeshData
 def _unique(rows: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the indices of the unique rows, and for each row the unique one that it equals."""
     bits = rows.view(np.uint32)
-    # Numbers are sorted ten times faster than rows. By columns, which takes half the memory of
-    # converting all three at once.
+    # Each row is hashed to one number, because numbers sort ten times faster than rows. Going
+    # column by column takes half the memory of converting all three at once.
     keys = bits[:, 0] * _HASH[0] + bits[:, 1] * _HASH[1] + bits[:, 2] * _HASH[2]
     _, first, index = np.unique(keys, return_index=True, return_inverse=True)
     index = index.reshape(-1)

@@ -23,7 +23,7 @@ class SideFiles(FilePathResolver):
         super().__init__(str(mesh))
 
     def get(self, name: str) -> bytes:
-        """Return the content of a file; raise OSError, or ValueError if it is elsewhere."""
+        """Return the content of a file; raise OSError, or ValueError outside the folder."""
         path = self.absolute(name)
         if path.suffix.lower() in PICTURES:
             raise FileNotFoundError(f"the picture {path} is not needed")

@@ -15,7 +15,7 @@ class Mimic:
     offset: float = 0.0
 
     def position(self, leader: float) -> float:
-        """Return the joint's position where `joint` has this one (rad or m)."""
+        """Return this joint's position for a position of `joint` (rad or m)."""
         return self.multiplier * leader + self.offset
 
 

@@ -168,7 +168,7 @@ class Joint:
     line: int = 0
 
     def __post_init__(self) -> None:
-        # A frozen dataclass sets what it derives this way.
+        # A frozen dataclass can set a derived attribute only this way.
         object.__setattr__(self, "type", JointType(self.type))
 
 

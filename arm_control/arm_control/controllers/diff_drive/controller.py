@@ -118,7 +118,8 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
         Args:
             twist: the commanded twist.
             stamp_s: time of the command in the controller's time; None for now. A stamp in the
-                future counts as now: it comes from another clock and would delay the time-out.
+                future counts as now, because it comes from another clock and would delay the
+                time-out.
 
         Returns:
             Why it was refused; empty if it was accepted.

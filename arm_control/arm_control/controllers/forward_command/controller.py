@@ -23,7 +23,7 @@ FIXED_INTERFACE = "Command interface of each joint; fixed, any other value has n
 IGNORED_GAIN = "ROS 1 parameter, has no effect"
 WRONG_SIZE = "command size (%d) does not match number of interfaces (%d)"
 ROUNDING_S = 1e-9
-"""Of an age that is a sum of periods."""
+"""Rounding error of an age that is a sum of periods."""
 DROPPED = "a command with a NaN or an infinity was dropped: %s"
 SHOWN = 16
 """How many values of a dropped command are shown."""
@@ -141,7 +141,7 @@ class ForwardCommander(Controller[ParametersT]):
         """Take a command, one value per interface; see `offer`.
 
         Raises:
-            ControllerError: a value is missing, left over, or not finite.
+            ControllerError: the number of values is wrong, or one is not finite.
         """
         if len(values) != len(self._command_names):
             raise ControllerError(WRONG_SIZE % (len(values), len(self._command_names)))
@@ -165,7 +165,7 @@ class ForwardCommander(Controller[ParametersT]):
         return super().save_state(), self._latest is self._seen
 
     def load_state(self, state: Any) -> None:
-        """Go on with a saved command."""
+        """Continue with a saved command."""
         attributes, is_seen = state
         super().load_state(attributes)
         self._seen = self._latest if is_seen else None
@@ -202,7 +202,7 @@ class ForwardCommander(Controller[ParametersT]):
         return ReturnType.OK
 
     def _hold(self) -> None:
-        """Command the measured positions, the last ones where they are unknown, and else 0."""
+        """Command the measured positions; where they are unknown, the last commands, or else 0."""
         self.logger.warning(
             "no command for more than %g s (command_timeout): holding until the next one",
             self._timeout_s,

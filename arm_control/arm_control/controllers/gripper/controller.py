@@ -259,7 +259,7 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
         return super().save_state()
 
     def load_state(self, state: Any) -> None:
-        """Go on with a saved goal; another one that is under way is aborted."""
+        """Continue with a saved goal; a different one that is running is aborted."""
         self._serve_requests()
         if state["_goal_id"] != self._goal_id:
             self._end(RESTORED)

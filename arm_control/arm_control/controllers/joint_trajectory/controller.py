@@ -240,7 +240,7 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         )
 
     def load_state(self, state: Any) -> None:
-        """Go on with a saved motion; a goal that it does not have is aborted."""
+        """Continue with a saved motion; a running goal that it lacks is aborted."""
         self._serve_requests()
         scaling, executor = state
         if self._speed_scaling is not None and scaling is not None:

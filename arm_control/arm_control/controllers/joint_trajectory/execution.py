@@ -159,7 +159,7 @@ class ActiveGoal:
         return self.goal, self._feedback.save_state()
 
     def load_state(self, state: tuple[Any, ...]) -> None:
-        """Go on with a saved goal; another one that is under way is aborted."""
+        """Continue with a saved goal; a different one that is running is aborted."""
         goal, feedback = state
         if self.goal is not None and (goal is None or goal.id != self.goal.id):
             self.end(RESTORED)

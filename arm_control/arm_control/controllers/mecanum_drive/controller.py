@@ -33,7 +33,7 @@ NO_REFERENCE = (nan, nan, nan)
 
 @dataclass(frozen=True, slots=True)
 class _BaseFrameOffset:
-    """kinematics.base_frame_offset: the base frame, seen from the centre of the wheels."""
+    """kinematics.base_frame_offset: pose of the base frame relative to the centre of the wheels."""
 
     x: float = parameter(0.0, "x of the base frame in the centre frame, in m", read_only=True)
     y: float = parameter(0.0, "y of the base frame in the centre frame, in m", read_only=True)
@@ -116,7 +116,7 @@ class MecanumDriveParameters:
         )
 
     def check_robot(self) -> None:
-        """Raise `ControllerError` if a wheel has no joint or a covariance has another length."""
+        """Raise `ControllerError` if a wheel has no joint or a covariance has the wrong length."""
         for wheel, joint in zip(WHEELS, self.command_joints, strict=True):
             if not joint:
                 raise ControllerError(
@@ -161,7 +161,7 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
     """Turns four mecanum wheels so that the robot moves at its reference twist.
 
     The references are the velocities along x and y in m/s and the yaw rate in rad/s; while one of
-    them is NaN, the wheels stand. `on_configure` resets the odometry; activation does not.
+    them is NaN, the wheels stand still. `on_configure` resets the odometry; activation does not.
 
     Attributes:
         sink: receives the results; None publishes nothing. Set it before activation.
@@ -260,14 +260,14 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
             raise ControllerError(f"a reference was dropped: {reason}")
 
     def on_activate(self) -> None:
-        """Begin at a standstill, at the last pose."""
+        """Start at rest, at the last pose."""
         self._forget_references()
         self._odometry.twist = STANDSTILL
         self.references[:] = NO_REFERENCE
         self.commands.write(0.0)
 
     def on_reset(self) -> None:
-        """Begin at a standstill, at the origin."""
+        """Start at rest, at the origin."""
         self._odometry = MecanumOdometry()
         self.on_activate()
 
@@ -282,7 +282,7 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
         self.commands.write(0.0)
 
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
-        """Take the last reference; one that is too old becomes a standstill."""
+        """Take the last reference; one that is too old counts as zero."""
         if self._offered:
             self._reference = self._offered.pop()
         reference, timeout_s = self._reference, self.parameters.reference_timeout

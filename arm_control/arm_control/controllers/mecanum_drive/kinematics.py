@@ -56,8 +56,8 @@ class MecanumGeometry:
     Attributes:
         radius: of the wheels, in m.
         reach: distance of a wheel from the centre along x plus that along y, in m.
-        base_x: the base frame's origin in the centre frame, in m.
-        base_y: likewise.
+        base_x: x of the base frame's origin in the centre frame, in m.
+        base_y: y of it, in m.
         base_yaw: the base frame's orientation in the centre frame, in rad.
     """
 

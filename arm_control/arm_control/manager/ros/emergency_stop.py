@@ -28,8 +28,8 @@ class EmergencyStopServer:
     """Offers the service emergency_stop and the topics of the same name in a node's namespace.
 
     The service stops with true and releases with false. A true on the topic stops as well; a false
-    has no effect there, so that no stream of messages releases a stop by accident. The topic
-    emergency_stop/active tells everybody, also those who come later, whether all is stopped.
+    has no effect there, so that no stream of messages releases a stop by accident. The latched
+    topic emergency_stop/active says whether everything is stopped.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class EmergencyStopServer:
         group = MutuallyExclusiveCallbackGroup()
         self._active = node.create_publisher(Bool, f"{NAME}/active", LATCHED_QOS)
         self._published: bool | None = None
-        # rclpy's types know no coroutines.
+        # rclpy accepts a coroutine, but its annotations do not.
         answer: Any = self._answer
         node.create_service(SetBool, NAME, answer, callback_group=group)
         node.create_subscription(Bool, NAME, self._take, DEPTH, callback_group=group)
@@ -64,7 +64,7 @@ class EmergencyStopServer:
     def controller_transitioned(
         self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
     ) -> None:
-        """Do nothing: transitions change no stop."""
+        """Do nothing: a transition does not change the stop."""
 
     def activity_changed(self) -> None:
         """Publish whether everything is stopped, if that has changed."""
@@ -79,7 +79,7 @@ class EmergencyStopServer:
         self.activity_changed()
 
     def _set(self, engaged: bool) -> bool:
-        """Stop or release all; return whether that changed any."""
+        """Stop or release all managers; return whether that changed any of them."""
         return any([manager.set_emergency_stop(engaged) for manager in self._managers])
 
     # Executor's thread
@@ -98,5 +98,5 @@ class EmergencyStopServer:
 
     def _take(self, message: Bool) -> None:
         if message.data:
-            # Nobody waits for the result; what goes wrong is in the log.
+            # Nobody waits for the result; failures are logged.
             self._loop.call(lambda: self._set(True))
