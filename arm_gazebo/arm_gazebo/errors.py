@@ -10,9 +10,9 @@ GazeboError
 ├── ModelError      a robot cannot be converted to a model
 │   └── MeshError   a mesh file cannot be used
 ├── TimingError     invalid control rate or physics step
-├── BatchError      copies of a simulation cannot be made or commanded so
+├── BatchError      copies of a simulation cannot be made, or not commanded this way
 ├── RecordingError  a recording cannot be written, read or run again
-├── FaultError      a fault that is asked for does not exist here
+├── FaultError      a requested fault is not possible here
 ├── SimSettingsError   invalid parameter of the simulation node
 └── RequestError    a request to the running world is refused; see `refusal`
 """
@@ -63,7 +63,7 @@ class SimSettingsError(GazeboError):
 
 
 class BatchError(GazeboError):
-    """Copies of a simulation cannot be made or commanded so; the message says why."""
+    """Copies of a simulation cannot be made, or not commanded this way; the message says why."""
 
 
 class RecordingError(GazeboError):
@@ -71,4 +71,4 @@ class RecordingError(GazeboError):
 
 
 class FaultError(GazeboError):
-    """A fault that is asked for cannot be; the message says what can."""
+    """A requested fault is not possible here; the message says which ones are."""

@@ -26,7 +26,7 @@ class AssembledWorld:
         simulation: the physics.
         entries: the robots as they were built.
         named: name and description of the world.
-        left_out: what of the world is not simulated, "" for nothing.
+        left_out: the parts of the world that are not simulated, "" for none.
     """
 
     simulation: Simulation

@@ -11,7 +11,7 @@ from arm_gazebo.physics.simulation import Simulation
 
 HOST = "host"
 SERIAL_COPIES = 8
-"""Up to so many, an evaluation of the servo law as arrays takes longer than the physics."""
+"""Up to this many copies, evaluating the servo law as arrays takes longer than the physics."""
 
 
 def make_copies(
@@ -21,13 +21,14 @@ def make_copies(
     threads: int = 0,
     device: str = HOST,
 ) -> Copies:
-    """Return copies of a simulation; on the host their states do not depend on their kind.
+    """Return copies of a simulation; on the host, every kind goes through the same states.
 
     Args:
-        simulation: a simulation whose model, start, and modes of drives the copies take.
+        simulation: a simulation; the copies take over its model, its start and the modes of its
+            drives.
         hardware: its hardware components, whose claimed interfaces bound the commands.
         copies: number of copies.
-        threads: number of threads of many copies; 0 for one on each core.
+        threads: number of threads that step many copies; 0 for one on each core.
         device: "host", or "cuda" for MuJoCo Warp on a GPU.
 
     Raises:

@@ -39,7 +39,7 @@ class ContactGates:
         """Detect collisions of copies that were reset."""
         if self._useful:
             self._flags[rows] = self._on
-            # Their shapes' positions are known after their next step.
+            # The positions of their shapes are known only after their next step.
             self._until_check = 1
 
     def update(self) -> None:

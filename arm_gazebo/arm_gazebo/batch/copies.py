@@ -1,4 +1,4 @@
-"""What every kind of batch offers: copies of a robot in its world under commands of its drives."""
+"""What every kind of batch offers: copies of a robot in its world, under commands to its drives."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -32,7 +32,7 @@ class Copies(Protocol):
     qvel: Array
 
     def reset(self, copies: Indices | Sequence[int] | None = None) -> None:
-        """Return copies, by their indices, to their start, at rest; None for all."""
+        """Return the copies with these indices to their start, at rest; None for all."""
         ...
 
     def advance(self, commands: Array, periods: int = 1) -> Flags:
@@ -47,7 +47,7 @@ class Copies(Protocol):
             Which copies became unstable, shape (copies,); reset these.
 
         Raises:
-            BatchError: the commands have another shape, or are not finite.
+            BatchError: the commands have the wrong shape, or are not finite.
         """
         ...
 
@@ -75,7 +75,7 @@ class CommandBounds:
         """Return commands within the bounds.
 
         Raises:
-            BatchError: they have another shape than (copies, joints), or are not finite.
+            BatchError: their shape is not (copies, joints), or they are not finite.
         """
         shape = (copies, len(self.lower))
         values = np.ascontiguousarray(commands, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Many copies of one simulation, stepped together on all cores; each to the bit like one alone."""
+"""Copies of one simulation, stepped together on all cores, each bit-identical to a single one."""
 
 from collections.abc import Sequence
 from copy import deepcopy
@@ -27,12 +27,12 @@ NO_STAGE = mujoco.mjtStage.mjSTAGE_NONE
 class PhysicsBatch:
     """Copies of a simulation's robot and world, with its drives; see `Copies`.
 
-    Each copy goes on as `Simulation` would with the same commands, bit for bit. MuJoCo's own pool
-    of threads steps the copies, the drives' law is evaluated for all of them at once.
+    Each copy advances as `Simulation` would with the same commands, bit for bit. MuJoCo's own pool
+    of threads steps the copies; the drives' law is evaluated for all of them at once.
 
     Args:
-        simulation: a simulation whose model, start, and modes of drives the copies take. It stays
-            as it is and may be used further.
+        simulation: a simulation; the copies take over its model, its start and the modes of its
+            drives. It is not changed and can still be used.
         bounds: bounds of the commands.
         copies: number of copies, at least 1.
         threads: number of threads; 0 for one on each core.
@@ -50,7 +50,7 @@ class PhysicsBatch:
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         self.copies, self._period_s = copies, simulation.timing.period_s
         self._steps = simulation.timing.steps
-        # MuJoCo keeps which bodies sleep in its MjData, so each copy needs one.
+        # MuJoCo stores in MjData which bodies sleep, so each copy needs its own.
         self._batch = Batch(model, copies, threads, persistent=True)
         self._servo = ServoBatch(model, servo, copies)
         self._start = start_of(simulation, model)
@@ -79,7 +79,7 @@ class PhysicsBatch:
         self.qpos[rows] = self._start.qpos
         # What the drives read in the first period.
         self._inertia[rows], self._bias[rows] = self._start.M, self._start.qfrc_bias
-        # MuJoCo sets the time to 0 when a copy becomes unstable, so it must not begin there.
+        # MuJoCo sets the time to 0 when a copy becomes unstable, so no copy may start at 0.
         self._periods[rows], self._time[rows] = 1, self._period_s
         self._servo.restart(rows, self.qpos[rows], self.qvel[rows])
         self._gates.reset(rows)
@@ -97,7 +97,8 @@ class PhysicsBatch:
             least_s = self._time + 0.5 * self._period_s
             self._batch.step(nstep=self._steps)
             failed |= self._time < least_s
-            # Looking at poses evaluates these again, and the drives read those of the last step.
+            # Copied, because reading poses evaluates them again, and the drives read the last
+            # step's.
             self._inertia[...], self._bias[...] = self._new_inertia, self._new_bias
             # As in `Simulation.advance`: MuJoCo adds up its steps with their rounding errors.
             self._periods += 1

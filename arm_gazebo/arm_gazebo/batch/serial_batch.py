@@ -24,7 +24,8 @@ class SerialBatch:
     """Copies of a simulation's robot and world, with its drives; see `Copies`.
 
     Args:
-        simulation: a simulation whose model, start, and modes of drives the copies take.
+        simulation: a simulation; the copies take over its model, its start and the modes of its
+            drives.
         bounds: bounds of the commands.
         copies: number of copies.
     """

@@ -1,6 +1,6 @@
-"""Copies of one simulation on a GPU, by MuJoCo Warp; their states are near those of the others.
+"""Copies of one simulation on a GPU, by MuJoCo Warp; their states are close to those on the host.
 
-MuJoCo Warp computes in 32 bits and adds up in another order, so its bits differ. The drives' law is
+MuJoCo Warp computes in 32 bits and sums in another order, so the bits differ. The drives' law is
 evaluated on the host, as for `PhysicsBatch`.
 """
 
@@ -34,14 +34,15 @@ class WarpBatch:
     """Copies of a simulation's robot and world, with its drives; see `Copies`.
 
     Args:
-        simulation: a simulation whose model, start, and modes of drives the copies take.
+        simulation: a simulation; the copies take over its model, its start and the modes of its
+            drives.
         bounds: bounds of the commands.
         copies: number of copies.
         device: Warp's name of a device; "cpu" is for comparisons, it is slow.
 
     Raises:
-        BatchError: MuJoCo Warp is not installed, there is no GPU, or the model has what it cannot
-            simulate.
+        BatchError: MuJoCo Warp is not installed, there is no GPU, or it cannot simulate something
+            in the model.
     """
 
     def __init__(
@@ -53,7 +54,7 @@ class WarpBatch:
         self._steps = simulation.timing.steps
         model = deepcopy(simulation.model)
         model.opt.disableflags &= ~CONTACT
-        # A body that sleeps on the host would have to sleep on the device.
+        # No sleep on the host, because MuJoCo Warp has none on the device.
         model.opt.enableflags &= ~SLEEP
         self._servo = ServoBatch(model, simulation.servo, copies)
         self._start = start_of(simulation, model)
@@ -135,7 +136,7 @@ class WarpBatch:
             for _ in range(self._steps):
                 self._engine.step(self._model, self._data)
         graph = capture.graph
-        # The state at the recording is that before its first launch: recording runs nothing.
+        # Recording runs nothing, so the state is still the one before the first launch.
         return lambda: self._warp.capture_launch(graph)
 
 

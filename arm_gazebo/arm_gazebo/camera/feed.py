@@ -136,7 +136,7 @@ class CameraFeed:
         return dict(zip(names, self._missed, strict=True))
 
     def unpublished(self, timeout_s: float) -> tuple[str, ...]:
-        """Return the cameras whose last frame is not out yet, while the loop is paused.
+        """Return the cameras whose last frame has not been published yet, while the loop is paused.
 
         Args:
             timeout_s: how long to wait for the camera process to publish something.
@@ -148,7 +148,7 @@ class CameraFeed:
         return found
 
     def forget_pace(self) -> None:
-        """Let the next frame follow at once, because all earlier ones are out. Loop thread."""
+        """Allow the next frame at once, because all earlier ones are published. Loop thread."""
         self._sent_s = [-math.inf] * len(self._cameras)
 
     def supervise(self) -> None:

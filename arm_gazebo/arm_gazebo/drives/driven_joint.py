@@ -76,7 +76,7 @@ class CommandStream:
         return self.target, self.velocity, self._command, self._left, self._last_change
 
     def load_state(self, state: tuple[float, float, float, int, int]) -> None:
-        """Go on with a saved target."""
+        """Continue with a saved target."""
         self.target, self.velocity, self._command, self._left, self._last_change = state
 
     def advance(self) -> None:
@@ -194,7 +194,7 @@ class DrivenJoint:
         )
 
     def load_state(self, state: tuple[Any, ...]) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         self.mode, self.effort, self.effort_limit, self._braking, self._velocity = state[:5]
         self.setpoint = Setpoint(*state[5:7])
         self.start_position, self.start_velocity = state[7:9]

@@ -1,4 +1,4 @@
-"""MuJoCo's product of an inertia matrix and a vector, for many states at once and to the bit."""
+"""MuJoCo's product of an inertia matrix and a vector, for many states at once and bit for bit."""
 
 import mujoco
 import numpy as np

@@ -201,7 +201,7 @@ class Servo:
         }
 
     def load_state(self, state: dict[str, Any]) -> None:
-        """Go on from a saved state, after MuJoCo's model and state were restored."""
+        """Continue from a saved state, after MuJoCo's model and state were restored."""
         for driven, saved in zip(self._joints, state["joints"], strict=True):
             driven.load_state(saved)
         self._find_servoed()

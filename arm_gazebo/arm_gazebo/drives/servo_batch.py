@@ -1,4 +1,4 @@
-"""The servos of many copies of one robot, evaluated together; to the bit those of `Servo`.
+"""The servos of many copies of one robot, evaluated together; bit-identical to `Servo`.
 
 MuJoCo itself moves the activations between two control periods, in C and on all threads. What
 remains for each period is the set-points and the planned efforts, here as operations on arrays with
@@ -167,7 +167,7 @@ class ServoBatch:
         due = np.flatnonzero(~rows & (self._ticks[:, 0] % self._check_ticks == 0))
         positions = qpos[:, self._addresses]
         for row in due.tolist():
-            # As in `Servo`: another way to add up squares has other bits.
+            # As in `Servo`: summing the squares in another way would give other bits.
             distance = math.dist(positions[row].tolist(), self._still[row].tolist())
             if distance > WAKE_DISTANCE:
                 self._awake_ticks[row], rows[row] = self._settle_ticks, True

@@ -1,4 +1,4 @@
-"""The set-points of the same joints in many copies of a simulation, to the bit those of one.
+"""The set-points of the same joints in many copies of a simulation, bit-identical to a single one.
 
 Each function is the array form of the method of that name in `setpoint` or `driven_joint`: the same
 operations in the same order, so that every number has the same bits.

@@ -1,1 +1,1 @@
-"""Faults on demand: what goes wrong in the simulation because a test asks for it."""
+"""Faults on demand: things that go wrong in the simulation because a test requests it."""

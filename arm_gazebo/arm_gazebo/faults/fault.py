@@ -8,7 +8,7 @@ from arm_gazebo.errors import FaultError
 
 
 class FaultKind(Enum):
-    """What goes wrong, by the word for it."""
+    """The kinds of faults; each value is the word that users write."""
 
     JOINT_STALLED = "joint_stalled"
     SENSOR_FROZEN = "sensor_frozen"
@@ -26,8 +26,8 @@ USAGE = {
     FaultKind.CONTROLLER_RAISES: "CONTROLLER",
     FaultKind.SLOW_TICK: "SECONDS",
 }
-"""The words that follow the kind. A channel is a state interface, or a joint or sensor for all of
-its own."""
+"""The words that follow the kind. A channel is a state interface; a joint or a sensor stands for
+all of its channels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Fault:
         if needs_amount and not 0.0 < self.amount < math.inf:
             raise FaultError(f"{self.kind.value} needs a positive number, not {self.amount:g}")
         if self.seed < 0:
-            raise FaultError(f"a seed is not negative, unlike {self.seed}")
+            raise FaultError(f"the seed must be at least 0, not {self.seed}")
 
     def __str__(self) -> str:
         return f"{self.target} {self.kind.value}".strip().replace("_", " ")

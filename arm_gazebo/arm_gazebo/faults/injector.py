@@ -1,4 +1,4 @@
-"""Begins and ends faults in a simulation that runs."""
+"""Begins and ends faults in a running simulation."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ REASON = "a fault was asked for"
 class FaultInjector:
     """Begins and ends faults. Loop thread only, between two ticks.
 
-    What a fault changes reaches the run as inputs, so a recording of the run has it.
+    A fault changes the run through its inputs, so a recording of the run contains the fault.
 
     Args:
         simulation: the physics.
@@ -55,7 +55,7 @@ class FaultInjector:
         self._feeds: dict[Fault, _EachTick] = {}
 
     def check(self, fault: Fault) -> None:
-        """Raise FaultError if the simulation does not have what the fault is about."""
+        """Raise FaultError if the simulation does not have the fault's target."""
         kind, target = fault.kind, fault.target
         if kind is FaultKind.JOINT_STALLED:
             _find("joint", target, list(self._simulation.built.joints))
@@ -71,7 +71,7 @@ class FaultInjector:
         """Begin a fault.
 
         Raises:
-            FaultError: it has begun already, or the simulation does not have what it is about.
+            FaultError: it has already begun, or the simulation does not have its target.
         """
         if fault in self.active:
             raise FaultError(f"the fault '{fault}' has begun already")
@@ -103,7 +103,7 @@ class FaultInjector:
         self._tick.add_feed(feed)
 
     def _fail(self, name: str) -> None:
-        """Let an active controller fail; it may have been activated again."""
+        """Make an active controller fail; it may have been activated again."""
         for manager in self._managers:
             managed = manager.controllers.get(name)
             if managed is not None and managed.state is LifecycleState.ACTIVE:

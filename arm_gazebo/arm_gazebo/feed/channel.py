@@ -44,7 +44,7 @@ class CameraProgress:
     """What the camera process has done with one camera's frames since it started.
 
     Attributes:
-        serial: of the last frame that it has dealt with; -1 before the first one.
+        serial: of the last frame that it has handled; -1 before the first one.
         rendered: how many frames it has rendered and published.
         dropped: how many frames never reached it, or were passed over for newer ones.
     """
@@ -56,11 +56,11 @@ class CameraProgress:
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """What the camera process has said since the last time.
+    """What the camera process has reported since the last call.
 
     Attributes:
         backends: the render backends that it has tried.
-        progress: the latest figures, one for each camera; empty for no news.
+        progress: the latest figures, one for each camera; empty if there are no new ones.
     """
 
     backends: list[str]
@@ -113,11 +113,11 @@ class FeedEnd:
             _close_files(files)
 
     def wait_for_answers(self, timeout_s: float) -> None:
-        """Wait until the camera process has said something; any thread, while the end is open."""
+        """Wait for a report of the camera process; any thread, while the end is open."""
         select.select([self._socket], [], [], timeout_s)
 
     def answers(self) -> Answers:
-        """Return what the camera process has said since the last call."""
+        """Return what the camera process has reported since the last call."""
         said = [data for data, _files in _receive_all(self._socket)[0]]
         progress = [data[1:] for data in said if data[:1] == PROGRESS]
         return Answers(

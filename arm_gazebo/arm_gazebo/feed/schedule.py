@@ -1,4 +1,4 @@
-"""When which camera takes a picture, or another sensor a reading, in simulation time."""
+"""Decides when each camera takes a picture and each sensor a reading, in simulation time."""
 
 import math
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ class FrameSchedule:
         return self._last_s, self._next_s, [schedule.save_state() for schedule in self._schedules]
 
     def load_state(self, state: tuple[Any, ...]) -> None:
-        """Go on from a saved state."""
+        """Continue from a saved state."""
         self._last_s, self._next_s, schedules = state
         for schedule, saved in zip(self._schedules, schedules, strict=True):
             schedule.load_state(saved)

@@ -46,7 +46,7 @@ class StateFeed:
     and finally `close`.
 
     Attributes:
-        progress: what the process said last of its frames, one for each camera; any thread.
+        progress: what the process last reported about its frames, one for each camera; any thread.
     """
 
     def __init__(self, reader: _StateReader) -> None:
@@ -152,7 +152,7 @@ class StateFeed:
                 self._offer_model()
 
     def hear(self, timeout_s: float) -> None:
-        """Wait for news of `progress`; not on the loop thread, and not after `close`."""
+        """Wait until `progress` changes; not on the loop thread, and not after `close`."""
         self._channel.wait_for_answers(timeout_s)
         with self._lock:
             if not self._closed:

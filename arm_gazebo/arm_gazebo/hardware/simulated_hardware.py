@@ -244,7 +244,7 @@ class SimulatedHardware:
         return frozenset(self._claimed), frozenset(self._beyond), self._taken
 
     def load_state(self, state: tuple[frozenset[str], frozenset[str], bytes]) -> None:
-        """Go on from a saved state, after the simulation was restored."""
+        """Continue from a saved state, after the simulation was restored."""
         claimed, beyond, self._taken = state
         self._claimed, self._beyond = set(claimed), set(beyond)
         self._find_active()

@@ -1,6 +1,6 @@
 """Find a world: a file by its path, or a shipped world by name.
 
-Separate from the readers, so that a launch file can look without loading MuJoCo.
+Separate from the readers, so that a launch file can look up a world without loading MuJoCo.
 """
 
 import os

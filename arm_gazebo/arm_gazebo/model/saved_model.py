@@ -1,4 +1,4 @@
-"""A built model as data: MuJoCo's binary form, and what the suite knows of it besides."""
+"""A built model as data: MuJoCo's binary form, and what else the suite knows about the model."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from arm_gazebo.spec.report import BuildReport
 
 @dataclass(frozen=True, slots=True)
 class SavedModel:
-    """A model that can be written to a file; the attributes but `content` are `BuiltModel`'s.
+    """A model that can be written to a file; all attributes except `content` are `BuiltModel`'s.
 
     Attributes:
         content: the model as MuJoCo saves it; another version of MuJoCo may not read it.

@@ -20,12 +20,12 @@ PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
 @dataclass(frozen=True, slots=True)
 class Clearance:
-    """What is above the floor, and how far it must be to reach nothing before the next check.
+    """How far above the floor the shapes must be so that none reaches it before the next check.
 
     Attributes:
         useful: whether moving shapes can touch nothing but a level floor.
         moving: the shapes that can move and touch something.
-        needed: heights of their origins that are enough, shape (moving,).
+        needed: the heights of their origins that suffice, shape (moving,).
         free: vertical degrees of freedom of the bodies that can fall.
         ticks: control periods from one check to the next.
     """
@@ -89,7 +89,7 @@ class ContactGate:
         return self._until_check, self._is_off
 
     def load_state(self, state: tuple[int, bool]) -> None:
-        """Go on from a saved state; switch collision detection as it was then."""
+        """Continue from a saved state; switch collision detection as it was then."""
         self._until_check, self._is_off = state
         if self._useful:
             self._model.opt.disableflags = self._off if self._is_off else self._on

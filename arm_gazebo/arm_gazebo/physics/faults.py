@@ -1,4 +1,4 @@
-"""Faults of joints and sensors on demand: they stick, freeze, are noisy or read NaN."""
+"""Faults of joints and sensors on demand: joints stick; readings freeze, get noise or are NaN."""
 
 from collections.abc import Callable, Sequence
 from enum import Enum
@@ -19,7 +19,7 @@ PROMPT = (1e-4, 1.0)
 
 
 class Distortion(Enum):
-    """How readings are wrong."""
+    """The ways in which readings can be wrong."""
 
     FROZEN = "frozen"
     NOISY = "noisy"
@@ -41,7 +41,7 @@ class PhysicsFaults:
         self._frozen: dict[str, float] = {}
 
     def stall(self, joint: str) -> None:
-        """Let a joint stick where it is."""
+        """Make a joint stick where it is."""
         address, model = self._joint_address(joint), self._model
         if joint not in self._stalled:
             self._stalled[joint] = (
@@ -63,14 +63,14 @@ class PhysicsFaults:
             self._model.dof_solref[address] = reference
 
     def rebind(self, model: mujoco.MjModel) -> None:
-        """Let the same joints stick in another model."""
+        """Make the same joints stick in another model."""
         self._model = model
         for joint in list(self._stalled):
             del self._stalled[joint]
             self.stall(joint)
 
     def distort(self, name: str, kind: Distortion, deviation: float, seed: int) -> None:
-        """Let readings be wrong.
+        """Make readings wrong from now on.
 
         Args:
             name: a joint, a sensor, or one of its channels, such as j0/position.
@@ -81,18 +81,18 @@ class PhysicsFaults:
         self._distortions[name, kind] = deviation, seed
 
     def clear(self, name: str, kind: Distortion) -> None:
-        """Let readings be right again; has no effect if they are."""
+        """Make readings correct again; has no effect if they already are."""
         self._distortions.pop((name, kind), None)
         if not any(kind is Distortion.FROZEN for _, kind in self._distortions):
             self._frozen.clear()
 
     def apply(self, channels: Sequence[str], readings: Values, number: int) -> None:
-        """Change the readings that are wrong.
+        """Apply the faults to readings.
 
         Args:
             channels: names of the readings, such as j0/position.
             readings: changed in place, shape (n,).
-            number: of the state; the noise is the same for the same state.
+            number: number of the state, which determines the noise.
         """
         if not self._distortions:
             return
@@ -110,7 +110,7 @@ class PhysicsFaults:
             case Distortion.FROZEN:
                 return self._frozen.setdefault(channel, value)
             case Distortion.NOISY:
-                # Of the channel's own, so that each has the same noise alone and with others.
+                # Each channel has its own noise, which does not depend on the other channels.
                 words = (*key, *channel.encode())
                 return value + deviation * float(np.random.default_rng(words).standard_normal())
             case Distortion.NAN:

@@ -19,7 +19,8 @@ class PhysicsState:
 
     After a step, MuJoCo's derived quantities (inertias, gravity, poses of shapes) belong to the
     state before it. The drives read them, and MuJoCo itself keeps those of sleeping bodies. So the
-    integration state alone would not let a run go on with the same bits: all arrays are saved.
+    integration state alone would not let a run continue with the same bits, and all arrays are
+    saved.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -44,7 +45,7 @@ class PhysicsState:
     def load(self, state: dict[str, Any]) -> None:
         """Restore saved arrays of the same model."""
         data = self._data
-        # Contacts are not saved: what shows them gets those of this state.
+        # Contacts are not saved; they are computed again from this state for whatever shows them.
         for name, values in state["model"].items():
             getattr(self._model, name)[...] = values
         for name, values in state["arrays"].items():

@@ -41,7 +41,7 @@ WAKING_FORCE_N = 1e-9
 
 
 def _describe_swap(arguments: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return what a recording notes of `swap`: the model as data."""
+    """Return what a recording stores for `swap`: the model as data."""
     following: NextModel = arguments["following"]
     if following.saved is None:
         raise RecordingError("the recording began while this change was prepared; ask for it again")
@@ -58,7 +58,7 @@ class Simulation:
         proportional_gain: of position commands, see `DrivenJoint`; 0 for the fastest approach.
 
     Attributes:
-        faults: what is wrong with joints and readings; empty unless somebody asks for it.
+        faults: the faults of joints and readings; none unless they are requested.
         input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
 
     Raises:
@@ -134,7 +134,7 @@ class Simulation:
 
     @run_input
     def stall_joint(self, joint: str) -> None:
-        """Let a joint stick where it is, whatever its drive does."""
+        """Make a joint stick where it is, whatever its drive does."""
         self.faults.stall(joint)
 
     @run_input
@@ -144,7 +144,7 @@ class Simulation:
 
     @run_input
     def distort(self, name: str, kind: str, deviation: float = 0.0, seed: int = 0) -> None:
-        """Let readings be frozen, noisy or NaN; see `PhysicsFaults.distort`."""
+        """Make readings frozen, noisy or NaN; see `PhysicsFaults.distort`."""
         self.faults.distort(name, Distortion(kind), deviation, seed)
 
     @run_input
@@ -164,7 +164,7 @@ class Simulation:
         self.probe.restart()
 
     def set_clock(self, time_s: float) -> None:
-        """Let the clock go on from another time; nothing else changes."""
+        """Continue the clock from another time; nothing else changes."""
         self.data.time = self._started_s = time_s
         self._periods = 0
 
@@ -303,7 +303,7 @@ class Simulation:
 def _has_reset_itself(data: mujoco.MjData) -> bool:
     """Return whether MuJoCo's warnings since the last reset are about numbers out of bounds.
 
-    In the first control period the time does not tell: it begins at 0, and so does a reset.
+    The time cannot tell it in the first control period, which begins at 0 as a reset does.
     """
     return any(data.warning[kind].number for kind in RESETTING)
 

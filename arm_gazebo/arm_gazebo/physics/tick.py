@@ -20,7 +20,7 @@ class ClockPublisher(Protocol):
 
 
 class SilentClock:
-    """A `ClockPublisher` where nobody listens to the time."""
+    """A `ClockPublisher` for programs in which nobody listens to the time."""
 
     def publish(self, time_s: float) -> None:
         """Do nothing."""
@@ -82,11 +82,11 @@ class SimulationTick:
         self._now_s = MonotonicClock.now_s
 
     def add_feed(self, feed: Feed) -> None:
-        """Give a feed the states from the next tick on. Loop thread, between two ticks."""
+        """Pass the states to a feed from the next tick on. Loop thread, between two ticks."""
         self._feeds.append(feed)
 
     def remove_feed(self, feed: Feed) -> None:
-        """Give a feed no more states. Loop thread, between two ticks."""
+        """Stop passing states to a feed. Loop thread, between two ticks."""
         self._feeds.remove(feed)
 
     def __call__(self) -> None:

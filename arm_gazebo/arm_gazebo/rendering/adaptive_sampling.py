@@ -25,7 +25,7 @@ FINER_COST = 4.0
 class SamplingStep:
     """The step of the coarse lattice in pixels, a power of two, for one camera.
 
-    A camera with a rate of 0, for which nobody waits, has every pixel cast.
+    For a camera with a rate of 0, whose next image nobody waits for, every pixel is cast.
 
     Attributes:
         step: the step for the next image.

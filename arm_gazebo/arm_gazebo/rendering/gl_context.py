@@ -32,7 +32,7 @@ class GlContext(Protocol):
     name: str
 
     def make_current(self) -> None:
-        """Make it current again, where another context may have become so."""
+        """Make it current again, in case another context has become current."""
         ...
 
     def free(self) -> None:

@@ -1,4 +1,4 @@
-"""Faults by a parameter of the simulation's node: the list of those that are wanted."""
+"""Faults through a parameter of the simulation's node, which lists the requested ones."""
 
 import logging
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ def declare_faults(node: Node) -> None:
 class FaultParameter:
     """Begins and ends faults when the parameter `faults` is set.
 
-    Its value is the list of all that are wanted, such as `['joint_stalled j0', 'slow_tick 0.02']`;
+    Its value is the list of all requested faults, such as `['joint_stalled j0', 'slow_tick 0.02']`;
     see `arm_gazebo.faults.fault`. The callback runs on the executor of its node, which waits for
     the loop.
 
@@ -58,7 +58,7 @@ class FaultParameter:
         try:
             for parameter in changed:
                 if parameter.name == PARAMETER:
-                    # ROS has no empty list without a type: it arrives as one of any.
+                    # An empty list has no type of its own in ROS, so it may arrive with any.
                     wanted = [read_fault(text) for text in read_texts(list(parameter.value or ()))]
                     self._loop.call(lambda faults=wanted: self._change(faults)).result(
                         LOOP_TIMEOUT_S
@@ -71,7 +71,7 @@ class FaultParameter:
         return SetParametersResult(successful=True)
 
     def _change(self, wanted: Sequence[Fault]) -> None:
-        """Begin and end what differs, all or nothing. Loop thread."""
+        """Begin and end faults so that those in the list remain, all or nothing. Loop thread."""
         injector = self._injector
         for fault in wanted:
             injector.check(fault)

@@ -23,11 +23,11 @@ from arm_gazebo.ros.topic import message_class
 from arm_node.executor_thread import ExecutorThread
 
 EARS = "_lock_step"
-"""Name of the node that hears the answers."""
+"""Name of the node that receives the answers."""
 SEARCH_S = 0.1
-"""Interval in which partners and new controllers are looked for."""
+"""Interval between two searches for partners and new controllers."""
 STEP_BACK_S = 1e-4
-"""How long the thread that has heard the last answer leaves Python's lock to the loop thread.
+"""How long the thread that received the last answer leaves Python's lock to the loop thread.
 
 Without it, the loop waits for rclpy's bookkeeping, and a period takes half as long again."""
 DEPTH = 10
@@ -45,7 +45,7 @@ class LockStepPartners:
     arrive on a thread of their own, because rclpy's executor needs a millisecond for a turn when it
     spins as many entities as a simulation has. The commands that controllers subscribe to are not
     served by the executor any more, but taken by the loop thread before each tick: whatever a
-    partner has sent before its answer has arrived by then.
+    partner sent before its answer has arrived by then.
     """
 
     def __init__(
@@ -88,11 +88,11 @@ class LockStepPartners:
                 logger.error("%s", reason)
 
     def shutdown(self) -> None:
-        """Hear no more answers; the loop may still run."""
+        """Stop receiving answers; the loop may still run."""
         self._thread.stop()
 
     def destroy(self) -> None:
-        """Destroy the node that hears them, after the loop has ended."""
+        """Destroy the node that receives them, after the loop has ended."""
         self._ears.destroy_node()
 
     # Executor's thread
@@ -110,7 +110,7 @@ class LockStepPartners:
                     break
 
     def _take_over(self) -> None:
-        """Withdraw the subscriptions of controllers from the executor, also of new ones."""
+        """Withdraw the subscriptions of controllers, including new ones, from the executor."""
         nodes = [node for node in self._executor.get_nodes() if node is not self._node]
         commands = tuple(s for node in nodes for s in node.subscriptions if _is_simple(s))
         for subscription in commands:

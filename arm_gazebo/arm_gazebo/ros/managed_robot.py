@@ -18,7 +18,7 @@ logger = logging.getLogger(__name__)
 
 
 class ManagedRobot:
-    """One robot with its controller manager; call its methods in the order in which they stand.
+    """One robot with its controller manager; call its methods in the order below.
 
     Attributes:
         robot: the robot itself.

@@ -42,13 +42,13 @@ class RunRecording:
         node.add_on_set_parameters_callback(self._take)
 
     def supervise(self) -> None:
-        """End a recording whose file cannot be written any more; it has said why."""
+        """End a recording whose file can no longer be written; it has logged why."""
         if self._recorder is not None and self._recorder.failure:
             self._node.set_parameters([Parameter(PARAMETER, Parameter.Type.STRING, "")])
 
     def close(self) -> None:
         """End the recording with the simulation, whose loop still runs."""
-        # A loop that has failed records no more; what there is has reached the file.
+        # A failed loop records nothing more, and what it recorded has reached the file.
         with suppress(LoopStoppedError):
             self._end("the simulation ended")
 

@@ -158,7 +158,7 @@ def _statistics(
 
 
 def _remark(world: AssembledWorld) -> None:
-    """Say what the simulation leaves out of its world."""
+    """Log which parts of the world are not simulated."""
     if world.left_out:
         remark = f"world {world.named.name}: {world.left_out}"
         logger.warning("%s", remark)
@@ -190,7 +190,7 @@ def _parts(
 def _start_services(
     process: NodeProcess, nodes: ExitStack, ending: ExitStack, serving: tuple[Any, ...]
 ) -> None:
-    """Start the services on a thread of their own; the stacks end them."""
+    """Start the services on a thread of their own; the two exit stacks stop and destroy them."""
     starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
     server = starter.submit(_serve, *serving)
     server.add_done_callback(lambda made: _check(made, process))

@@ -10,7 +10,7 @@ SCENE_ELEMENTS = frozenset(
 )
 """Elements that add something to the scene, or move it."""
 EMPTY_SHAPES = frozenset({"empty"})
-"""The children of <geometry> that are no shape."""
+"""The children of <geometry> that are not shapes."""
 SYSTEM_PLUGINS = (
     *("physics", "scenebroadcaster", "usercommands", "sensors", "contact", "imu", "altimeter"),
     *("magnetometer", "airpressure", "navsat", "forcetorque", "ros", "rosinit", "rosfactory"),

@@ -1,6 +1,6 @@
 """The files that an MJCF refers to, and whether MuJoCo can read them.
 
-MuJoCo opens them by itself: a FIFO blocks it for good.
+MuJoCo opens them by itself: a FIFO blocks it for ever.
 """
 
 import os

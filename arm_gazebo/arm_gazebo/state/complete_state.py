@@ -28,9 +28,9 @@ class Scheduled(Protocol):
 class CompleteState:
     """Saves, restores, resets and compares the state of a run. Loop thread, between two ticks.
 
-    A run goes on bit for bit from a restored state, as long as it gets the same inputs. Parameters
-    are settings and not part of the state. A state that is restored or reset is published at once,
-    so that it shows while time stands still.
+    A run continues bit for bit from a restored state, as long as it gets the same inputs.
+    Parameters are settings and not part of the state. A restored or reset state is published at
+    once, so that it is visible even while time stands still.
 
     Args:
         simulation: the physics, which must have the same model when a state is restored.
@@ -78,7 +78,7 @@ class CompleteState:
     def check(self, saved: bytes) -> dict[str, Any]:
         """Return a saved state's content, if it fits these robots and their controllers.
 
-        The model is not checked: whoever restores the state provides for it.
+        The model is not checked; the caller that restores the state must provide the right one.
 
         Raises:
             StateError: it does not fit; the message says what differs.
@@ -92,7 +92,7 @@ class CompleteState:
         for manager, saved_manager in zip(self._managers, state["managers"], strict=True):
             manager.state.check(saved_manager)
         feeds = [len(rates) for _, _, rates in state["schedules"]]
-        # A program draws and reads on demand, and its state has no schedules.
+        # A program without ROS draws and reads on demand, so its state has no schedules.
         if self._schedules and feeds and feeds != [len(schedule) for schedule in self._schedules]:
             raise StateError("the snapshot was made with other cameras or sensors")
         return state
@@ -101,8 +101,8 @@ class CompleteState:
     def restore(self, saved: bytes) -> None:
         """Restore a saved state, life cycles and clock included.
 
-        Goals that it does not have are aborted. A goal that it has goes on; if its client has got a
-        result already, the motion goes on without a client.
+        Goals that it does not have are aborted. A goal that it has continues; if its client has
+        already received a result, the motion continues without a client.
 
         Raises:
             StateError: it does not fit, or a controller or component refuses its transition.
@@ -119,17 +119,17 @@ class CompleteState:
             elif schedule is not None:
                 schedule.load_state(saved_schedule)
         self._show()
-        # What was shown ran once more.
+        # Publishing the state has run the broadcasters once more.
         self._load_controllers(state)
 
     @run_input
     def reset(self, clock: bool) -> None:
         """Return physics, drives, controllers and noise to their start.
 
-        Controllers stay active. Their goals are aborted, and their set-points are read anew.
+        Controllers stay active. Their goals are aborted, and their set-points are read again.
 
         Args:
-            clock: whether the clock starts at 0 again; otherwise it goes on.
+            clock: whether the clock starts at 0 again; otherwise it continues.
 
         Raises:
             StateError: some controllers refuse; everything else is reset.

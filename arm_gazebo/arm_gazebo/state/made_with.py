@@ -10,7 +10,7 @@ import numpy as np
 
 
 def made_with() -> dict[str, str]:
-    """Return on what the bits of a run depend: versions, processor, mathematical library."""
+    """Return what the bits of a run depend on: versions, processor, mathematical library."""
     return {
         "arm-suite": _version("arm-suite"),
         "mujoco": mujoco.__version__,

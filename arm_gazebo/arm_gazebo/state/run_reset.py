@@ -34,7 +34,7 @@ class RunReset:
         state: the state of the run, which belongs to the loop.
         editor: the world.
         resets_clock: returns whether a reset of everything sets the clock to zero.
-        on_reset: called on the loop thread after each reset, to start figures anew.
+        on_reset: called on the loop thread after each reset, to restart the figures.
     """
 
     def __init__(

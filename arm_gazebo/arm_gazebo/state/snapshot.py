@@ -21,7 +21,7 @@ SUFFIX = ".snapshot"
 MAGIC = b"arm snapshot 1\n"
 HASH_BYTES = 16
 LEVEL = 3
-"""Of the compression: higher levels take ten times as long and save a few per cent."""
+"""Compression level: higher ones take ten times as long and save a few per cent."""
 MAX_BYTES = 1 << 31
 
 
@@ -132,7 +132,7 @@ def _damaged(path: Path, error: Exception) -> RequestError:
 
 
 def remark_on(snapshot: RunSnapshot) -> str:
-    """Return how this machine differs from the snapshot's, "" if a run goes on bit for bit."""
+    """Return how this machine differs from the snapshot's, "" if a run continues bit for bit."""
     others = differences_of_makers(snapshot.made_with)
     if not others:
         return ""

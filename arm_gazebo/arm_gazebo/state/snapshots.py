@@ -35,7 +35,7 @@ class SnapshotStore:
         on_loop: runs functions on the loop's thread.
         source: reads the models that a file's snapshot has spawned.
         world: returns the name of the present world.
-        on_restore: called on the loop thread after each restore, to start figures anew.
+        on_restore: called on the loop thread after each restore, to restart the figures.
     """
 
     def __init__(
@@ -157,7 +157,7 @@ class SnapshotStore:
         base, hashed = self._editor.base, self._hashed
         if hashed is not None and hashed[0] is base and hashed[1] is changes:
             return hashed[2]
-        # A simulation tunes its model, so that of a new one is taken.
+        # A simulation tunes its model, so the hash is that of a newly built one.
         found = model_hash(self._editor.model_with(changes).model)
         self._hashed = base, changes, found
         return found

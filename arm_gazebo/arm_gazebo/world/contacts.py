@@ -18,7 +18,7 @@ class Contact:
     """A point at which two bodies touch.
 
     Attributes:
-        body: name of the body; the one that was asked for, if one was.
+        body: name of the body; the requested one, if there is one.
         other: name of the body that it touches; "world" for the world.
         position: of the point in the world, in m, shape (3,).
         normal: unit vector away from `other`, shape (3,).
@@ -56,7 +56,8 @@ def contacts_of(
         first, second = (int(model.geom_bodyid[geom]) for geom in contact.geom)
         if bodies is not None and not bodies.intersection((first, second)):
             continue
-        # MuJoCo's normal points from the first body to the second, and its force pushes that one.
+        # MuJoCo's normal points from the first body to the second, and its force acts on the
+        # second.
         is_first = bodies is None or first in bodies
         body, other, sign = (first, second, -1.0) if is_first else (second, first, 1.0)
         mujoco.mj_contactForce(model, data, index, wrench)

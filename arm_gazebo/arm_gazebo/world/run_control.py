@@ -101,7 +101,7 @@ class RunControl:
 
     @contextmanager
     def run_of_steps(self, count: int) -> Iterator[Callable[[], bool]]:
-        """Yield whether single steps may go on: until somebody changes the state.
+        """Yield a function that returns whether single steps may go on: until the state is changed.
 
         Raises:
             RequestError: as in `step`.

@@ -30,7 +30,7 @@ def test_a_text_is_a_fault(text: str, fault: Fault):
         ("sensor_noisy j0 much", "'sensor_noisy j0 much' needs numbers"),
         ("sensor_noisy j0 0.1 0.5", "needs numbers"),
         ("sensor_noisy j0 -1", "sensor_noisy needs a positive number, not -1"),
-        ("sensor_noisy j0 0.1 -1", "a seed is not negative"),
+        ("sensor_noisy j0 0.1 -1", "the seed must be at least 0"),
         ("slow_tick nan", "slow_tick needs a positive number, not nan"),
     ],
 )
