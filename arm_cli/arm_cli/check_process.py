@@ -54,7 +54,7 @@ def check(options: argparse.Namespace) -> tuple[str, int]:
     Raises:
         ArmCliError: the file does not exist or cannot be read.
     """
-    # The report contains everything that is logged.
+    # The report already contains everything that would be logged.
     logging.getLogger().addHandler(logging.NullHandler())
 
     from arm_description.errors import DescriptionError

@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
-    # Imported only here, because Tab completion needs none of it.
+    # Imported only here, because Tab completion does not need it.
     from launch_py.supervision.terminal_key import KeyCommand
 
     try:

@@ -72,7 +72,7 @@ DeferredFunction = Callable[[EventT, LaunchContext], Iterable[Action] | Action |
 def deferred_step(
     context: LaunchContext, function: DeferredFunction[ProcessEvent | None]
 ) -> DeferredStep:
-    """Return a step that calls `function(event, context)` for its actions when it is due."""
+    """Return a step that, when due, calls `function(event, context)` to get its actions."""
     return DeferredStep(
         after=context.after, delay_s=context.delay_s, expand=steps_at_event(context, function)
     )

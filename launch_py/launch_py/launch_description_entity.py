@@ -10,7 +10,7 @@ class LaunchDescriptionEntity:
     """A part of a launch description, as plans and events refer to it; see `Action`."""
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         return f"a {type(self).__name__}"
 
 

@@ -7,7 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.bag.info import existing_path
-from arm_cli.dataset.selection import Asked, add_selection_arguments, asked, choose
+from arm_cli.dataset.selection import (
+    DatasetOptions,
+    add_selection_arguments,
+    choose_topics,
+    dataset_options,
+)
 from arm_cli.errors import ArmCliError, BagError
 from arm_cli.output import complain, say
 from arm_cli.verb import VerbFunctions
@@ -17,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def add_dataset_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what the verbs that write datasets share."""
+    """Add the arguments of all verbs that write datasets."""
     parser.add_argument(
         "--task", required=True, metavar="TEXT", help="what the demonstrations show, in words"
     )
@@ -36,14 +41,18 @@ def _add_convert_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _convert(options: argparse.Namespace) -> None:
-    write_dataset(options.bags, options.output, options.task, options.robot, asked(options))
+    write_dataset(
+        options.bags, options.output, options.task, options.robot, dataset_options(options)
+    )
 
 
-def write_dataset(bags: Sequence[Path], output: Path, task: str, robot: str, wanted: Asked) -> None:
+def write_dataset(
+    bags: Sequence[Path], output: Path, task: str, robot: str, wanted: DatasetOptions
+) -> None:
     """Write bags as the episodes of a dataset, and say how its rows use their messages.
 
     Raises:
-        BagError: a bag cannot be read, or has not what a dataset needs.
+        BagError: a bag cannot be read, or lacks something that a dataset needs.
         ArmCliError: the extra is not installed, or the dataset cannot be written.
     """
     from arm_sim.errors import ArmSimError
@@ -64,8 +73,8 @@ def write_dataset(bags: Sequence[Path], output: Path, task: str, robot: str, wan
     say(f"wrote {output}: {len(bags)} episodes")
 
 
-def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: Asked) -> int:
-    """Add a bag as an episode; return its rows a second."""
+def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: DatasetOptions) -> int:
+    """Add a bag as an episode; return its rows per second."""
     from arm_cli.bag.bag_reader import BagReader, describe_unfinished
     from arm_cli.dataset.ros_streams import EpisodeReader
     from arm_sim.dataset import align
@@ -74,7 +83,7 @@ def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: Asked) -> in
         unfinished = describe_unfinished(reader)
         if unfinished is not None:
             complain(f"arm dataset: {unfinished}")
-        chosen = choose(wanted, dict(reader.metadata.topics))
+        chosen = choose_topics(wanted, dict(reader.metadata.topics))
         episode = EpisodeReader(reader, chosen, wanted)
         streams, reference = episode.streams()
         rows = align(streams, reference, wanted.fps)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from arm_cli.command_parser import positive_number, positive_whole_number
 from arm_cli.dataset.convert import add_dataset_arguments, write_dataset
-from arm_cli.dataset.selection import asked
+from arm_cli.dataset.selection import dataset_options
 from arm_cli.errors import ArmCliError, StoppedError
 from arm_cli.output import complain
 from arm_cli.ros.connection import connect
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> None:
         if folder.exists():
             raise ArmCliError(f"{folder} exists; choose a new folder")
     recorded = _record(bags, options.episodes, options.duration)
-    write_dataset(recorded, options.output, options.task, options.robot, asked(options))
+    write_dataset(recorded, options.output, options.task, options.robot, dataset_options(options))
     complain(f"the messages themselves are in {bags}")
 
 

@@ -14,8 +14,8 @@ from arm_cli.dataset.selection import (
     COMPRESSED,
     CONTROLLER_STATE,
     JOINT_STATE,
-    Asked,
-    Chosen,
+    ChosenTopics,
+    DatasetOptions,
 )
 from arm_cli.errors import BagError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
@@ -23,7 +23,7 @@ from arm_sim.dataset import CameraStream, Samples
 
 Stamps = NDArray[np.int64]
 CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (2, 1, 0)}
-"""Where red, green and blue are."""
+"""Indices of red, green and blue in a pixel."""
 
 
 class EpisodeReader:
@@ -32,16 +32,16 @@ class EpisodeReader:
     Args:
         reader: the bag.
         chosen: its topics.
-        asked: what the user asked for.
+        wanted: the user's options.
     """
 
-    def __init__(self, reader: BagReader, chosen: Chosen, asked: Asked) -> None:
-        self._reader, self._chosen, self._asked = reader, chosen, asked
+    def __init__(self, reader: BagReader, chosen: ChosenTopics, wanted: DatasetOptions) -> None:
+        self._reader, self._chosen, self._wanted = reader, chosen, wanted
         self.remarks: list[str] = []
-        """One sentence for each thing about the stamps that a user should know."""
+        """One sentence for each peculiarity of the stamps that a user should know about."""
 
     def streams(self) -> tuple[list[Samples | CameraStream], int]:
-        """Return cameras, states and actions, and the index of the one that gives the rows.
+        """Return cameras, states and actions, and the index of the stream that defines the rows.
 
         Raises:
             BagError: messages have no stamps, or do not fit together.
@@ -60,14 +60,14 @@ class EpisodeReader:
             if set(message.name) != set(names):
                 raise BagError(f"messages of {topic} have different joints; choose by --state")
             place = {name: index for index, name in enumerate(message.name)}
-            fields = [getattr(message, field) for field in self._asked.fields]
-            for field, values in zip(self._asked.fields, fields, strict=True):
+            fields = [getattr(message, field) for field in self._wanted.fields]
+            for field, values in zip(self._wanted.fields, fields, strict=True):
                 if len(values) < len(names):
                     raise BagError(f"messages of {topic} have no {field} of each joint")
             logs.append(log_ns)
             stamps.append(_stamp_ns(message.header.stamp))
             rows.append([float(values[place[name]]) for values in fields for name in names])
-        labels = tuple(f"{name}.{field[:3]}" for field in self._asked.fields for name in names)
+        labels = tuple(f"{name}.{field[:3]}" for field in self._wanted.fields for name in names)
         kept = self._increasing(topic, np.array(stamps, dtype=np.int64))
         own = np.array(stamps, dtype=np.int64)[kept]
         values = np.array(rows, dtype=np.float32)[kept]
@@ -121,12 +121,13 @@ class EpisodeReader:
         return CameraStream(f"observation.images.{name}", own, size[0], size[1], images)
 
     def _increasing(self, topic: str, stamps: Stamps, last: bool = False) -> NDArray[np.bool_]:
-        """Return which messages to keep so that stamps increase; remark on the others.
+        """Return which messages to keep so that stamps increase; add a remark about the others.
 
         Args:
-            topic: for the remark.
-            stamps: of all messages.
-            last: whether of messages with one stamp the last counts, not the first.
+            topic: name of the topic, for the remark.
+            stamps: the stamps of all messages.
+            last: whether the last of several messages with the same stamp is kept instead of the
+                first.
         """
         highest = np.maximum.accumulate(stamps)
         kept = np.ones(len(stamps), dtype=bool)

@@ -21,15 +21,15 @@ STATE_FIELDS = ("position", "velocity", "effort")
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """What the user asked for.
+class DatasetOptions:
+    """The user's choice of topics, fields and rate.
 
     Attributes:
         state: topic of the states; None to find it.
         fields: fields of the joints that are states.
         action: topic of the actions; None to find it.
         cameras: topics of images by the names of their features; None for all.
-        fps: rows a second; None for the rate of the first camera, or of the states.
+        fps: rows per second; None for the rate of the first camera, or of the states.
     """
 
     state: str | None
@@ -40,8 +40,8 @@ class Asked:
 
 
 @dataclass(frozen=True, slots=True)
-class Chosen:
-    """Topics of one bag; of cameras by the names of their features."""
+class ChosenTopics:
+    """The topics of one bag that become features; those of cameras by the names of the features."""
 
     state: "BagTopic"
     action: "BagTopic"
@@ -79,33 +79,37 @@ def add_selection_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def asked(options: argparse.Namespace) -> Asked:
-    """Return what the options ask for."""
+def dataset_options(options: argparse.Namespace) -> DatasetOptions:
+    """Return the parsed options."""
     cameras = None if options.cameras is None else tuple(options.cameras)
-    return Asked(options.state, tuple(options.state_fields), options.action, cameras, options.fps)
+    return DatasetOptions(
+        options.state, tuple(options.state_fields), options.action, cameras, options.fps
+    )
 
 
-def choose(asked: Asked, topics: "Mapping[BagTopic, int]") -> Chosen:
+def choose_topics(wanted: DatasetOptions, topics: "Mapping[BagTopic, int]") -> ChosenTopics:
     """Choose topics.
 
     Args:
-        asked: what the user asked for.
+        wanted: the user's options.
         topics: the topics of the bag, with their numbers of messages.
 
     Raises:
         BagError: a topic is missing, or it is not clear which one is meant.
     """
     filled = {topic.name: topic for topic, count in topics.items() if count}
-    state = _named(asked.state or STATES, filled, (JOINT_STATE,), "--state")
-    if asked.action is not None:
-        action = _named(asked.action, filled, ACTIONS, "--action")
+    state = _named(wanted.state or STATES, filled, (JOINT_STATE,), "--state")
+    if wanted.action is not None:
+        action = _named(wanted.action, filled, ACTIONS, "--action")
     else:
         action = _only_action(filled)
-    if asked.cameras is None:
+    if wanted.cameras is None:
         cameras = [topic for topic in filled.values() if topic.type == IMAGE]
     else:
-        cameras = [_named(name, filled, (IMAGE, COMPRESSED), "--cameras") for name in asked.cameras]
-    return Chosen(state, action, {_camera_name(topic.name): topic for topic in cameras})
+        cameras = [
+            _named(name, filled, (IMAGE, COMPRESSED), "--cameras") for name in wanted.cameras
+        ]
+    return ChosenTopics(state, action, {_camera_name(topic.name): topic for topic in cameras})
 
 
 def _named(

@@ -1,4 +1,4 @@
-"""Publishes a run that is replayed: clock, joint states, transforms and descriptions."""
+"""Publishes a replayed run: clock, joint states, transforms and descriptions."""
 
 import time
 from collections.abc import Sequence
@@ -51,7 +51,7 @@ class RunPlayer:
         self._next_s = 0.0
 
     def show(self) -> None:
-        """Publish the present state if it is time for it; call it after each period.
+        """Publish the present state if one is due; call it after each period.
 
         Raises:
             StoppedError: a signal arrived.

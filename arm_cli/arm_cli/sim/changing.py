@@ -123,7 +123,7 @@ def reset(options: argparse.Namespace) -> None:
     """Return everything to its start, apart from what the options keep.
 
     Raises:
-        SimulationRefusedError: a controller cannot be reset, or the clock must not be.
+        SimulationRefusedError: a controller cannot be reset, or the clock must not be set.
     """
     scope = SCOPE_ALL
     if options.keep_spawned or options.keep_clock:

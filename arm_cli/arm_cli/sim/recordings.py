@@ -23,7 +23,7 @@ PARAMETER = "record_run"
 MAX_ARGUMENTS = 120
 """Characters of an input's arguments that are printed."""
 BLOBS = ("model", "saved")
-"""Arguments that say nothing to people."""
+"""Arguments that mean nothing to people."""
 _REFUSED = " (refused)"
 
 
@@ -45,7 +45,7 @@ def record(options: argparse.Namespace) -> None:
 
     Raises:
         UnansweredError: no simulation answers.
-        SimulationRefusedError: it cannot write the file, or records already.
+        SimulationRefusedError: it cannot write the file, or is already recording.
     """
     # A relative path is relative to this process, not to the simulation's working folder.
     path = options.file.absolute()
@@ -234,7 +234,7 @@ def diff(options: argparse.Namespace) -> int:
 
 @contextmanager
 def _sentences() -> Iterator[None]:
-    """Report what recordings and simulations refuse as errors of the command line."""
+    """Turn the errors of recordings and simulations into errors of the command line."""
     from arm_control.errors import ArmControlError
     from arm_description.errors import DescriptionError
     from arm_gazebo.errors import GazeboError

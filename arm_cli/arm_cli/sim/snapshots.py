@@ -88,7 +88,7 @@ def _add_snapshot_argument(parser: argparse.ArgumentParser, name: str) -> None:
 
 
 def _ask(options: argparse.Namespace, service: str) -> Any:
-    """Call a service for the snapshot of the options; return what it says of it."""
+    """Call a service for the snapshot that the options name; return its description."""
     where = options.snapshot
     if "/" in where or where.endswith(SUFFIX):
         # A relative path is relative to this process, not to the simulation's working folder.

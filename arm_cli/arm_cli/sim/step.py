@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> None:
 
     Raises:
         SimulationRefusedError: it is not paused, or its time is past `--until`.
-        CommandUsageError: the number of steps is below 1, or there is a time as well.
+        CommandUsageError: the number of steps is below 1, or both a number and a time are given.
     """
     _check(options)
     service = "step_simulation_with_sensors" if options.with_sensors else "step_simulation"

@@ -21,7 +21,7 @@ class ConfigPanel:
     def __init__(
         self, server: ViserServer, robots: RobotPanel, view: FirstView, first: PageConfig | None
     ) -> None:
-        """Save and set the switches of this panel and this view, which `first` sets at once."""
+        """Save and set the switches of `robots`, and `view`; `first` is set at once."""
         self._server = server
         self._robots = robots
         self._view = view
@@ -48,7 +48,7 @@ class ConfigPanel:
         load.on_upload(self._open)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Send the files that were asked for, and show the configurations that were opened."""
+        """Send the requested files, and show the configurations that were opened."""
         try:
             while True:
                 self._save(self._saved_for.get_nowait(), snapshot)

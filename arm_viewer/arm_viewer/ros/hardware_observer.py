@@ -1,6 +1,6 @@
 """Observe joint positions in controller managers' introspection data, without joint states.
 
-A simulation or robot without a joint_state_broadcaster has them nowhere else.
+A simulation or robot without a joint_state_broadcaster publishes them nowhere else.
 """
 
 import math

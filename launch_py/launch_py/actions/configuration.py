@@ -81,7 +81,7 @@ class DeclareLaunchArgument(Action):
         return describe_text(self.default_value)
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         return f"launch argument {self.name!r}"
 
 

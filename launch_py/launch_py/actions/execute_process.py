@@ -228,7 +228,7 @@ class ExecuteProcess(Action):
         return (*self.find(context, words[0]), *words[1:])
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         return f"an ExecuteProcess of {self.name or self.cmd}"
 
     def _shell_line(self, context: LaunchContext, line: str) -> str:

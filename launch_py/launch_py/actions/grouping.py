@@ -143,5 +143,5 @@ class OpaqueFunction(Action):
             return self.function(context, *self.args, **self.kwargs) or ()
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         return f"OpaqueFunction {getattr(self.function, '__name__', '')}".strip()

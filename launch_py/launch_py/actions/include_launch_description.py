@@ -103,7 +103,7 @@ class IncludeLaunchDescription(Action):
                 )
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         if isinstance(self.source, LaunchDescription):
             return "an included launch description"
         return f"the include of {self.source.describe()}"

@@ -166,7 +166,7 @@ class LaunchPlan:
 
 
 def describe_step(step: Step) -> str:
-    """Return what messages call a step."""
+    """Return the name of a step in messages."""
     match step:
         case ProcessStep():
             return step.name

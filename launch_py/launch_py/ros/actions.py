@@ -139,7 +139,7 @@ class Node(ExecuteProcess):
         return join_names(context.namespace, own)
 
     def describe(self) -> str:
-        """Return what messages call it."""
+        """Return its name in messages."""
         return f"a Node of executable {describe_text(self.executable)!r}"
 
     def _parameter_files(

@@ -31,7 +31,7 @@ class FindExecutable(Substitution):
         )
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"FindExecutable({describe_text(self.name)!r})"
 
 
@@ -95,7 +95,7 @@ class Command(Substitution):
         return output.removesuffix("\n")
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"Command({describe_text(self.command)!r})"
 
 
@@ -126,5 +126,5 @@ class Call(Substitution):
             return str(self.function(*args, **kwargs))
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"Call({getattr(self.function, '__name__', 'function')})"

@@ -62,7 +62,7 @@ class PythonExpression(Substitution):
             raise SubstitutionError(f"expression {text!r} has no value: {error}") from error
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"PythonExpression({describe_text(self.expression)!r})"
 
 

@@ -43,7 +43,7 @@ class LaunchConfiguration(Substitution):
         raise SubstitutionError(f"no launch argument {name!r} is declared before its use; {known}")
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"LaunchConfiguration({describe_text(self.variable_name)!r})"
 
 
@@ -78,7 +78,7 @@ class LocalSubstitution(Substitution):
         return str(value)
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return self.description or f"LocalSubstitution({self.expression!r})"
 
 
@@ -100,7 +100,7 @@ class EnvironmentVariable(Substitution):
         raise SubstitutionError(f"environment variable {name} is not set and has no default")
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return f"EnvironmentVariable({describe_text(self.name)!r})"
 
 
@@ -115,7 +115,7 @@ class PathJoinSubstitution(Substitution):
         return os.path.join(*(perform_text(context, part) for part in self.parts))
 
     def describe(self) -> str:
-        """Return how it is written."""
+        """Return the substitution as a launch file writes it."""
         return "/".join(describe_text(part) for part in self.parts)
 
 

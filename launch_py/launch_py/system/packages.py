@@ -32,7 +32,7 @@ LAUNCH_ENDINGS = (".py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
 
 
 def launch_files(folder: Path | str) -> list[str]:
-    """Return the names of the launch files of a folder, sorted; none of a folder that is not."""
+    """Return the names of a folder's launch files, sorted; none if the folder does not exist."""
     try:
         return sorted(name for name in os.listdir(folder) if name.endswith(LAUNCH_ENDINGS))
     except OSError:
