@@ -88,16 +88,16 @@ class Assembled:
         return self.things.changes if "things" in self.__dict__ else None
 
     def change_world(self, changes: "WorldChanges | None") -> None:
-        """Bring the world to the changes of an earlier time; the states of things follow."""
+        """Restore the world's changes of an earlier time; the caller restores the states."""
         if changes is not self.world_changes:
             self.things.change_to(changes)
 
     def reseed(self, seed: int) -> None:
-        """Let sensors and cameras have the noise of another run."""
+        """Give sensors and cameras the noise of another run."""
         for sensor in self.robot.sensors:
             sensor.reseed(seed)
         for component in self.robot.hardware:
-            # The states have readings with the old noise.
+            # The states still contain readings with the old noise.
             component.read(self.physics.time_s, self.physics.timing.period_s)
         self.cameras.reseed(seed)
 
@@ -145,7 +145,7 @@ def assemble(
     Raises:
         DescriptionError, GazeboError, ArmControlError, ParameterValueError: it cannot be built.
     """
-    # Imported here, because this takes long and a program may never build a simulation.
+    # Imported here, because it takes long, and a program may never build a simulation.
     from arm_gazebo.assembly.robot import AssembledRobot
     from arm_gazebo.assembly.world import assemble_world
     from arm_sim.set_up import set_up

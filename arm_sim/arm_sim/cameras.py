@@ -12,12 +12,12 @@ from arm_sim.errors import UnknownNameError
 
 
 class Camera:
-    """One camera; it draws the present state when it is asked.
+    """One camera; it draws the present state on request.
 
     Attributes:
         name: its name.
-        width: of its images, in pixels.
-        height: of its images, in pixels.
+        width: width of its images, in pixels.
+        height: height of its images, in pixels.
         is_dark: whether something covers its lens.
     """
 
@@ -49,7 +49,7 @@ class Camera:
     def depth(self) -> NDArray[np.float32]:
         """Return the distances along its axis in m, shape (height, width).
 
-        What is too near is -inf, what is too far inf.
+        Distances below the near clip are -inf, those beyond the far clip inf.
 
         Raises:
             CameraError: no render backend works.

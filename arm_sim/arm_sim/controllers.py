@@ -24,8 +24,8 @@ class ControllerHandle:
     Attributes:
         core: the controller itself, for what this class does not offer.
         state: its life-cycle state.
-        goals: its goals under way; None for a controller without goals.
-        deliver: takes each command to the controller; a fault may stand in its place.
+        goals: its running goals; None for a controller without goals.
+        deliver: passes each command to the controller; a fault may replace it.
     """
 
     def __init__(self, core: Controller[Any]) -> None:
@@ -33,7 +33,7 @@ class ControllerHandle:
         self.core = core
         self.deliver: Callable[[Sequence[float]], None] = core.take_command
         self.state = LifecycleState.UNCONFIGURED
-        # The core tells of its goals only if it serves any.
+        # Only a core that serves goals has this method.
         goal_controller: Any = core if hasattr(core, "submit_goal") else None
         self.goals = GoalBook(goal_controller) if goal_controller is not None else None
 
@@ -128,7 +128,7 @@ class ControllerHandle:
 
 
 class Controllers(Mapping[str, ControllerHandle]):
-    """The loaded controllers by name. The thread of the simulation."""
+    """The loaded controllers by name. The simulation's thread."""
 
     def __init__(self, manager: ControllerManager, starter: ControllerStarter) -> None:
         self._manager = manager
@@ -182,7 +182,7 @@ class Controllers(Mapping[str, ControllerHandle]):
             raise ControllerManagerError(result.message)
 
     def running_goals(self) -> dict[str, dict[int, Goal[Any]]]:
-        """Return the goals under way, by controller and number."""
+        """Return the running goals, by controller and number."""
         return {name: book.running for name, book in self._books()}
 
     def restore_goals(self, running: Mapping[str, Mapping[int, Goal[Any]]]) -> None:
@@ -203,7 +203,7 @@ class Controllers(Mapping[str, ControllerHandle]):
             self._handles[name].state = end
 
     def activity_changed(self) -> None:
-        """Nothing more depends on it."""
+        """Do nothing: nothing else depends on it."""
 
     def __getitem__(self, name: str) -> ControllerHandle:
         if name not in self._handles:

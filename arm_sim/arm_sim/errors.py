@@ -27,7 +27,7 @@ class UnknownNameError(ArmSimError, KeyError):
 
 
 class MissingPackageError(ArmSimError, ImportError):
-    """An optional package is needed and not installed; the message tells how to install it."""
+    """A required optional package is not installed; the message tells how to install it."""
 
     def __init__(self, package: str, extra: str) -> None:
         super().__init__(f"{package} is not installed; pip install 'arm-suite[{extra}]'")

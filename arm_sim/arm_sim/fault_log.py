@@ -1,4 +1,4 @@
-"""Which faults there were, and when."""
+"""Records which faults occurred, and when."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class FaultSpan:
-    """A time during which there was a fault.
+    """A span of time with a fault.
 
     Attributes:
-        name: what reports call the fault.
+        name: the fault's name in reports.
         began_s: when it began, in simulation time.
         ended_s: when it ended; inf while it lasts.
     """
@@ -26,7 +26,7 @@ class FaultSpan:
 
 
 class FaultLog:
-    """Notes the faults of a test. One thread.
+    """Records the faults of a test. One thread.
 
     Args:
         now_s: returns the simulation time.
@@ -41,7 +41,7 @@ class FaultLog:
 
     @contextmanager
     def noted(self, name: str) -> Iterator[None]:
-        """Note a fault that lasts as long as the `with` block."""
+        """Record a fault that lasts as long as the `with` block."""
         span = FaultSpan(name, self._now_s())
         self.spans.append(span)
         try:
@@ -50,7 +50,7 @@ class FaultLog:
             span.ended_s = self._now_s()
 
     def restart(self) -> None:
-        """Forget the faults that have ended; those that last begin now."""
+        """Forget the faults that have ended; those that still last count from now on."""
         self.spans = [span for span in self.spans if span.ended_s == math.inf]
         for span in self.spans:
             span.began_s = self._now_s()

@@ -34,13 +34,13 @@ class SimulationFaults:
         )
 
     def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
-        """Let a joint stick where it is, whatever its drive does."""
+        """Make a joint stick where it is, whatever its drive does."""
         return self._injected(Fault(FaultKind.JOINT_STALLED, joint))
 
     def sensor_frozen(self, name: str) -> AbstractContextManager[None]:
-        """Let readings stay as they are.
+        """Freeze readings at their present values.
 
-        Controllers and broadcasters see them; `sim.joints` shows the true states.
+        Controllers and broadcasters see the frozen values; `sim.joints` shows the true states.
 
         Args:
             name: a channel such as j0/position; or a joint or sensor, for all of its channels.
@@ -60,18 +60,18 @@ class SimulationFaults:
         return self._injected(Fault(FaultKind.SENSOR_NOISY, name, deviation, seed))
 
     def sensor_nan(self, name: str) -> AbstractContextManager[None]:
-        """Let readings be NaN; see `sensor_frozen`."""
+        """Make readings NaN; see `sensor_frozen`."""
         return self._injected(Fault(FaultKind.SENSOR_NAN, name))
 
     def controller_raises(self, name: str) -> AbstractContextManager[None]:
-        """Let a controller's updates raise: the manager deactivates it, or starts its fallback.
+        """Make a controller's updates raise: the manager deactivates it, or starts its fallback.
 
         It stays inactive after the block.
         """
         return self._injected(Fault(FaultKind.CONTROLLER_RAISES, name))
 
     def slow_tick(self, seconds: float) -> AbstractContextManager[None]:
-        """Let each control period take longer, in seconds of wall time."""
+        """Make each control period take this many seconds of wall time longer."""
         return self._injected(Fault(FaultKind.SLOW_TICK, amount=seconds))
 
     def messages_dropped(
@@ -81,21 +81,21 @@ class SimulationFaults:
 
         Args:
             controller: its name.
-            fraction: of the commands, from 0 to 1.
-            seed: which ones.
+            fraction: fraction of lost commands, from 0 to 1.
+            seed: seed of the random choice.
         """
         return self._linked("dropped", controller, LinkFault(lost=fraction, seed=seed))
 
     def messages_delayed(
         self, controller: str, by_s: float, jitter_s: float = 0.0, seed: int = 0
     ) -> AbstractContextManager[None]:
-        """Deliver commands later; what is under way at the end of the block arrives there.
+        """Deliver commands later; those still delayed at the end of the block arrive then.
 
         Args:
             controller: its name.
             by_s: how late, in simulated seconds.
-            jitter_s: how much later than that at most, at random; commands may overtake others.
-            seed: of what is random.
+            jitter_s: largest random additional delay; commands may overtake others.
+            seed: seed of the random delays.
         """
         fault = LinkFault(delay_s=by_s, jitter_s=jitter_s, seed=seed)
         return self._linked("delayed", controller, fault)
@@ -107,16 +107,16 @@ class SimulationFaults:
 
         Args:
             controller: its name.
-            fraction: of the commands, from 0 to 1.
+            fraction: fraction of doubled commands, from 0 to 1.
             after_s: how long after the first copy the second arrives, in simulated seconds.
-            seed: which ones.
+            seed: seed of the random choice.
         """
         fault = LinkFault(doubled=fraction, again_s=after_s, seed=seed)
         return self._linked("doubled", controller, fault)
 
     @contextmanager
     def camera_dark(self, name: str) -> Iterator[None]:
-        """Cover a camera's lens: images are black, and everything is too near."""
+        """Cover a camera's lens: images are black, and all distances are too near."""
         camera = self._find_camera(name)
         with self.log.noted(f"{name} dark"):
             camera.is_dark = True
@@ -148,7 +148,7 @@ class SimulationFaults:
 
 
 class _CommandLine:
-    """Stands between a program and a controller, and delivers what is due after each tick."""
+    """Passes a program's commands to a controller, and delivers due ones after each tick."""
 
     def __init__(
         self, handle: ControllerHandle, link: FaultyLink, now_s: Callable[[], float]
@@ -166,17 +166,17 @@ class _CommandLine:
         self._deliver(self._now_s())
 
     def publish_due(self, time_s: float, data: Any) -> None:
-        """Deliver what is due before the next tick."""
+        """Deliver the commands that are due before the next tick."""
         self._deliver(time_s)
 
     def close(self) -> None:
-        """Deliver the rest, and step aside."""
+        """Deliver the remaining commands, and connect program and controller directly again."""
         self._deliver(float("inf"))
         self._handle.deliver = self._behind
 
     def _deliver(self, time_s: float) -> None:
         while self._under_way and self._under_way[0][0] <= time_s + TOLERANCE_S:
             _, _, values = heapq.heappop(self._under_way)
-            # A controller that has stopped meanwhile takes nothing.
+            # A controller that has stopped in the meantime takes no commands.
             if self._handle.is_active:
                 self._behind(values)

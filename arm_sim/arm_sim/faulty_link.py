@@ -8,15 +8,15 @@ from arm_sim.errors import CallError
 
 @dataclass(frozen=True, slots=True)
 class LinkFault:
-    """What is wrong with a connection.
+    """The faults of a connection.
 
     Attributes:
         lost: fraction of the messages that are lost.
         doubled: fraction of the others that arrive twice.
         delay_s: how late each message arrives.
-        jitter_s: how much later than that it may arrive, at random; messages may overtake others.
+        jitter_s: largest random additional delay; messages may overtake others.
         again_s: how long after the first copy the second one arrives.
-        seed: of what is random.
+        seed: seed of the random choices.
     """
 
     lost: float = 0.0
@@ -37,7 +37,7 @@ class LinkFault:
 
 
 class FaultyLink:
-    """Says when each message arrives; the same seed gives the same answers."""
+    """Decides when each message arrives; the same seed gives the same delays."""
 
     def __init__(self, fault: LinkFault) -> None:
         import numpy as np
@@ -46,9 +46,9 @@ class FaultyLink:
         self._random = np.random.default_rng(fault.seed)
 
     def delays_s(self) -> list[float]:
-        """Return how late the next message arrives: nothing if it is lost, two times if doubled."""
+        """Return the delays of the next message: none if it is lost, two if it is doubled."""
         fault = self._fault
-        # Three numbers for each message, so that what happens to one leaves the others alone.
+        # Three numbers for each message, so that the fate of one does not affect the others.
         is_lost, is_doubled, late = self._random.random(3).tolist()
         if is_lost < fault.lost:
             return []

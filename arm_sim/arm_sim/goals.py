@@ -11,11 +11,11 @@ ResultT = TypeVar("ResultT", bound=GoalEnd)
 
 
 class Goal(Generic[ResultT]):
-    """A goal under way; it advances while the simulation runs.
+    """A goal of a controller; it advances while the simulation runs.
 
     Attributes:
         controller: name of the controller that executes it.
-        end: how it ended; None while it is under way.
+        end: how it ended; None while it is running.
         feedback: the latest feedback of a trajectory; None before the first.
     """
 
@@ -54,7 +54,7 @@ class Goal(Generic[ResultT]):
 
 
 class GoalServer(GoalController, Protocol):
-    """A controller's core that starts goals and tells a sink of their ends."""
+    """A controller's core that starts goals and reports their ends to a sink."""
 
     sink: Any
 
@@ -91,11 +91,11 @@ class GoalBook:
 
     @property
     def running(self) -> dict[int, Goal[Any]]:
-        """The goals under way, by their numbers."""
+        """The running goals, by their numbers."""
         return dict(self._running)
 
     def restore(self, running: Mapping[int, Goal[Any]]) -> None:
-        """Go on with the goals of an earlier time; the controller has ended all others."""
+        """Continue with the goals of an earlier time; the controller has ended all others."""
         self._running = dict(running)
         for goal in running.values():
             goal.end = None
@@ -106,15 +106,15 @@ class GoalBook:
         """Accept results from now on."""
 
     def publish_state(self, state: object) -> None:
-        """Drop the controller's state; the program reads the joints."""
+        """Ignore the controller's state; a program reads the joints instead."""
 
     def publish_feedback(self, goal_id: int, feedback: object) -> None:
-        """Store the feedback of a goal; that of a goal from a file has nobody to take it."""
+        """Store the feedback of a goal; for a goal from a file there is nobody to receive it."""
         if goal_id in self._running:
             self._running[goal_id].feedback = feedback
 
     def finish_goal(self, goal_id: int, result: Any) -> None:
-        """End a goal; the end of a goal from a file has nobody to take it."""
+        """End a goal; for a goal from a file there is nobody to receive the result."""
         goal = self._running.pop(goal_id, None)
         if goal is not None:
             goal.end = result

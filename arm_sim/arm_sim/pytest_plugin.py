@@ -1,7 +1,7 @@
 """The pytest plugin: fixtures `arm_sim` and `arm_ros`, and their markers.
 
-Every pytest run of whoever has this installed loads this module, so it imports the rest only when
-a test uses it.
+Every pytest run in an environment with this package loads this module, so it imports the rest only
+when a test needs it.
 """
 
 import os
@@ -71,7 +71,7 @@ def _arm_sim_pool() -> "Iterator[SimulationPool]":
 
 @pytest.fixture
 def arm_sim(request: pytest.FixtureRequest, _arm_sim_pool: "SimulationPool") -> "BenchSimulation":
-    """Return a simulation without ROS, in its first state: see `arm_sim.bench.simulation`.
+    """Return a simulation without ROS, in its initial state: see `arm_sim.bench.simulation`.
 
     The marker `arm_sim` says what it simulates; by default it is the 4-DOF arm.
     """
@@ -83,7 +83,7 @@ def arm_sim(request: pytest.FixtureRequest, _arm_sim_pool: "SimulationPool") -> 
 
 
 def _simulation(item: pytest.Item, pool: "SimulationPool") -> "BenchSimulation | str":
-    """Return a simulation, or why there is none."""
+    """Return a simulation, or a sentence that says why there is none."""
     from arm_control.errors import ArmControlError
     from arm_description.errors import DescriptionError
     from arm_gazebo.errors import GazeboError
@@ -146,7 +146,8 @@ def arm_ros(
 def _ros_bench(launch: "LoggedProcess", domain_id: int, recording: Path) -> "RosBench":
     """Return a launch as objects; ROS is imported while the launch starts."""
     with warnings.catch_warnings():
-        # Modules that rclpy imports warn; that must not fail a run that turns warnings into errors.
+        # Modules that rclpy imports emit warnings, which must not fail a run that turns them into
+        # errors.
         warnings.simplefilter("ignore", DeprecationWarning)
         try:
             from arm_sim.bench.ros_bench import RosBench

@@ -18,12 +18,12 @@ class _ThisThread:
     is_this_thread = True
 
     def call(self, function: Callable[[], ResultT]) -> "Future[ResultT]":
-        """Run a function now: no tick is under way."""
+        """Run a function now, because no tick is running."""
         future: Future[ResultT] = Future()
         try:
             future.set_result(function())
         except Exception as error:
-            # The caller gets it from the future, as from a loop in a thread of its own.
+            # The caller gets the exception from the future, as from a loop in a thread of its own.
             future.set_exception(error)
         return future
 

@@ -1,4 +1,4 @@
-"""What a program asks for, as the settings of the simulation."""
+"""Converts a program's arguments to the settings of the simulation."""
 
 import shlex
 from collections.abc import Iterable, Mapping

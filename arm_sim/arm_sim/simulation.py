@@ -152,7 +152,7 @@ class Simulation:
 
         Raises:
             UnhandledFailureError: a controller or component raised, and the parameter
-                `handle_exceptions` is false. Otherwise only what raised is stopped, and logged.
+                `handle_exceptions` is false. Otherwise only that one is stopped, which is logged.
         """
         parts = self._open
         self._tick()
@@ -162,7 +162,7 @@ class Simulation:
         """Advance by simulated seconds, to the first tick at or after their end.
 
         Raises:
-            CallError: this is not a time; other errors as in `step`.
+            CallError: `seconds` is not a duration; other errors as in `step`.
         """
         parts = self._open
         for _ in range(self._periods_in(seconds)):
@@ -222,7 +222,7 @@ class Simulation:
         *,
         timeout_s: float = GOAL_TIMEOUT_S,
     ) -> "GripperResult":
-        """Run until a gripper has reached a position, or has stalled on a thing.
+        """Run until a gripper has reached a position, or has stalled on an object.
 
         Args:
             controller: name of the controller.
@@ -245,7 +245,7 @@ class Simulation:
 
     @property
     def entities(self) -> tuple[str, ...]:
-        """Names of the things in the world: robots, parts of the world, spawned models."""
+        """Names of the entities: robots, parts of the world, spawned models."""
         return self._open.things.names
 
     def spawn(
@@ -316,7 +316,7 @@ class Simulation:
         return tuple(sensor.name for sensor in self.parts.robot.cameras)
 
     def camera(self, name: str) -> "Camera":
-        """Return a camera by its name or one of its topics; it draws when it is asked.
+        """Return a camera by its name or one of its topics; it draws on request.
 
         Raises:
             UnknownNameError: the robot has none of that name.
@@ -326,7 +326,7 @@ class Simulation:
     # States
 
     def save(self, path: AnyPath | None = None) -> SavedState:
-        """Return the complete state: physics, drives, controllers, goals, things, noise, time.
+        """Return the complete state: physics, drives, controllers, goals, entities, noise, time.
 
         Args:
             path: also write it to this file, as `arm sim save` does.
@@ -338,7 +338,7 @@ class Simulation:
         return self._snapshots.save(path)
 
     def restore(self, snapshot: SavedState | AnyPath) -> None:
-        """Go back to a state of this simulation, to go on from there to the last bit.
+        """Go back to a state of this simulation, and continue from there bit for bit.
 
         Goals that the state does not have are aborted. Parameters are settings and stay.
 

@@ -1,4 +1,4 @@
-"""Save a simulation and go back to what was saved, to the last bit."""
+"""Saves a simulation, and restores a saved state bit for bit."""
 
 import logging
 from collections.abc import Mapping
@@ -29,8 +29,8 @@ class SavedState:
         state: physics, drives and controllers.
         world: the changes to the world since it was built; None for none.
         seed: seed of the noise.
-        goals: the goals under way, by controller and number.
-        owner: what saved it.
+        goals: the running goals, by controller and number.
+        owner: the `Snapshots` that saved it.
     """
 
     time_s: float

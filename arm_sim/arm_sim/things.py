@@ -1,4 +1,4 @@
-"""The things in the world: spawned, moved, seen and touched between two ticks."""
+"""Spawns, moves, deletes and inspects the entities of the world between two ticks."""
 
 from collections.abc import Sequence
 from os import PathLike, fspath
@@ -14,7 +14,7 @@ from arm_sim.pose import AnyPose, Matrix, pose_matrix
 
 
 class Things:
-    """What the world's services do for clients of the node; see `Simulation` for each method.
+    """Does for a program what the world's services do for clients of the node; see `Simulation`.
 
     Attributes:
         editor: changes the world.
@@ -24,7 +24,7 @@ class Things:
     def __init__(
         self, physics: Physics, holders: Sequence[ModelHolder], source: ModelSource
     ) -> None:
-        """Take a simulation whose thread this is.
+        """Take a simulation that runs on the calling thread.
 
         Args:
             physics: the simulation.
@@ -41,7 +41,7 @@ class Things:
         return self.editor.changes
 
     def change_to(self, changes: WorldChanges | None) -> None:
-        """Bring the world to the things of an earlier time; None for those of its start."""
+        """Apply the changes that the world had at an earlier time; None for those at its start."""
         self.editor.change_to(changes or NOTHING)
 
     @property

@@ -32,7 +32,7 @@ class BlackBox:
         """Record from the present state on.
 
         Args:
-            at_start: whether this is the state in which it first began.
+            at_start: whether this is the state in which the first recording began.
         """
         if self._parts.physics.input_gate is not None:
             self.refusal = "the test records its run itself"
@@ -52,7 +52,7 @@ class BlackBox:
         run.tick.add_feed(self._recorder)
 
     def end(self) -> None:
-        """Stop; has no effect if it has not begun."""
+        """Stop; has no effect if nothing is recorded."""
         if self._recorder is not None:
             self._run.tick.remove_feed(self._recorder)
             self._recorder.stop()
@@ -75,7 +75,7 @@ class BlackBox:
 
 
 class _Memory:
-    """Keeps the records of a run: of the states, the hash of each and a whole one now and then."""
+    """Keeps the records of a run: the hash of every state, and a whole state now and then."""
 
     path = Path()
 

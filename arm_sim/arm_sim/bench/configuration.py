@@ -1,4 +1,4 @@
-"""What a test asks for with its markers."""
+"""Reads the arguments of a test's markers."""
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +24,7 @@ def arguments_of(function: Callable[..., object]) -> list[str]:
 def marked_arguments(item: "pytest.Item", marker: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the arguments of a test's markers; those nearer to the test take precedence.
 
-    A file that stands beside the test may be named by its name alone.
+    A file in the test's folder may be given by its name alone.
 
     Args:
         item: the test.

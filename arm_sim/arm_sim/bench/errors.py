@@ -4,4 +4,4 @@ from arm_sim.errors import ArmSimError
 
 
 class BenchError(ArmSimError):
-    """The bench cannot do what a test asks for; the message says why."""
+    """The bench cannot do what a test requests; the message says why."""

@@ -1,4 +1,4 @@
-"""What explains the failure of a test: files in a folder, and lines in its report."""
+"""Explains the failure of a test: writes files into a folder, and adds lines to its report."""
 
 import re
 import shutil
@@ -27,7 +27,7 @@ class Evidence(Protocol):
 def explain(
     item: "pytest.Item", report: "pytest.TestReport", folder: Path, value: Evidence
 ) -> None:
-    """Add to a failed test's report what a fixture knows.
+    """Add a fixture's evidence to the report of a failed test.
 
     Args:
         item: the test.
@@ -42,7 +42,7 @@ def explain(
     except (OSError, GazeboError) as error:
         lines.append(f"the report cannot be written: {error}")
     else:
-        # JUnit XML takes the properties from the later report of the test's end.
+        # JUnit XML takes the properties from a later report, at the end of the test.
         item.user_properties.append((SECTION, str(mine)))
     report.sections.append((SECTION, "\n".join(lines)))
 
@@ -50,7 +50,7 @@ def explain(
 def _folder_of(item: "pytest.Item", folder: Path) -> Path:
     """Return an empty folder for a test."""
     folder.mkdir(parents=True, exist_ok=True)
-    # Like pytest's own cache: a repository must not take it in by mistake.
+    # As in pytest's own cache: nobody should commit the files by mistake.
     (folder / ".gitignore").write_text(GITIGNORE, encoding="utf-8")
     name = re.sub(r"[^\w.-]+", "-", item.nodeid).strip("-")[-MAX_NAME:]
     mine = folder / name

@@ -1,4 +1,4 @@
-"""What tests expect of joints, and sentences about what happened instead."""
+"""Checks what tests expect of joints, and describes what happened instead."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
@@ -22,7 +22,7 @@ AT_REST = 1e-3
 class Reaching:
     """Whether joints are at their targets, all at the same time.
 
-    Call it as the history grows; it looks only at what is new.
+    Call it as the history grows; it looks only at new states.
 
     Args:
         history: the states.
@@ -50,7 +50,7 @@ class Reaching:
         history.guides += [Guide("position", name, v) for name, v in self._targets.items()]
 
     def __call__(self) -> bool:
-        """Return whether they have been there for long enough."""
+        """Return whether the joints have been at their targets for long enough."""
         history, first = self._history, self._next
         times_s = history.times_s[first:]
         positions = history.position[first:][: len(times_s), self._indices]
@@ -124,7 +124,7 @@ def expect_reached(
 
     Args:
         history: their states.
-        run_until: lets time pass until a condition holds, at most so many simulated seconds.
+        run_until: lets time pass until a condition holds, but at most this many simulated seconds.
         target: see `Reaching`.
         within_s: how long to wait, in simulated seconds.
         tolerance: see `Reaching`.

@@ -14,7 +14,7 @@ FIRST_CAPACITY = 1024
 
 @dataclass(frozen=True, slots=True)
 class Guide:
-    """A value that an assertion compares a joint with; plots show it.
+    """A value that an assertion compares a joint with, drawn as a line in plots.
 
     Attributes:
         quantity: position, velocity or effort.
@@ -33,7 +33,7 @@ class StateHistory:
     Attributes:
         names: names of the n joints.
         units: rad or m for each joint; "" where it is not known.
-        guides: what assertions compared the states with.
+        guides: the values that assertions compared the states with.
     """
 
     def __init__(self, names: Sequence[str], units: Sequence[str] = ()) -> None:
@@ -98,7 +98,8 @@ class StateHistory:
         return f"{unit}/s" if quantity == "velocity" else {"rad": "N m", "m": "N"}[unit]
 
     def _filled(self) -> Array:
-        # The count first: a row is complete before it counts, and later arrays contain it as well.
+        # Read the count first: a row is complete before it is counted, and later arrays contain it
+        # too.
         count = self._count
         filled = self._rows[:count]
         filled.flags.writeable = False

@@ -1,4 +1,4 @@
-"""The command line of the launch that a test asks for."""
+"""The command line of the launch that a test requests."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -29,10 +29,10 @@ def launch_command(
         controllers: the controllers' parameter file.
         launch: a launch file of your own, or a package and its launch file, instead of a robot.
         arguments: more launch arguments.
-        record_to: file to record the run to; a launch file of your own is not recorded.
+        record_to: file to record the run to; the launch of your own file is not recorded.
 
     Raises:
-        BenchError: there is a robot and a launch file.
+        BenchError: both a robot and a launch file are given.
     """
     if robot is not None and launch is not None:
         raise BenchError("name a robot or a launch file, not both")

@@ -10,13 +10,13 @@ from arm_sim.errors import CallError
 
 
 class SimulationPool:
-    """Gives each test a simulation of its configuration in its first state."""
+    """Gives each test a simulation of its configuration, in its initial state."""
 
     def __init__(self) -> None:
         self._built: dict[str, BenchSimulation] = {}
 
     def take(self, arguments: dict[str, Any]) -> BenchSimulation:
-        """Return a simulation in its first state.
+        """Return a simulation in its initial state.
 
         Args:
             arguments: those of `BenchSimulation`.
@@ -42,7 +42,7 @@ def _is_restored(simulation: BenchSimulation) -> bool:
     try:
         simulation.reset(simulation.first_seed)
     except (StateError, CallError, RequestError):
-        # A controller without a state that can be saved, or a test has closed the simulation.
+        # The state of a controller cannot be saved, or a test has closed the simulation.
         simulation.close()
         return False
     return True

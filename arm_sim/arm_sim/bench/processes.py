@@ -63,7 +63,7 @@ class LoggedProcess:
         """Return the first line of its output in which a regular expression is found.
 
         Raises:
-            BenchError: it has ended without one, or there is none in time; with its output.
+            BenchError: the process ended first, or there was no such line in time; with its output.
         """
         deadline = time.monotonic() + timeout_s
         with self._changed:
@@ -88,7 +88,7 @@ class LoggedProcess:
         return found
 
     def end(self) -> str:
-        """Interrupt it as Ctrl-C does, and wait; return why it did not end as it should, or ""."""
+        """Interrupt it as Ctrl-C does, and wait; return why it did not end properly, or ""."""
         below = list(_descendants(self.process.pid))
         problem = ""
         if self.process.poll() is None:
@@ -108,7 +108,7 @@ class LoggedProcess:
         if self.process.stdout is not None:
             self.process.stdout.close()
         code = self.process.returncode
-        # A program that does nothing about SIGINT ends by it.
+        # A program that does not handle SIGINT is ended by it.
         is_failure = code not in (0, -signal.SIGINT)
         return problem or (f"{self.name} ended with exit code {code}" if is_failure else "")
 
@@ -136,7 +136,7 @@ def _descendants(pid: int) -> Iterator[int]:
 
 
 def _program_name(pid: int) -> str:
-    """Return the name of a program: of its file, of a Python module, or as launch_py gives it."""
+    """Return the name of a program: its file, its Python module, or its name in launch_py."""
     try:
         words = Path(f"/proc/{pid}/cmdline").read_text().split("\0")
     except OSError:

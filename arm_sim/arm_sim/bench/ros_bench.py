@@ -32,13 +32,13 @@ LOG, PLOT = "launch.log", "joints.png"
 
 
 class RosBench:
-    """A running launch, a node beside it, and what has happened to its joints. The test's thread.
+    """A running launch, a node beside it, and the history of its joints. The test's thread.
 
     Attributes:
         domain_id: its ROS domain.
         environment: the environment of its processes.
         history: the states of /joint_states.
-        faults: what goes wrong in a `with` block.
+        faults: faults for the duration of a `with` block.
     """
 
     def __init__(self, launch: LoggedProcess, domain_id: int, recording: Path) -> None:
@@ -47,7 +47,7 @@ class RosBench:
         Args:
             launch: the launch; it ends with `close`, or if this fails.
             domain_id: its ROS domain.
-            recording: file to which it records the run, if it does.
+            recording: file to which it records the run; None if it does not.
 
         Raises:
             BenchError: the launch fails; with its output.
@@ -73,7 +73,7 @@ class RosBench:
             raise
 
     def close(self) -> list[str]:
-        """End everything that was started; return what did not end as it should."""
+        """End everything that was started; return what did not end properly."""
         self._connection.close()
         problems = [program.end() for program in [*reversed(self._programs), self._launch]]
         if self.faults.has_killed:
@@ -117,7 +117,7 @@ class RosBench:
     # What the test does
 
     def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
-        """Publish a message, after those who listen have been discovered."""
+        """Publish a message once the subscribers have been discovered."""
         self._connection.publish(topic, message, qos)
 
     def call(
@@ -181,7 +181,7 @@ class RosBench:
         return self._act(controller, f"{controller}/gripper_cmd", GripperCommand, goal, timeout_s)
 
     def run(self, *command: str) -> LoggedProcess:
-        """Start a program of yours in the launch's domain; it ends with the test at the latest.
+        """Start a program of your own in the launch's domain; it ends with the test at the latest.
 
         Args:
             command: the program and its arguments, such as sys.executable, "node.py".
@@ -191,14 +191,14 @@ class RosBench:
         return program
 
     def run_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
-        """Wait until a condition holds, or for so many simulated seconds; return whether it does.
+        """Wait until a condition holds or the time-out passes; return whether it holds.
 
         Args:
             condition: called whenever there are new joint states.
             timeout_s: simulated seconds, by the stamps of the joint states.
 
         Raises:
-            AssertionError: there are no joint states any more.
+            AssertionError: joint states no longer arrive.
         """
         history = self._known_history()
         began_s, seen, heard_s = self.time_s, -1, time.monotonic()
@@ -251,14 +251,14 @@ class RosBench:
     # The report
 
     def report(self, folder: Path) -> Iterator[str]:
-        """Write what explains a failure; yield a line for each file, and the launch's output."""
+        """Write files that explain a failure; yield a line for each, and the launch's output."""
         if len(self.history):
             from arm_sim.bench.joint_plot import save_plot
 
             save_plot(self.history, folder / PLOT, self.faults.log.spans)
             yield f"joints: {folder / PLOT}"
         if self._recording.exists():
-            # It goes on; what there is by now can be replayed.
+            # The recording continues; what is in the file by now can be replayed.
             copied = shutil.copy(self._recording, folder)
             yield f"run it again: arm sim replay {quote(str(copied))}"
         log = self.log
@@ -300,7 +300,7 @@ class RosBench:
         if not self._first_names.is_set():
             self.history = StateHistory(names)
         if names != self.history.names:
-            # Another publisher with other joints: only what is known counts.
+            # A message of another publisher, with other joints: only the known joints count.
             return
         stamp = message.header.stamp
         missing = [math.nan] * len(names)

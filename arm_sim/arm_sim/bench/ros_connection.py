@@ -17,7 +17,7 @@ from arm_node.testing import DiscoveryCheck
 from arm_sim.bench.errors import BenchError
 
 WAIT_S = 30.0
-"""Wall time to wait for anything that should come at once."""
+"""Wall time to wait for anything that should arrive at once."""
 POLL_S = 0.01
 
 MessageT = TypeVar("MessageT")
@@ -25,7 +25,7 @@ ResultT = TypeVar("ResultT")
 
 
 class Messages(Generic[MessageT]):
-    """The messages of a topic since somebody listens. Any thread.
+    """The messages of a topic since the subscription began. Any thread.
 
     Attributes:
         topic: the topic's name.
@@ -62,7 +62,7 @@ class Messages(Generic[MessageT]):
             timeout_s: wall time to wait at most.
 
         Raises:
-            BenchError: it does not hold in time.
+            BenchError: the condition does not hold in time.
         """
         deadline = time.monotonic() + timeout_s
         with self._changed:
@@ -78,7 +78,7 @@ class Messages(Generic[MessageT]):
             return list(self._received)
 
     def wait_for(self, count: int = 1, timeout_s: float = WAIT_S) -> list[MessageT]:
-        """Return the messages as soon as there are so many; see `wait_until`."""
+        """Return the messages as soon as there are this many; see `wait_until`."""
         return self.wait_until(lambda m: len(m) >= count, f"{count} messages", timeout_s)
 
 
@@ -117,7 +117,7 @@ class RosConnection:
         """Return the result of a future.
 
         Raises:
-            BenchError: it has none in time.
+            BenchError: there is no result in time.
         """
         done = threading.Event()
         future.add_done_callback(lambda _: done.set())
@@ -131,7 +131,7 @@ class RosConnection:
         """Poll a condition of the ROS graph until it holds.
 
         Raises:
-            BenchError: it does not in time.
+            BenchError: it does not hold in time.
         """
         deadline = time.monotonic() + timeout_s
         while not condition():
@@ -167,7 +167,7 @@ class RosConnection:
         return getattr(import_module(f"{package}.msg"), message)
 
     def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
-        """Publish a message; the first time, wait until those who listen have been discovered.
+        """Publish a message; the first time, wait until the subscribers have been discovered.
 
         Raises:
             BenchError: nobody listens to the topic.

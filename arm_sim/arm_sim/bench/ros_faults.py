@@ -48,11 +48,11 @@ class RosFaults:
         self._injected: list[str] = []
 
     def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
-        """Let a joint stick where it is, whatever its drive does."""
+        """Make a joint stick where it is, whatever its drive does."""
         return self._inject(FaultKind.JOINT_STALLED, joint)
 
     def sensor_frozen(self, name: str) -> AbstractContextManager[None]:
-        """Let the readings of a joint, a sensor or one state interface stay as they are."""
+        """Freeze the readings of a joint, a sensor or one state interface."""
         return self._inject(FaultKind.SENSOR_FROZEN, name)
 
     def sensor_noisy(
@@ -62,23 +62,23 @@ class RosFaults:
         return self._inject(FaultKind.SENSOR_NOISY, name, deviation, seed)
 
     def sensor_nan(self, name: str) -> AbstractContextManager[None]:
-        """Let readings be NaN; see `sensor_frozen`."""
+        """Make readings NaN; see `sensor_frozen`."""
         return self._inject(FaultKind.SENSOR_NAN, name)
 
     def controller_raises(self, name: str) -> AbstractContextManager[None]:
-        """Let a controller's updates raise; it stays inactive after the block."""
+        """Make a controller's updates raise; it stays inactive after the block."""
         return self._inject(FaultKind.CONTROLLER_RAISES, name)
 
     def slow_tick(self, seconds: float) -> AbstractContextManager[None]:
-        """Let each control period take longer, in seconds of wall time."""
+        """Make each control period take this many seconds of wall time longer."""
         return self._inject(FaultKind.SLOW_TICK, "", seconds)
 
     @contextmanager
     def process_killed(self, name: str) -> Iterator[None]:
-        """Kill a program of the launch; what restarts it is up to the launch.
+        """Kill a program of the launch; whether it is restarted is up to the launch.
 
         Args:
-            name: the program's, as in `RosBench.processes`.
+            name: the program's name, as in `RosBench.processes`.
 
         Raises:
             BenchError: there is none of that name.
@@ -92,7 +92,7 @@ class RosFaults:
 
     @contextmanager
     def process_stopped(self, name: str) -> Iterator[None]:
-        """Let a program of the launch stand still, as in a debugger; it goes on afterwards.
+        """Halt a program of the launch, as a debugger does; it continues after the block.
 
         Raises:
             BenchError: there is none of that name.
@@ -108,7 +108,7 @@ class RosFaults:
         """Relay a camera's images as black ones.
 
         Args:
-            topic: of the images.
+            topic: topic of the images.
             to: topic that the node under test listens to, by a remapping.
         """
         return self._relay("dark", topic, to, LinkFault(), _black)
@@ -119,10 +119,10 @@ class RosFaults:
         """Relay a topic, and lose messages.
 
         Args:
-            topic: where they come from.
-            to: where they go: the node under test uses it by a remapping.
-            fraction: of the messages, from 0 to 1.
-            seed: which ones.
+            topic: the topic that they come from.
+            to: the topic that they go to, which the node under test uses by a remapping.
+            fraction: fraction of lost messages, from 0 to 1.
+            seed: seed of the random choice.
         """
         return self._relay("dropped", topic, to, LinkFault(lost=fraction, seed=seed))
 
@@ -217,7 +217,7 @@ class _Relay:
         self._thread.start()
 
     def close(self) -> None:
-        """Deliver what is under way, and end."""
+        """Deliver the delayed messages, and end."""
         with self._changed:
             self._is_closed = True
             self._changed.notify_all()
@@ -256,6 +256,6 @@ def _black(image: Any) -> Any:
 
 
 def _go_on(pid: int) -> None:
-    # It may have ended meanwhile.
+    # It may have ended in the meantime.
     with suppress(ProcessLookupError):
         os.kill(pid, signal.SIGCONT)

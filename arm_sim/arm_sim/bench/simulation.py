@@ -1,4 +1,4 @@
-"""The simulation of a test: the library's, with assertions that look at all that has happened."""
+"""The simulation of a test: the library's, with assertions about everything that has happened."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -22,12 +22,12 @@ SHOWN_TOUCHES = 8
 
 
 class BenchSimulation(Simulation):
-    """A `Simulation` that remembers what happens, for the assertions and reports of a test.
+    """A `Simulation` that remembers what happened, for the assertions and reports of a test.
 
     Attributes:
         history: the states of the joints since the test began.
-        touches: which bodies have touched each other since then.
-        faults: what goes wrong in a `with` block.
+        touches: the bodies that have touched each other since then.
+        faults: faults for the duration of a `with` block.
         first_seed: seed of the noise at the start.
     """
 
@@ -150,7 +150,7 @@ class BenchSimulation(Simulation):
         return frozenset(body for each in names for body in self._open.things.bodies(each))
 
     def _circumstances(self) -> Iterator[str]:
-        """Return sentences about what else was the case."""
+        """Return sentences about the circumstances, such as faults and contacts."""
         for touch in _shown(self.touches.present):
             yield f"meanwhile {touch}"
         yield from map(str, self.faults.log.spans)
@@ -158,7 +158,7 @@ class BenchSimulation(Simulation):
     # The report
 
     def report(self, folder: Path) -> Iterator[str]:
-        """Write what explains a failure; yield a line for each file.
+        """Write files that explain a failure; yield a line for each.
 
         Args:
             folder: an existing folder for the files.

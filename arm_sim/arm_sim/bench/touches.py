@@ -33,7 +33,7 @@ class Touch:
 
 
 class TouchLog:
-    """Notes which bodies touch after each control period. The thread of the simulation.
+    """Records which bodies touch after each control period. The simulation's thread.
 
     Attributes:
         touches: all touches so far, in the order in which they began.
@@ -51,11 +51,11 @@ class TouchLog:
 
     @property
     def present(self) -> tuple[Touch, ...]:
-        """The touches that go on."""
+        """The touches that still last."""
         return tuple(self._present.values())
 
     def note(self, time_s: float, data: Any) -> None:
-        """Note the touches of a state.
+        """Record the touches in a state.
 
         Args:
             time_s: simulation time.
@@ -90,7 +90,7 @@ def _pairs(model: Any, contacts: Any) -> Iterator[tuple[str, str]]:
 
 
 def _sleep(pair: tuple[str, str], data: Any) -> bool:
-    """Return whether the bodies sleep: then MuJoCo does not look for their contacts."""
+    """Return whether both bodies sleep: MuJoCo does not look for contacts between them."""
     try:
         return all(data.body_awake[data.model.body(name).id] != AWAKE for name in pair)
     except KeyError:  # One of them was deleted.

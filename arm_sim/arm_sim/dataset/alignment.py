@@ -1,8 +1,8 @@
-"""Rows of a dataset, which are equally far apart, from streams that are not; and what that costs.
+"""Turns streams with uneven stamps into evenly spaced rows of a dataset, and counts the losses.
 
-A row takes the nearest message of the reference, and of each other stream the latest at or before
-that one's stamp. Nothing is interpolated. What is repeated, left out or old is counted, because a
-policy learns it.
+A row takes the message of the reference that is nearest to its time, and from every other stream
+the latest message at or before that message's stamp. Nothing is interpolated. Repeated, unused and
+old messages are counted, because a policy learns from them.
 """
 
 from collections.abc import Sequence
@@ -15,9 +15,9 @@ from arm_sim.dataset.streams import Stamps, Stream, check_stream
 from arm_sim.errors import CallError
 
 PAUSE = 5.5
-"""An interval of so many usual ones says nothing about the rate."""
+"""An interval longer than this many usual ones is a pause, which says nothing about the rate."""
 SAME_NS = 100_000
-"""A message that is later than its row by this little belongs to it: LeRobot's own tolerance."""
+"""A message this little later than its row still belongs to it: LeRobot's own tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +27,8 @@ class StreamUse:
     Attributes:
         name: the feature.
         messages: messages from the first row to the last.
-        repeated: rows that have the message of the row before.
-        left_out: messages that no row has.
+        repeated: rows with the same message as the row before.
+        left_out: messages that are in no row.
         oldest_s: largest age of a message in its row.
     """
 
@@ -40,7 +40,7 @@ class StreamUse:
 
     @property
     def is_exact(self) -> bool:
-        """Whether each row has a message of its own at its time, and none is left out."""
+        """Whether each row has its own message at its time, and no message is left out."""
         return not (self.repeated or self.left_out or self.oldest_s * 1e9 > SAME_NS)
 
     def __str__(self) -> str:
@@ -57,12 +57,12 @@ class Alignment:
     """The rows of one episode.
 
     Attributes:
-        fps: rows a second.
+        fps: rows per second.
         start_ns: time of the first row.
         rows: for each stream, the index of its message in each row, shape (rows,).
         uses: how the rows use each stream.
-        jitter_s: largest distance of a message of the reference from its row's time, which is
-            k / fps after the first; the stamps of a camera are those of control periods.
+        jitter_s: largest distance in time of a reference message from row k, which is k / fps after
+            row 0. It is not 0 for a camera, whose frames are taken at control periods.
     """
 
     fps: int
@@ -80,16 +80,16 @@ class Alignment:
 def align(streams: Sequence[Stream], reference: int, fps: int | None = None) -> Alignment:
     """Return the rows of streams.
 
-    The first row is at the first message of the reference from which on every stream has one; the
-    last is at or before the last message of the reference.
+    The first row is at the first message of the reference by which every stream has begun; the last
+    row is at or before the last message of the reference.
 
     Args:
         streams: the streams of one episode.
-        reference: index of the stream whose messages begin and end the rows.
-        fps: rows a second; None for the rate of the reference.
+        reference: index of the stream whose messages determine the first and the last row.
+        fps: rows per second; None for the rate of the reference.
 
     Raises:
-        CallError: a stream is wrong, or no time has all of them.
+        CallError: a stream is invalid, or the streams do not overlap in time.
     """
     for stream in streams:
         check_stream(stream)
@@ -128,16 +128,16 @@ def _nearest(stamps_ns: Stamps, times: Stamps) -> NDArray[np.int64]:
 
 
 def rate_of(name: str, stamps_ns: Stamps) -> int:
-    """Return the rate of a stream in whole messages a second.
+    """Return the rate of a stream, rounded to whole messages per second.
 
     Raises:
-        CallError: it has one message only, or fewer than one a second.
+        CallError: it has only one message, or less than one per second.
     """
     if len(stamps_ns) < 2:
         raise CallError(f"{name} has one message only, which has no rate; give --fps")
     intervals = np.diff(stamps_ns)
-    # Frames of a camera are those of control periods: 30 a second are 40, 30, 30 ms apart. An
-    # interval of two or more is that of lost messages; a longer one is a pause.
+    # A camera takes its frames at control periods: at 30 Hz they are 40, 30 and 30 ms apart. An
+    # interval of about two or more usual ones means lost messages; a much longer one is a pause.
     usual = float(np.median(intervals))
     running = intervals[intervals < PAUSE * usual]
     rate = 1e9 * float(np.round(running / usual).sum() / running.sum())

@@ -1,4 +1,4 @@
-"""Checks a dataset against the written format, LeRobot v3.0, as far as a reader relies on it."""
+"""Checks a dataset against the documented format LeRobot v3.0, as far as readers rely on it."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -18,7 +18,7 @@ TOLERANCE_S = 1e-4
 
 
 def check_dataset(folder: Path) -> list[str]:
-    """Return one sentence for each fault; none for a dataset that keeps the format.
+    """Return one sentence for each fault; none for a valid dataset.
 
     Raises:
         CallError: it is not a dataset, or a file cannot be read.

@@ -1,4 +1,4 @@
-"""Where LeRobot's dataset format v3.0 has which file, and what its features look like."""
+"""The files of LeRobot's dataset format v3.0, and the descriptions of its features."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,7 +13,7 @@ VIDEO_PATH = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.m
 EPISODES_PATH = "meta/episodes/chunk-000/file-000.parquet"
 INFO, STATS, TASKS = "meta/info.json", "meta/stats.json", "meta/tasks.parquet"
 PROVENANCE = "meta/arm_suite.json"
-"""What the rows were made of; LeRobot does not read it."""
+"""The origin of the rows; LeRobot does not read it."""
 STREAMS_PATH = "streams/{name}/episode-{episode:06d}.parquet"
 """All numbers at their own stamps; LeRobot does not read them."""
 INDEX_FEATURES = {
@@ -23,7 +23,7 @@ INDEX_FEATURES = {
     "index": "int64",
     "task_index": "int64",
 }
-"""What every dataset has beside its own features, one number in each row."""
+"""The features that every dataset has besides its own, each one number per row."""
 
 
 def file_of(episode: int) -> dict[str, int]:
@@ -36,7 +36,7 @@ def features_of(streams: Sequence[Stream], fps: int) -> dict[str, Any]:
 
     Args:
         streams: the streams of an episode; other episodes have the same.
-        fps: rows a second.
+        fps: rows per second.
     """
     features: dict[str, Any] = {}
     for stream in streams:

@@ -1,4 +1,4 @@
-"""Statistics of features, which LeRobot normalises the inputs of policies with."""
+"""Statistics of features, with which LeRobot normalises the inputs of policies."""
 
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
@@ -29,13 +29,13 @@ def statistics_of(values: NDArray[np.generic]) -> dict[str, Array]:
 
 
 def images_to_sample(count: int) -> NDArray[np.int64]:
-    """Return which images of an episode its statistics are of, evenly spread."""
+    """Return the indices of the images that an episode's statistics use, evenly spread."""
     wanted = max(min(FEWEST_IMAGES, count), min(int(count**0.75), MOST_IMAGES))
     return np.unique(np.round(np.linspace(0, count - 1, wanted)).astype(np.int64))
 
 
 def image_statistics(images: Sequence[NDArray[np.uint8]]) -> dict[str, Array]:
-    """Return the statistics of images (h, w, 3) by channel, in shares of white, shape (3, 1, 1)."""
+    """Return the statistics of images (h, w, 3) by channel, scaled to 0..1, shape (3, 1, 1)."""
     size = max(images[0].shape[:2])
     stride = max(1, size // WANTED_PX) if size >= LARGE_PX else 1
     pixels = np.concatenate([image[::stride, ::stride].reshape(-1, 3) for image in images]) / 255.0
@@ -45,7 +45,7 @@ def image_statistics(images: Sequence[NDArray[np.uint8]]) -> dict[str, Array]:
 
 
 def merged(episodes: Sequence[Statistics]) -> dict[str, Array]:
-    """Return the statistics of several episodes; quantiles are means of theirs, as in LeRobot."""
+    """Return the statistics of several episodes; quantiles are averaged, as in LeRobot."""
     counts = np.array([float(one["count"][0]) for one in episodes])
     shares = counts / counts.sum()
 

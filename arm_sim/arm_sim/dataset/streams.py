@@ -1,4 +1,4 @@
-"""What was recorded of one episode: numbers and images, each at its own stamps."""
+"""The recorded streams of one episode: numbers and images, each with its own stamps."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Images: TypeAlias = "Iterator[NDArray[np.uint8]]"
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Numbers at their stamps.
+    """Numbers with their stamps.
 
     Attributes:
         name: the feature, such as observation.state.
@@ -32,7 +32,7 @@ class Samples:
 
 @dataclass(frozen=True, slots=True)
 class CameraStream:
-    """Images at their stamps.
+    """Images with their stamps.
 
     Attributes:
         name: the feature, such as observation.images.front.
@@ -53,10 +53,10 @@ Stream: TypeAlias = Samples | CameraStream
 
 
 def stamp_feature(stream: str) -> str:
-    """Return the feature with a stream's own stamps.
+    """Return the name of the feature that holds a stream's own stamps.
 
-    Policies take every feature below `observation` as an input, and statistics of what has `image`
-    in its name have another shape; so the name has neither.
+    Its name contains neither `observation`, because policies take every such feature as an input,
+    nor `image`, because the statistics of such features have another shape.
     """
     return f"stamp_ns.{stream.rpartition('.')[2]}"
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 CODEC, ENCODER = "h264", "libx264"
 PIXELS = "yuv420p"
 KEY_FRAME_EVERY = 2
-"""So that a loader that jumps to any frame decodes two at most."""
+"""A loader that jumps to any frame decodes at most two."""
 QUALITY = "18"
-"""libx264's constant rate factor: differences that are hard to see."""
+"""libx264's constant rate factor; the losses are hard to see."""
 
 
 def write_video(
@@ -27,7 +27,7 @@ def write_video(
         images: one for each frame.
         height: in pixels, even.
         width: in pixels, even.
-        fps: frames a second.
+        fps: frames per second.
     """
     with av.open(str(path), "w", options={"movflags": "faststart"}) as container:
         # One thread: the same images give the same bytes.
@@ -46,7 +46,7 @@ def write_video(
 
 
 def video_info(height: int, width: int, fps: int) -> dict[str, object]:
-    """Return what a dataset's feature says of such a video."""
+    """Return a dataset feature's description of such a video."""
     return {
         "video.height": height,
         "video.width": width,

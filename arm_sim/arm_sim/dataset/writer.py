@@ -31,8 +31,8 @@ Column = NDArray[np.generic]
 class DatasetWriter:
     """Writes a dataset into a new folder; a context manager.
 
-    The folder appears when the dataset is complete: until `finish` it has another name, and an
-    error leaves nothing.
+    The folder appears once the dataset is complete: until `finish` it has another name, and after
+    an error it is removed.
 
     Args:
         folder: the folder to create.
@@ -79,7 +79,7 @@ class DatasetWriter:
             source: where it comes from, for `meta/arm_suite.json`.
 
         Raises:
-            CallError: it has other features or another rate than the episodes before.
+            CallError: its features or its rate differ from those of the earlier episodes.
         """
         self._check(layout.features_of(streams, alignment.fps), alignment.fps)
         if task not in self._tasks:
@@ -105,7 +105,7 @@ class DatasetWriter:
     def _note(
         self, alignment: Alignment, task: str, videos: dict[str, Any], source: Mapping[str, Any]
     ) -> None:
-        """Note what describes an episode whose files were written."""
+        """Record the description of an episode whose files were written."""
         episode, length = len(self._episodes), alignment.length
         self._episodes.append(
             {
@@ -131,7 +131,7 @@ class DatasetWriter:
         )
 
     def finish(self) -> None:
-        """Write what describes the dataset, and give the folder its name.
+        """Write the description of the dataset, and give the folder its name.
 
         Raises:
             CallError: there are no episodes.

@@ -1,4 +1,4 @@
-"""What an action of a policy means: a command for each joint."""
+"""Converts the actions of a policy to commands, one for each joint."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ def _effort(joint: RobotJoint, decision_s: float) -> tuple[float, float]:
 
 
 def _limits(joint: RobotJoint) -> tuple[float, float]:
-    """Return the limits of a joint; a turn for a joint that turns freely."""
+    """Return the limits of a joint; [-pi, pi] for a joint that turns freely."""
     if isfinite(joint.lower) and isfinite(joint.upper):
         return joint.lower, joint.upper
     if joint.linear:
@@ -71,7 +71,7 @@ ACTIONS: Mapping[str, ActionMode] = {
 
 
 class Commands:
-    """Turns actions into commands, for one simulation or for many copies of it.
+    """Converts actions to commands, for one simulation or for many copies of it.
 
     Args:
         mode: name of one of `ACTIONS`.
@@ -94,7 +94,7 @@ class Commands:
         """Return the commands of actions.
 
         Args:
-            actions: from -1 to 1, shape (..., joints); those beyond count as -1 or 1.
+            actions: from -1 to 1, shape (..., joints); others are clipped.
             last: the last commands, same shape.
         """
         share = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)

@@ -1,4 +1,4 @@
-"""A Gymnasium environment of any robot: a policy in place of its controllers."""
+"""A Gymnasium environment for any robot; a policy takes the place of its controllers."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -33,11 +33,11 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         actions: "position", "step", "velocity" or "effort", see `ACTIONS`; an action has a number
             from -1 to 1 for each joint.
         cameras: cameras whose images are observations, under their names.
-        joints: the joints that actions command; None for all that can be commanded so.
+        joints: the joints that actions command; None for all that have the interface.
         decision_s: simulated time of one action, a whole number of control periods.
         control_rate_hz: control rate.
-        restart: whether each episode starts from the robot's first pose. False lets the robot stay
-            where it is, with a new goal, unless `reset` gets a seed.
+        restart: whether each episode starts from the robot's initial pose. With False the robot
+            stays where it is and gets a new goal, unless `reset` gets a seed.
         simulation: further arguments of `Simulation`, such as `world` or `arguments`.
         render_mode: "rgb_array" for images of a camera, or None.
         render_camera: the camera of `render`; None for the robot's first.
@@ -46,10 +46,10 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         simulation: the simulation behind it.
         lower: lowest positions of the commanded joints, shape (n,).
         upper: highest positions of the commanded joints, shape (n,).
-        goal: what the task drew for this episode.
+        goal: the values that the task drew for this episode.
     """
 
-    # Gymnasium reads it from the class, where it checks render modes before it makes one.
+    # Gymnasium reads it from the class, to check render modes before it creates an environment.
     metadata = {"render_modes": ["rgb_array"], "render_fps": round(1.0 / DECISION_S)}  # noqa: RUF012
 
     def __init__(
@@ -143,7 +143,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
     ) -> tuple[Observations, float, bool, bool, dict[str, Any]]:
         """Apply an action; return observations, reward, terminated, truncated and info.
 
-        The episode is truncated if the physics became unstable; the info tells it as `failure`.
+        The episode is truncated if the physics became unstable; then the info contains `failure`.
         """
         self._last = self._commands.of(action, self._last)
         self._robot.command(self._last.tolist())

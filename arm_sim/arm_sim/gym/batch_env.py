@@ -1,4 +1,4 @@
-"""Many copies of one environment in threads: physics only, each to the bit like `ArmEnv`."""
+"""Many copies of one environment in threads: physics only, each bit-identical to `ArmEnv`."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -25,9 +25,10 @@ Observations = dict[str, NDArray[np.float32]]
 class BatchEnv(VectorEnv[Observations, Actions, Any]):
     """Copies of one robot in its world that MuJoCo steps in threads.
 
-    Copy i with seed s goes through the states of an `ArmEnv` with seed s + i, to the bit. A copy
-    whose episode ends starts its next one in the same step; infos have its last observations as
-    `final_obs` and its last info as `final_info`. Cameras and other sensors are left out.
+    With seed s, copy i goes through the same states as an `ArmEnv` with seed s + i, bit for bit. A
+    copy whose episode ends starts its next one in the same step; infos contain its last
+    observations as `final_obs` and its last info as `final_info`. Cameras and other sensors are
+    left out.
 
     Args:
         num_envs: number of copies.
@@ -39,9 +40,9 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         control_rate_hz: see `ArmEnv`.
         restart: see `ArmEnv`.
         max_episode_steps: actions after which an episode is truncated; None for never.
-        threads: number of threads; 0 for one on each core. Few copies run in the caller's.
-        device: "host", or "cuda" for MuJoCo Warp on a GPU: many more copies, whose numbers are near
-            those of single environments, not equal. Needs the extra `gpu`.
+        threads: number of threads; 0 for one on each core. A few copies run in the caller's thread.
+        device: "host", or "cuda" for MuJoCo Warp on a GPU: many more copies, whose numbers are
+            close to those of single environments, but not equal. Needs the extra `gpu`.
         simulation: see `ArmEnv`.
     """
 
@@ -131,7 +132,8 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         """Start an episode in every copy.
 
         Args:
-            seed: copy i gets seed + i, or the seed of that index; None continues their randomness.
+            seed: copy i gets seed + i, or the seed of that index; None continues their random
+                sequences.
             options: not used.
         """
         seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else seed
@@ -168,13 +170,13 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         return observed, rewards, terminated, truncated, infos
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Close the simulation that the copies were made of."""
+        """Close the simulation that the copies were made from."""
         self._robot.simulation.close()
 
     def _final(
         self, ended: NDArray[np.intp], observed: Observations, succeeded: Flags
     ) -> dict[str, Any]:
-        """Return the last observations and infos of episodes that ended, as Gymnasium lays out."""
+        """Return the last observations and infos of ended episodes, in Gymnasium's layout."""
         mask = np.zeros(self.num_envs, dtype=bool)
         mask[ended] = True
         last = np.full(self.num_envs, None, dtype=object)

@@ -1,4 +1,4 @@
-"""The task of lifting the cylinder that stands before the myCobot."""
+"""The task of lifting the cylinder that stands in front of the myCobot."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ STANDING_M = 0.175
 """Height of the cylinder's middle while it stands on the floor."""
 LOWEST_LIFT_M, HIGHEST_LIFT_M = 0.04, 0.08
 REWARD_PER_M = 20.0
-"""Reward for each metre of height, beside 1 for each metre nearer to the cylinder."""
+"""Reward for each metre of height, besides 1 for each metre closer to the cylinder."""
 
 
 def pick_task() -> Task:

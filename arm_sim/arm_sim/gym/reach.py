@@ -62,7 +62,7 @@ def reach_task(tip: str = TIP, tolerance_m: float = TOLERANCE_M) -> Task:
 
 
 def reachable_point(scene: Scene, random: np.random.Generator, tip: str) -> Array:
-    """Return a random point that a link can reach, above the floor and not at the robot's axis.
+    """Return a random point that a link can reach, above the floor and away from the robot's axis.
 
     Args:
         scene: the robot.

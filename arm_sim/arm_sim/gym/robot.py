@@ -1,4 +1,4 @@
-"""A simulated robot for environments: all joints of one command interface under one controller."""
+"""A simulated robot for environments: the joints with one command interface, one controller."""
 
 import os
 import tempfile
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 CONTROLLER = "gym_controller"
 FORWARD = "forward_command_controller/ForwardCommandController"
 WHOLE = 1e-6
-"""How far, in control periods, the time of an action may be from a whole number of them."""
+"""How far the time of an action may be from a whole number of control periods, in periods."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class RobotOptions:
         """Return the control periods of one action.
 
         Raises:
-            CallError: it is not a whole number of them.
+            CallError: its time is not a whole number of control periods.
         """
         periods = self.decision_s * self.control_rate_hz
         if round(periods) < 1 or abs(periods - round(periods)) > WHOLE:
@@ -77,7 +77,7 @@ class CommandedRobot:
         """Build it.
 
         Raises:
-            CallError: a joint cannot be commanded so.
+            CallError: a joint does not have the command interface.
         """
         self.periods = options.periods()
         names = _commanded(options, interface)
@@ -97,7 +97,7 @@ class CommandedRobot:
         self._motions: EntityMotions | None = None
 
     def restart(self) -> None:
-        """Return robot and world to their start, with the clock at 0 and no command."""
+        """Return robot and world to their start, with the clock at 0 and without a command."""
         controllers = self.simulation.controllers
         controllers.switch(deactivate=[CONTROLLER])
         self.simulation.parts.physics.reset()

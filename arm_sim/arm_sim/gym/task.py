@@ -1,4 +1,4 @@
-"""What a policy is asked to do: observations, reward, end and start as functions of a scene.
+"""The task of a policy: observations, reward, end and start as functions of a scene.
 
 The functions work on arrays whose last axis is the joint or the coordinate. So the same task runs
 in one environment, where there is no other axis, and in a batch, where the first one is the copy.
@@ -87,7 +87,7 @@ PROPRIOCEPTION: Mapping[str, Observation] = {
     "position": JOINT_POSITIONS,
     "velocity": JOINT_VELOCITIES,
 }
-"""What the joints' sensors tell, in rad, m and s."""
+"""The positions and velocities of the joints, in rad, m and s."""
 
 
 def _nothing(scene: Scene) -> Any:
@@ -110,9 +110,10 @@ class Task:
         observations: by name.
         reward: returns the reward of the state after an action, shape (...).
         terminated: returns whether the episode is over, shape (...).
-        succeeded: returns whether the task is done, which infos tell as `is_success`.
-        start: draws what differs from episode to episode, by name, each of shape (m,); called for
-            each copy, so that only what does not depend on the state is of use from the scene.
+        succeeded: returns whether the task is done, which infos contain as `is_success`.
+        start: draws the values that differ from episode to episode, by name, each of shape (m,). It
+            is called once for each copy, so it can use only the parts of the scene that do not
+            depend on the state.
     """
 
     observations: Mapping[str, Observation] = field(default_factory=lambda: dict(PROPRIOCEPTION))
