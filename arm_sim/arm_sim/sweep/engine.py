@@ -4,6 +4,7 @@ import multiprocessing
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
@@ -110,7 +111,9 @@ class Engine:
             return
         worker.run = self._waiting.popleft()
         worker.began_s = time.monotonic()
-        worker.connection.send(worker.run)
+        # A worker that has died in the meantime ends the connection, which buries it.
+        with suppress(OSError):
+            worker.connection.send(worker.run)
 
     def _bury(self, worker: _Worker) -> None:
         """Replace a worker that has died; its run is made again, or has failed."""
@@ -124,7 +127,7 @@ class Engine:
             else:
                 reason = f"its process ended with exit code {worker.process.exitcode}"
                 self._note(Outcome(number, values, {}, reason))
-        elif worker.process.exitcode:
+        else:
             raise StudyError(
                 f"a process of the study ended with exit code {worker.process.exitcode} before "
                 "its first run"

@@ -6,6 +6,7 @@ import signal
 import time
 import traceback
 from collections.abc import Mapping
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from shlex import quote
@@ -38,13 +39,12 @@ def work(connection: Connection, task: str, study_seed: int, folder: Path) -> No
     except StudyError as error:
         connection.send(error)
         return
-    connection.send(os.getpid())
-    while True:
-        try:
+    # The connection fails where the process that owns the study was killed.
+    with suppress(EOFError, OSError):
+        connection.send(os.getpid())
+        while True:
             number, values = connection.recv()
-        except EOFError:
-            return
-        connection.send(_outcome(function, number, values, study_seed, folder))
+            connection.send(_outcome(function, number, values, study_seed, folder))
 
 
 def _outcome(function: Any, number: int, values: Values, study_seed: int, folder: Path) -> Outcome:

@@ -1,5 +1,9 @@
 import csv
 import json
+import multiprocessing
+import signal
+import subprocess
+import sys
 
 import pyarrow.parquet
 import pytest
@@ -40,6 +44,13 @@ def killed_once(run):
         mark.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return {"fine": True}
+
+def wait_for_end_of_owner(run):
+    owner = os.getppid()
+    os.kill(owner, signal.SIGKILL)
+    while os.getppid() == owner:
+        time.sleep(0.01)
+    return {}
 
 def reach(run):
     sim = run.simulation("arm", arguments={"camera": "none"})
@@ -109,6 +120,50 @@ def test_a_run_that_takes_too_long_has_failed_and_the_next_is_made(study, tmp_pa
 def test_a_run_whose_process_is_killed_once_is_made_again(study, tmp_path):
     outcomes = made(study("killed_once", range(3)), tmp_path / "out")
     assert [outcomes[n].results for n in range(3)] == [{"fine": True}] * 3
+
+
+def test_a_process_that_dies_between_two_runs_loses_neither(study, tmp_path):
+    xs = study("square", range(3))
+    killed = []
+    others = set(multiprocessing.active_children())
+
+    def kill_its_process(_outcome):
+        # The process has sent its outcome and waits; the engine is about to give it the next run.
+        if not killed:
+            (process,) = set(multiprocessing.active_children()) - others
+            process.kill()
+            process.join()
+            killed.append(process.pid)
+
+    with Journal(tmp_path / "out", xs) as journal:
+        Engine(xs, journal, 1, kill_its_process).run()
+    assert killed
+    assert {n: o.results["square"] for n, o in journal.outcomes.items()} == {0: 0, 1: 1, 2: 4}
+    assert sorted(map(int, (tmp_path / "made.txt").read_text().split())) == [0, 1, 2]
+
+
+def test_a_task_whose_import_ends_its_process_ends_the_study(tmp_path):
+    (tmp_path / "task.py").write_text("import sys\nsys.exit(0)\n")
+    with pytest.raises(StudyError, match="ended with exit code 0 before its first run"):
+        made(Study(f"{tmp_path / 'task.py'}:run", {"x": (1,)}), tmp_path / "out")
+
+
+def test_processes_end_without_a_word_when_their_owner_is_killed(study, tmp_path):
+    xs = study("wait_for_end_of_owner", [1])
+    owner = """
+import sys
+from pathlib import Path
+from arm_sim.sweep.engine import Engine
+from arm_sim.sweep.journal import Journal
+from arm_sim.sweep.study import Study
+if __name__ == "__main__":
+    study = Study(sys.argv[1], {"x": (1,)})
+    Engine(study, Journal(Path(sys.argv[2]), study), 1).run()
+"""
+    (tmp_path / "owner.py").write_text(owner)
+    command = [sys.executable, tmp_path / "owner.py", xs.task, tmp_path / "out"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGKILL, "")
 
 
 def test_a_failed_run_of_a_simulation_is_recorded_and_replays(study, tmp_path):
