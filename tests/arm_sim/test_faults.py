@@ -218,3 +218,25 @@ def test_a_recording_of_a_run_with_faults_replays(tmp_path: Path):
     result = Replay(RunFile(file)).run()
     assert result.difference is None
     assert result.periods == 70
+
+
+@pytest.mark.parametrize("again", ["reset", "restore"])
+def test_a_recording_that_begins_while_faults_last_has_them(
+    sim: BenchSimulation, again: str, tmp_path: Path
+):
+    saved = sim.save()
+    with (
+        sim.faults.joint_stalled("j1"),
+        sim.faults.sensor_frozen("j2"),
+        sim.faults.sensor_noisy("j0", 0.01, 5),
+    ):
+        sim["position_controller"].command(GOAL)
+        sim.run(0.3)
+        _ = sim.reset(sim.first_seed) if again == "reset" else sim.restore(saved)
+        sim["position_controller"].command(GOAL)
+        sim.run(0.2)
+        list(sim.report(tmp_path))
+    sim.close()
+    replay = Replay(RunFile(tmp_path / "test.run"))
+    assert replay.run().difference is None
+    assert replay.simulation.faults.present is not None

@@ -1,8 +1,9 @@
 """Faults of joints and sensors on demand: joints stick; readings freeze, get noise or are NaN."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from math import nan
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -85,6 +86,28 @@ class PhysicsFaults:
         self._distortions.pop((name, kind), None)
         if not any(kind is Distortion.FROZEN for _, kind in self._distortions):
             self._frozen.clear()
+
+    @property
+    def present(self) -> dict[str, Any] | None:
+        """The faults that last, as plain data for `resume`; None if there are none."""
+        if not self._stalled and not self._distortions:
+            return None
+        return {
+            "stalled": list(self._stalled),
+            "distorted": [
+                (name, kind.value, deviation, seed)
+                for (name, kind), (deviation, seed) in self._distortions.items()
+            ],
+            "frozen": dict(self._frozen),
+        }
+
+    def resume(self, present: Mapping[str, Any]) -> None:
+        """Begin the faults of `present`; frozen readings keep their values."""
+        for joint in present["stalled"]:
+            self.stall(joint)
+        for name, kind, deviation, seed in present["distorted"]:
+            self.distort(name, Distortion(kind), deviation, seed)
+        self._frozen.update(present["frozen"])
 
     def apply(self, channels: Sequence[str], readings: Values, number: int) -> None:
         """Apply the faults to readings.

@@ -152,6 +152,11 @@ class Simulation:
         """End `distort`."""
         self.faults.clear(name, Distortion(kind))
 
+    @run_input
+    def resume_faults(self, present: Mapping[str, Any]) -> None:
+        """Begin the faults that last when a recording begins; see `PhysicsFaults.present`."""
+        self.faults.resume(present)
+
     def reset(self, time_s: float = 0.0) -> None:
         """Return everything to its start, at rest; the clock continues from `time_s`.
 

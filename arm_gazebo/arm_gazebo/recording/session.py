@@ -154,6 +154,11 @@ def first_inputs(run: RunParts) -> Iterator[RecordedInput]:
     except StateError as error:
         raise RecordingError(f"the run cannot be recorded: {error}") from error
     yield RecordedInput(0, None, None, run.state.restore.__name__, {"saved": state})
+    faults = run.simulation.faults.present
+    if faults is not None:
+        yield RecordedInput(
+            0, None, None, run.simulation.resume_faults.__name__, {"present": faults}
+        )
 
 
 def _loading_steps(managed: ManagedController) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -38,7 +38,8 @@ class BlackBox:
             self.refusal = "the test records its run itself"
             return
         try:
-            first = self._first if at_start and self._first else list(first_inputs(self._run))
+            is_known = at_start and self._first and self._parts.physics.faults.present is None
+            first = self._first if is_known else list(first_inputs(self._run))
         except (RecordingError, StateError) as error:
             self.refusal = str(error)
             return
