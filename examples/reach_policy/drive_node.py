@@ -30,7 +30,8 @@ ARM = "package://arm_description/urdf/arm.urdf.xacro"
 TIP = "crawer_base"
 DECISION_S, EPISODE_S, HELD_S = 0.04, 4.0, 0.2
 TOLERANCE_M, HOME_WITHIN_RAD = 0.02, 0.02
-LOWEST_M, NEAREST_M, SHARE = 0.1, 0.08, 0.5
+RANGE_SHARE, LOWEST_M, NEAREST_M = 0.5, 0.1, 0.08
+"""As in arm_sim.gym.reach. This node works without Gymnasium, which that module needs."""
 NEEDED_SHARE = 0.95
 
 
@@ -55,7 +56,7 @@ class Arm:
     def random_goal(self, random: np.random.Generator) -> Array:
         """Return a point as those of the environment."""
         while True:
-            point = self.tip(random.uniform(SHARE * self.lower, SHARE * self.upper))
+            point = self.tip(random.uniform(RANGE_SHARE * self.lower, RANGE_SHARE * self.upper))
             if point[2] >= LOWEST_M and np.hypot(point[0], point[1]) >= NEAREST_M:
                 return point
 
@@ -92,6 +93,13 @@ class Driver(Node):
         if self.is_done or now_s < self._next_s - 1e-6:
             return
         by_name = dict(zip(message.name, message.position, strict=True))
+        missing = [name for name in self._arm.joints if name not in by_name]
+        if missing:
+            self.get_logger().warning(
+                f"/joint_states has no position of {', '.join(missing)}: is it another robot's?",
+                throttle_duration_sec=5.0,
+            )
+            return
         position = np.array([by_name[name] for name in self._arm.joints])
         self._next_s = now_s + DECISION_S
         if not self._is_at_home:

@@ -11,7 +11,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-JOINTS, WAYS, ANGLES = 4, 3, 7
+JOINTS = 4
+WAYS = 3
+"""Parts of the way to the goal: ahead, aside and up, as the turntable sees it."""
+ANGLES = 7
+"""Factors of each part: 1, and the sine and cosine of three links' angles."""
 WEIGHTS = JOINTS * WAYS * ANGLES
 NEAR_M = 0.1
 """Scale of the way to the goal: at this distance an input is 1."""

@@ -52,3 +52,12 @@ def test_training_repeats_with_its_seed(tmp_path: Path, monkeypatch: pytest.Monk
     draw(curve, tmp_path / "curve.svg")
     assert (tmp_path / "curve.csv").read_text().count("\n") == 3
     assert "2 generations" in (tmp_path / "curve.svg").read_text()
+
+
+def test_the_node_that_drives_has_the_goals_of_the_environment():
+    import drive_node
+
+    from arm_sim.gym import reach
+
+    names = ("RANGE_SHARE", "LOWEST_M", "NEAREST_M", "TOLERANCE_M", "TIP")
+    assert [getattr(drive_node, name) for name in names] == [getattr(reach, n) for n in names]

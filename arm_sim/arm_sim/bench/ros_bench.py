@@ -5,6 +5,7 @@ import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -74,8 +75,12 @@ class RosBench:
 
     def close(self) -> list[str]:
         """End everything that was started; return what did not end properly."""
-        self._connection.close()
-        problems = [program.end() for program in [*reversed(self._programs), self._launch]]
+        problems: list[str] = []
+        with ExitStack() as stack:
+            # All of it ends, also where one part fails to.
+            for process in [self._launch, *self._programs]:
+                stack.callback(lambda ended=process: problems.append(ended.end()))
+            stack.callback(self._connection.close)
         if self.faults.has_killed:
             # What a killed process leaves behind is not the launch's fault.
             return []

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from arm_sim.dataset.streams import Stamps, Stream, check_stream
 from arm_sim.errors import CallError
 
-PAUSE = 5.5
-"""An interval longer than this many usual ones is a pause, which says nothing about the rate."""
+PAUSE_INTERVALS = 5.5
+"""A stream pauses where two messages are this many usual intervals apart; the rate ignores it."""
 SAME_NS = 100_000
 """A message this little later than its row still belongs to it: LeRobot's own tolerance."""
 
@@ -139,7 +139,7 @@ def rate_of(name: str, stamps_ns: Stamps) -> int:
     # A camera takes its frames at control periods: at 30 Hz they are 40, 30 and 30 ms apart. An
     # interval of about two or more usual ones means lost messages; a much longer one is a pause.
     usual = float(np.median(intervals))
-    running = intervals[intervals < PAUSE * usual]
+    running = intervals[intervals < PAUSE_INTERVALS * usual]
     rate = 1e9 * float(np.round(running / usual).sum() / running.sum())
     if round(rate) < 1:
         raise CallError(f"{name} has {rate:.3g} messages a second; give --fps")

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from arm_sim.errors import CallError
 from arm_sim.gym.arm_env import ArmEnv
 from arm_sim.gym.batch_env import BatchEnv
 from arm_sim.gym.task import (
@@ -19,8 +20,10 @@ from arm_sim.gym.task import (
 TIP = "crawer_base"
 """The link of the 4-DOF arm that carries its gripper."""
 TOLERANCE_M = 0.02
-SHARE = 0.5
+RANGE_SHARE = 0.5
+"""Goals are where the link is with its joints in this share of their ranges, around zero."""
 LOWEST_M, NEAREST_M = 0.1, 0.08
+"""How high goals are at least, and how far from the robot's axis."""
 TRIES = 1000
 FREE_TURN = np.pi
 """Goals of joints that turn without limits are up to half a turn away."""
@@ -68,15 +71,20 @@ def reachable_point(scene: Scene, random: np.random.Generator, tip: str) -> Arra
         scene: the robot.
         random: the source of joint positions in the middle half of their ranges.
         tip: the link.
+
+    Raises:
+        CallError: no such point was found; the link hardly ever is where goals may be.
     """
-    lower = np.maximum(scene.lower, -FREE_TURN) * SHARE
-    upper = np.minimum(scene.upper, FREE_TURN) * SHARE
-    point = np.zeros(3)
+    lower = np.maximum(scene.lower, -FREE_TURN) * RANGE_SHARE
+    upper = np.minimum(scene.upper, FREE_TURN) * RANGE_SHARE
     for _ in range(TRIES):
         point = scene.point_at(tip, random.uniform(lower, upper))
         if point[2] >= LOWEST_M and np.hypot(point[0], point[1]) >= NEAREST_M:
-            break
-    return point
+            return point
+    raise CallError(
+        f"link '{tip}' has no goals: in {TRIES} random poses it was never at least {LOWEST_M:g} m "
+        f"above the floor and {NEAREST_M:g} m from the robot's axis"
+    )
 
 
 class ArmReach(ArmEnv):

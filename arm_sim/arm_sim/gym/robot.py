@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 CONTROLLER = "gym_controller"
 FORWARD = "forward_command_controller/ForwardCommandController"
-WHOLE = 1e-6
+WHOLE_WITHIN = 1e-6
 """How far the time of an action may be from a whole number of control periods, in periods."""
 
 
@@ -53,7 +53,7 @@ class RobotOptions:
             CallError: its time is not a whole number of control periods.
         """
         periods = self.decision_s * self.control_rate_hz
-        if round(periods) < 1 or abs(periods - round(periods)) > WHOLE:
+        if round(periods) < 1 or abs(periods - round(periods)) > WHOLE_WITHIN:
             raise CallError(
                 f"decision_s is {self.decision_s:g} s, which is not a whole number of control "
                 f"periods of {1.0 / self.control_rate_hz:g} s"

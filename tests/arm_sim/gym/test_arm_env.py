@@ -156,3 +156,5 @@ def test_what_cannot_be_used_is_said(pendulum: Path, tmp_path: Path, reach: ArmR
     strong.write_text(PENDULUM.format(effort=0))
     with pytest.raises(CallError, match="'hinge' has no effort limit"):
         ArmEnv(strong, actions="effort")
+    with pytest.raises(CallError, match="link 'post' has no goals"):
+        ArmReach(str(pendulum), tip="post")
