@@ -166,3 +166,20 @@ def test_a_file_of_another_robot_is_refused(sim: Simulation, tmp_path: Path):
         other.restore(tmp_path / "arm.snapshot")
     with pytest.raises(RequestError, match="cannot read"):
         sim.restore(tmp_path / "nowhere")
+
+
+def test_things_that_sleep_on_one_another_are_restored_while_others_are_awake():
+    with Simulation("arm", arguments={"camera": "none"}) as sim:
+        for height, name in enumerate(("lower", "upper", "lonely")):
+            sim.spawn(CAN, name=name, pose=(0.6, 0.0 if height < 2 else 0.5, 0.06 + 0.11 * height))
+        sim.run_until(lambda: sim.parts.physics.data.ntree_awake == 1, 10.0)
+        assert {contact.other for contact in sim.contacts("upper")} == {"lower::can::body"}
+        saved = sim.save()
+        for place, name in enumerate(("lower", "upper", "lonely")):
+            sim.place(name, (1.0, 0.5 * place, 1.0))
+        sim.step()
+        assert sim.parts.physics.data.ntree_awake > 1
+        sim.restore(saved)
+        assert sim.parts.physics.data.ntree_awake == 1
+        sim.run(0.5)
+        assert sim.pose("upper")[2, 3] == pytest.approx(0.15, abs=0.01)

@@ -44,15 +44,19 @@ class PhysicsState:
 
     def load(self, state: dict[str, Any]) -> None:
         """Restore saved arrays of the same model."""
-        data = self._data
-        # Contacts are not saved; they are computed again from this state for whatever shows them.
         for name, values in state["model"].items():
             getattr(self._model, name)[...] = values
+        self._load_data(state)
+        # Contacts are not saved; they are computed again from this state for whatever shows them.
+        mujoco.mj_forward(self._model, self._data)
+        self._load_data(state)
+
+    def _load_data(self, state: dict[str, Any]) -> None:
+        data = self._data
         for name, values in state["arrays"].items():
             getattr(data, name)[...] = values
-        mujoco.mj_forward(self._model, data)
-        for name, values in state["arrays"].items():
-            getattr(data, name)[...] = values
+        # With the counts of another state MuJoCo looks for contacts between sleeping bodies, and
+        # ends with an error if it finds one.
         for name, count in zip(AWAKE_COUNTS, state["awake"], strict=True):
             setattr(data, name, count)
         data.time = state["time"]
