@@ -22,7 +22,7 @@ ANSWER_TIMEOUT_S = 10.0
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parser.add_argument(
-        "--release", action="store_true", help="release the stop; controllers go on from rest"
+        "--release", action="store_true", help="release the stop; controllers continue from rest"
     )
     parser.add_argument(
         "-n",

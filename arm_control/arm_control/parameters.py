@@ -201,7 +201,7 @@ def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise ParameterError(
-            f"unknown parameter {', '.join(unknown)}; known are {', '.join(known) or 'none'}"
+            f"unknown parameter {', '.join(unknown)}; known: {', '.join(known) or 'none'}"
         )
     converted = {
         spec.name: spec.convert(values[spec.name]) for spec in specs if spec.name in values

@@ -30,7 +30,7 @@ class LinkFault:
         """Raise CallError if a value is not a fraction or not a time."""
         for name in ("lost", "doubled"):
             if not 0.0 <= getattr(self, name) <= 1.0:
-                raise CallError(f"the fraction of messages that are {name} is from 0 to 1")
+                raise CallError(f"the fraction of {name} messages must be from 0 to 1")
         for name in ("delay_s", "jitter_s", "again_s"):
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise CallError(f"{name} is a time in seconds, not {getattr(self, name)}")

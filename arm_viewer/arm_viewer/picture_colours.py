@@ -50,7 +50,7 @@ def colours(picture: Picture) -> NDArray[np.uint8]:
 def _pixels(picture: Picture) -> NDArray[Any]:
     if picture.encoding not in _CHANNELS:
         known = ", ".join(_CHANNELS)
-        raise PictureError(f"cannot show the encoding '{picture.encoding}'; known are {known}")
+        raise PictureError(f"cannot show the encoding '{picture.encoding}'; known: {known}")
     kind, channels = _CHANNELS[picture.encoding]
     kind = np.dtype(kind).newbyteorder(">" if picture.is_bigendian else "<")
     row = picture.width * channels * kind.itemsize

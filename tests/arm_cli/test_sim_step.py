@@ -70,7 +70,7 @@ def test_sensors_are_waited_for_if_asked(ask):
 
 
 def test_a_time_that_is_past_is_refused(ask):
-    with pytest.raises(SimulationRefusedError, match=r"at 2\.000 s already, not before 1\.5 s"):
+    with pytest.raises(SimulationRefusedError, match=r"already at 2\.000 s, past 1\.5 s"):
         ask("--until", "1.5", now_s=2.0)
 
 

@@ -117,7 +117,7 @@ def test_an_instance_made_by_hand_can_be_checked() -> None:
 
 
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
-    with pytest.raises(ParameterError, match=r"unknown parameter gain; known are joint, count, on"):
+    with pytest.raises(ParameterError, match=r"unknown parameter gain; known: joint, count, on"):
         build_parameters(Example, {"gain": 1.0})
 
 

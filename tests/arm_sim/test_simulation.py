@@ -158,7 +158,7 @@ def test_an_unknown_controller_type_is_named(tmp_path):
     file.write_text(
         "controller_manager: {ros__parameters: {update_rate: 50, mine: {type: my/Controller}}}"
     )
-    with pytest.raises(RegistryError, match="no controller type 'my/Controller'; known are"):
+    with pytest.raises(RegistryError, match="no controller type 'my/Controller'; known:"):
         Simulation("arm", controllers=file, spawn=["mine"])
 
 

@@ -117,7 +117,7 @@ def test_a_silent_partner_pauses_the_run_and_another_one_continues_it(runs, clie
     client.wait_until(lambda: state() == PAUSED, "the pause")
     text = runs[2].read_text()
     time_s = f"{LAST / 100:.3f}"
-    assert f"lock-step: nothing from /partner for the time {time_s} s within" in text, text
+    assert f"lock-step: no answer from /partner for the time {time_s} s within" in text, text
     parameter = Parameter("lockstep_timeout", value=60.0).to_parameter_msg()
     request = SetParameters.Request(parameters=[parameter])
     assert client.call(SetParameters, "/arm_gazebo/set_parameters", request).results[0].successful

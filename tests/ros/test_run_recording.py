@@ -93,7 +93,7 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
     move(client, commands, states, 0.3, 0.2, 0.1, 0.3)
     assert "No such file or directory" in record_to(tmp_path / "none" / "a.run")
     assert record_to(path) == ""
-    assert f"a recording to {path} goes on" in record_to(tmp_path / "other.run")
+    assert f"a recording to {path} is still running" in record_to(tmp_path / "other.run")
     move(client, commands, states, -0.5, 0.2, 0.1, 0.3)
     for is_engaged in (True, False):
         client.call(SetBool, "/emergency_stop", SetBool.Request(data=is_engaged))

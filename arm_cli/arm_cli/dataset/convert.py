@@ -89,9 +89,7 @@ def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: DatasetOptio
         rows = align(streams, reference, wanted.fps)
         writer.add_episode(streams, rows, task, {"bag": bag.name})
     jitter_ms = rows.jitter_s * 1e3
-    say(
-        f"{bag}: {rows.length} rows, {rows.fps} a second, up to {jitter_ms:.1f} ms from equal steps"
-    )
+    say(f"{bag}: {rows.length} rows at {rows.fps} Hz, off by up to {jitter_ms:.1f} ms")
     for line in (*episode.remarks, *map(str, rows.uses)):
         say(f"  {line}")
     return rows.fps

@@ -58,12 +58,14 @@ class EpisodeReader:
         for log_ns, message in self._messages(self._chosen.state):
             names = names or tuple(message.name)
             if set(message.name) != set(names):
-                raise BagError(f"messages of {topic} have different joints; choose by --state")
+                raise BagError(
+                    f"messages of {topic} have different joints; choose one with --state"
+                )
             place = {name: index for index, name in enumerate(message.name)}
             fields = [getattr(message, field) for field in self._wanted.fields]
             for field, values in zip(self._wanted.fields, fields, strict=True):
                 if len(values) < len(names):
-                    raise BagError(f"messages of {topic} have no {field} of each joint")
+                    raise BagError(f"messages of {topic} do not have the {field} of every joint")
             logs.append(log_ns)
             stamps.append(_stamp_ns(message.header.stamp))
             rows.append([float(values[place[name]]) for values in fields for name in names])
@@ -138,7 +140,9 @@ class EpisodeReader:
         kept &= stamps == highest
         left = int((~kept).sum())
         if left:
-            self.remarks.append(f"{left} messages of {topic} are left out: others have their stamp")
+            self.remarks.append(
+                f"{left} messages of {topic} are left out: others have the same or a later stamp"
+            )
         return kept
 
     def _messages(self, topic: BagTopic) -> Iterator[tuple[int, Any]]:

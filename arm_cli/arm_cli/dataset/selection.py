@@ -57,7 +57,7 @@ def add_selection_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         choices=STATE_FIELDS,
         default=[STATE_FIELDS[0]],
-        help="what of the joints is a state (default position)",
+        help="fields of the joints that form the state (default position)",
     )
     group.add_argument(
         "--action",
@@ -75,7 +75,7 @@ def add_selection_arguments(parser: argparse.ArgumentParser) -> None:
         "--fps",
         type=positive_whole_number,
         metavar="N",
-        help="rows a second (default: the rate of the first camera, or else of the states)",
+        help="rows per second (default: the rate of the first camera, or else of the states)",
     )
 
 
@@ -130,7 +130,9 @@ def _only_action(topics: "Mapping[str, BagTopic]") -> "BagTopic":
             return found[0]
         if found:
             names = ", ".join(topic.name for topic in found)
-            raise BagError(f"several topics could be the actions; choose by --action: {names}")
+            raise BagError(
+                f"several topics could be the actions; choose one with --action: {names}"
+            )
     raise BagError(
         "no topic with messages is a command: the bag has no Float64MultiArray and no state of a "
         "trajectory controller"

@@ -115,7 +115,7 @@ def add_reset_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-spawned", action="store_true", help="keep spawned entities, and deletions"
     )
-    parser.add_argument("--keep-clock", action="store_true", help="let the clock go on")
+    parser.add_argument("--keep-clock", action="store_true", help="keep the clock running")
     add_namespace_argument(parser)
 
 

@@ -13,7 +13,7 @@ SUFFIX = ".snapshot"
 
 def add_save_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    _add_snapshot_argument(parser, "a name, which may be taken")
+    _add_snapshot_argument(parser, "a name; a snapshot of that name is replaced")
 
 
 def save(options: argparse.Namespace) -> None:

@@ -86,6 +86,6 @@ def _steps(options: argparse.Namespace, simulation: "SimulationClient") -> int:
         from arm_cli.errors import SimulationRefusedError
 
         raise SimulationRefusedError(
-            f"the simulation is at {now_s:.3f} s already, not before {end_s:g} s"
+            f"the simulation is already at {now_s:.3f} s, past {end_s:g} s"
         )
     return steps

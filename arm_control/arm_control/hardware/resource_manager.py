@@ -297,8 +297,8 @@ class ResourceManager:
             for name in names:
                 if name in owners:
                     raise ControllerManagerError(
-                        f"{kind} interface '{name}' belongs to hardware component "
-                        f"'{owners[name].name}' already; '{component.name}' has it too"
+                        f"{kind} interface '{name}' already belongs to hardware component "
+                        f"'{owners[name].name}'; '{component.name}' has it, too"
                     )
                 owners[name] = component
 

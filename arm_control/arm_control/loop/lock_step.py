@@ -104,10 +104,10 @@ class LockStep:
             self._answered_ns[partner] = NEVER_NS
         time_s = self._tick_ns / NS_PER_S
         self.failure = (
-            f"lock-step: nothing from {', '.join(silent)} for the time {time_s:.3f} s within "
+            f"lock-step: no answer from {', '.join(silent)} for the time {time_s:.3f} s within "
             f"{self._timeout_s:g} s; the simulation is paused"
         )
-        logger.error("%s. It goes on with: arm sim play", self.failure)
+        logger.error("%s. Resume it with: arm sim play", self.failure)
         self.rest()
 
     def _missing(self) -> list[str]:

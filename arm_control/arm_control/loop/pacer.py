@@ -170,15 +170,15 @@ class Pacer:
         latest_ms = 1e3 * self._unreported_max_lag_s
         if achieved >= KEPT * self._real_time_factor:
             logger.warning(
-                "the control loop was held up: a tick started %.1f ms after its time, "
-                "%.3f s given up",
+                "the control loop was held up: a tick started %.1f ms late, and %.3f s were "
+                "given up",
                 latest_ms,
                 self._unreported_lost_s,
             )
             return
         logger.warning(
             "the control loop cannot keep its pace: real-time factor %.2f instead of %g, "
-            "%d of %d ticks overran, latest start %.1f ms after its time, %.3f s given up",
+            "%d of %d ticks overran, the latest start was %.1f ms late, and %.3f s were given up",
             achieved,
             self._real_time_factor,
             self._unreported_overruns,

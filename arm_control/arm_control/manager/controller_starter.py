@@ -129,7 +129,7 @@ class ControllerStarter:
             for changed in changes:
                 if changed not in specs:
                     known = ", ".join(specs) or "none"
-                    raise ParameterError(f"unknown parameter {changed}; known are {known}")
+                    raise ParameterError(f"unknown parameter {changed}; known: {known}")
                 if specs[changed].read_only:
                     raise ParameterError(f"parameter '{changed}' is read-only")
                 if specs[changed].at_configuration:

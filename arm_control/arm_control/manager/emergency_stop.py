@@ -63,7 +63,7 @@ class EmergencyStop:
         """
         self.is_engaged = False
         self._tell_hardware()
-        logger.warning("emergency stop released: controllers go on from where everything is")
+        logger.warning("emergency stop released: controllers continue from the present positions")
         return [c for c in self._chain.from_below(controllers) if not c.go_on()]
 
     def _tell_hardware(self) -> None:

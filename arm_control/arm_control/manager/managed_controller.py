@@ -151,7 +151,7 @@ class ManagedController:
             self.controller.on_activate, f"on_activate of controller '{self.name}'"
         )
         if failure:
-            logger.error("controller '%s' cannot go on: %s", self.name, failure)
+            logger.error("controller '%s' cannot continue: %s", self.name, failure)
         return not failure
 
     def run(self, time_s: float, period_s: float) -> bool:

@@ -136,7 +136,7 @@ def _find(type_name: str, built_in: dict[str, str], group: str, what: str) -> An
         if point.name == type_name:
             return load_object(point.value)
     known = sorted({*built_in, *(point.name for point in points)})
-    raise RegistryError(f"no {what} '{type_name}'; known are {', '.join(known)}")
+    raise RegistryError(f"no {what} '{type_name}'; known: {', '.join(known)}")
 
 
 def _installed(group: str) -> "tuple[EntryPoint, ...]":

@@ -49,7 +49,7 @@ def spawner_lock(
         path.parent.mkdir(parents=True, exist_ok=True)
         file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
     except OSError as error:
-        logger.warning("going on without the spawner lock: %s", error)
+        logger.warning("continuing without the spawner lock: %s", error)
         yield
         return
     try:

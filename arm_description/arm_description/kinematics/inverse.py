@@ -52,7 +52,7 @@ class InverseKinematics:
         for joint in self._joints:
             if joint.name not in above:
                 raise KinematicsError(
-                    f"joint '{joint.name}' does not move link '{link}'; {listing(above)} do"
+                    f"joint '{joint.name}' does not move link '{link}'; these do: {listing(above)}"
                 )
             if not joint.type.is_scalar:
                 raise KinematicsError(

@@ -117,7 +117,7 @@ def _read_rate(value: object) -> int:
 
 
 PARAMETERS: dict[str, tuple[Any, Reader[Any], str]] = {
-    "rate": (10, _read_rate, "publications a second"),
+    "rate": (10, _read_rate, "messages per second"),
     "source_list": (
         [],
         partial(read_texts, wanted="a list of topics"),
@@ -139,7 +139,7 @@ PARAMETERS: dict[str, tuple[Any, Reader[Any], str]] = {
     "delta": (
         0.0,
         read_number,
-        "how far each joint moves at each publication, back and forth (rad or m); 0 for rest",
+        "distance that each joint moves per message, back and forth (rad or m); 0 for no motion",
     ),
 }
 """The parameters with names of their own: default, reader and description."""

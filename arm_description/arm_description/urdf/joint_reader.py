@@ -72,7 +72,7 @@ def _read_limit(element: UrdfElement, kind: JointType) -> JointLimit | None:
     if kind.needs_limit:
         lower, upper = limit.number("lower", 0.0), limit.number("upper", 0.0)
     if lower > upper:
-        limit.warn(f"has lower={lower:g} above upper={upper:g}; they are exchanged")
+        limit.warn(f"has lower={lower:g} above upper={upper:g}; they are swapped")
         lower, upper = upper, lower
     return JointLimit(lower, upper, _read_bound(limit, "effort"), _read_bound(limit, "velocity"))
 

@@ -258,12 +258,12 @@ def find_root(links: Sequence[Link], joints: Sequence[Joint]) -> str:
     roots = [link for link in links if link.name not in parent_joints]
     if len(roots) > 1:
         names = listing(f"'{link.name}' (line {link.line})" for link in roots)
-        raise UrdfError(f"a robot has one root link, but no joint has as its child any of {names}")
+        raise UrdfError(f"a robot has one root link, but these links have no parent joint: {names}")
     if roots:
         _check_no_loop(links, parent_joints, roots[0].name)
         return roots[0].name
     _check_no_loop(links, parent_joints, None)
-    raise AssertionError("links without a root hold a loop")
+    raise AssertionError("links without a root form a loop")
 
 
 def check_mimics(joints: Sequence[Joint]) -> None:

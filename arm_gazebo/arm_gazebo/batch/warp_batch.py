@@ -153,5 +153,5 @@ def _packages(device: str) -> tuple[Any, Any]:
             f"copies on a GPU need MuJoCo Warp; pip install 'arm-suite[gpu]' ({error})"
         ) from error
     if device != "cpu" and not warp.get_cuda_device_count():
-        raise BatchError("copies on a GPU need one that CUDA finds, and there is none")
+        raise BatchError("copies on a GPU need a GPU that CUDA finds, and there is none")
     return warp, engine

@@ -80,7 +80,7 @@ def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:
         yield "transmission", _dropped(element, name, reason)
     for element in root.iterfind("joint/safety_controller"):
         name = f"<safety_controller> of joint '{element.getparent().get('name')}'"
-        reason = "the joint stops at its <limit>; soft limits count under enforce_command_limits"
+        reason = "the joint stops at its <limit>; soft limits need enforce_command_limits"
         yield "safety_controller", _dropped(element, name, reason)
     yield from _mimics_of_hardware(root)
     for element in root.iterfind(".//material/texture"):

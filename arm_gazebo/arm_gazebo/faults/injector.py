@@ -19,7 +19,7 @@ DISTORTIONS = {
     FaultKind.SENSOR_NOISY: Distortion.NOISY,
     FaultKind.SENSOR_NAN: Distortion.NAN,
 }
-REASON = "a fault was asked for"
+REASON = "a fault was requested"
 
 
 class FaultInjector:
@@ -74,7 +74,7 @@ class FaultInjector:
             FaultError: it has already begun, or the simulation does not have its target.
         """
         if fault in self.active:
-            raise FaultError(f"the fault '{fault}' has begun already")
+            raise FaultError(f"the fault '{fault}' has already begun")
         self.check(fault)
         if fault.kind is FaultKind.JOINT_STALLED:
             self._simulation.stall_joint(fault.target)

@@ -44,7 +44,7 @@ def _describe_swap(arguments: Mapping[str, Any]) -> Mapping[str, object]:
     """Return what a recording stores for `swap`: the model as data."""
     following: NextModel = arguments["following"]
     if following.saved is None:
-        raise RecordingError("the recording began while this change was prepared; ask for it again")
+        raise RecordingError("the recording began while this change was prepared; try again")
     return {"model": following.saved, "roots": following.roots}
 
 

@@ -122,8 +122,8 @@ class SimulationStatistics:
                 "wall time (s)": f"{now.wall_s - self._start_s:.3f}",
                 "control period (s)": repr(self._simulation.timing.period_s),
                 "physics step (s)": repr(self._simulation.timing.step_s),
-                "real-time factor asked": f"{pace:g}",
-                "real-time factor reached": f"{reached:.3f}",
+                "requested real-time factor": f"{pace:g}",
+                "achieved real-time factor": f"{reached:.3f}",
                 "ticks": str(now.costs.ticks),
                 "lag (ms)": f"{1e3 * pacer.lag_s:.3f}",
                 "greatest lag (ms)": f"{1e3 * pacer.max_lag_s:.3f}",
@@ -164,7 +164,7 @@ def _tick(before: TickCosts, now: TickCosts) -> StatusReport:
     whole = sum(each.values())
     return StatusReport(
         "tick",
-        f"{whole:.0f} us a tick" if ticks else "no tick",
+        f"{whole:.0f} us per tick" if ticks else "no tick",
         {
             "ticks measured": str(ticks),
             **{f"{phase} (us)": f"{cost:.1f}" for phase, cost in each.items()},
@@ -181,8 +181,8 @@ def _streams(before: RunSample, now: RunSample, simulated_s: float) -> Iterator[
             f"{count.kind}: {count.name}",
             f"{reached:.1f} of {count.rate_hz:g} Hz",
             {
-                "rate asked (Hz of simulation time)": f"{count.rate_hz:g}",
-                "rate reached (Hz of simulation time)": f"{reached:.2f}",
+                "requested rate (Hz of simulation time)": f"{count.rate_hz:g}",
+                "achieved rate (Hz of simulation time)": f"{reached:.2f}",
                 "due": str(count.due),
                 "published": str(count.published),
                 "dropped": str(count.dropped),

@@ -29,7 +29,7 @@ def declare_faults(node: Node) -> None:
         node,
         PARAMETER,
         [],
-        "faults for tests, while they are listed",
+        "faults for tests; each lasts as long as it is listed",
         f"a list of texts, each one of: {kinds}",
         read_only=False,
     )

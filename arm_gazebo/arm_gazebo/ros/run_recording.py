@@ -66,7 +66,8 @@ class RunRecording:
             self._end()
         elif self._recorder is not None:
             raise RecordingError(
-                f"a recording to {self._recorder.path} goes on; end it by setting {PARAMETER} to ''"
+                f"a recording to {self._recorder.path} is still running; end it by setting "
+                f"{PARAMETER} to ''"
             )
         else:
             self._begin(path)

@@ -87,7 +87,7 @@ class CompleteState:
         count, present = len(state["managers"]), len(self._managers)
         if count != present:
             raise StateError(
-                f"the snapshot has {count} robots with controllers; here are {present}"
+                f"the snapshot has {count} robots with controllers; this run has {present}"
             )
         for manager, saved_manager in zip(self._managers, state["managers"], strict=True):
             manager.state.check(saved_manager)

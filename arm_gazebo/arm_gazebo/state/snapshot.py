@@ -136,7 +136,7 @@ def remark_on(snapshot: RunSnapshot) -> str:
     others = differences_of_makers(snapshot.made_with)
     if not others:
         return ""
-    return f"made with {', '.join(others)}: the run may go on with other rounding errors"
+    return f"made with {', '.join(others)}: the run may continue with other rounding errors"
 
 
 def model_hash(model: mujoco.MjModel) -> str:

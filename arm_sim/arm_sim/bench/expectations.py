@@ -85,7 +85,7 @@ class Reaching:
         lines += [self._describe(name) for name in away]
         there = [name for name in self._targets if name not in away]
         if there:
-            lines.append(f"  {', '.join(there)}: there")
+            lines.append(f"  {', '.join(there)}: at the target")
         return "\n".join(lines)
 
     def _last(self, name: str) -> float:

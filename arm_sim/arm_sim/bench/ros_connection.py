@@ -51,14 +51,14 @@ class Messages(Generic[MessageT]):
     def wait_until(
         self,
         condition: Callable[[list[MessageT]], bool],
-        what: str = "what was waited for",
+        what: str = "certain messages",
         timeout_s: float = WAIT_S,
     ) -> list[MessageT]:
         """Return the messages as soon as a condition holds for them.
 
         Args:
             condition: is given all messages so far.
-            what: for the message of the error.
+            what: what the condition waits for, for the error message.
             timeout_s: wall time to wait at most.
 
         Raises:
@@ -71,7 +71,7 @@ class Messages(Generic[MessageT]):
                 if left_s <= 0:
                     last = self._received[-1] if self._received else "none"
                     raise BenchError(
-                        f"not within {timeout_s:g} s on {self.topic}: {what}; "
+                        f"timed out after {timeout_s:g} s, waiting for {what} on {self.topic}; "
                         f"{len(self._received)} messages, the last: {last}"
                     )
                 self._changed.wait(left_s)
@@ -136,7 +136,7 @@ class RosConnection:
         deadline = time.monotonic() + timeout_s
         while not condition():
             if time.monotonic() > deadline:
-                raise BenchError(f"not within {timeout_s:g} s: {what}")
+                raise BenchError(f"timed out after {timeout_s:g} s, waiting for {what}")
             time.sleep(POLL_S)
 
     def collect(
@@ -231,6 +231,6 @@ class RosConnection:
 
     def _be_known(self, check: DiscoveryCheck, name: str) -> None:
         try:
-            self.wait_until(lambda: check.complete, f"discovery by those behind {name}")
+            self.wait_until(lambda: check.complete, f"the discovery of this node by {name}")
         finally:
             self.run(check.close, name)

@@ -48,7 +48,7 @@ class StreamUse:
             return f"{self.name}: {self.messages} messages, one in each row"
         return (
             f"{self.name}: {self.messages} messages, {self.left_out} in no row; {self.repeated} "
-            f"rows repeat one; up to {self.oldest_s * 1e3:.1f} ms old"
+            f"rows repeat a message; up to {self.oldest_s * 1e3:.1f} ms old"
         )
 
 
@@ -96,7 +96,7 @@ def align(streams: Sequence[Stream], reference: int, fps: int | None = None) -> 
     own = streams[reference].stamps_ns
     fps = rate_of(streams[reference].name, own) if fps is None else fps
     if fps < 1:
-        raise CallError(f"a dataset has at least 1 row a second, not {fps}")
+        raise CallError(f"a dataset needs at least 1 row per second, not {fps}")
     common = max(int(stream.stamps_ns[0]) for stream in streams)
     at_start = own[own >= common - SAME_NS]
     if not len(at_start):
@@ -134,7 +134,7 @@ def rate_of(name: str, stamps_ns: Stamps) -> int:
         CallError: it has only one message, or less than one per second.
     """
     if len(stamps_ns) < 2:
-        raise CallError(f"{name} has one message only, which has no rate; give --fps")
+        raise CallError(f"{name} has only one message, so it has no rate; give --fps")
     intervals = np.diff(stamps_ns)
     # A camera takes its frames at control periods: at 30 Hz they are 40, 30 and 30 ms apart. An
     # interval of about two or more usual ones means lost messages; a much longer one is a pause.
@@ -142,7 +142,7 @@ def rate_of(name: str, stamps_ns: Stamps) -> int:
     running = intervals[intervals < PAUSE_INTERVALS * usual]
     rate = 1e9 * float(np.round(running / usual).sum() / running.sum())
     if round(rate) < 1:
-        raise CallError(f"{name} has {rate:.3g} messages a second; give --fps")
+        raise CallError(f"{name} has {rate:.3g} messages per second; give --fps")
     return round(rate)
 
 

@@ -81,7 +81,7 @@ def _faults_of_rows(
         if bounds != (number, begin, length) or episode["dataset_to_index"] != begin + length:
             yield f"{where} is not where its metadata say"
         if table["index"].to_pylist() != list(range(begin, begin + length)):
-            yield f"{where}: the indices do not go on from the episode before"
+            yield f"{where}: the indices do not continue those of the previous episode"
         if table["frame_index"].to_pylist() != list(range(length)):
             yield f"{where}: the frames do not count from 0"
         times = table["timestamp"].to_numpy() - np.arange(length) / info["fps"]
@@ -119,7 +119,7 @@ def _faults_of_statistics(info: Mapping[str, Any], statistics: Mapping[str, Any]
         if any(values.shape != shape for key, values in found.items() if key != "count"):
             yield f"statistics of {name} need the shape {shape}"
         elif not (found["min"] <= found["max"]).all():
-            yield f"the least {name} is above the largest"
+            yield f"the minimum of {name} is above its maximum"
 
 
 def _faults_of_videos(
@@ -137,4 +137,4 @@ def _faults_of_videos(
             wanted = begin + np.arange(episode["length"]) / info["fps"]
             times = np.array([t for t in frame_times_s(path) if begin - TOLERANCE_S < t < end])
             if len(times) != len(wanted) or np.abs(times - wanted).max() >= TOLERANCE_S:
-                yield f"episode {number}: {key} has no frame at each row"
+                yield f"episode {number}: not every row has a frame in {key}"

@@ -162,7 +162,8 @@ class DatasetWriter:
             self._features, self._fps = features, fps
         if fps != self._fps:
             raise CallError(
-                f"this episode has {fps} rows a second and those before {self._fps}; give --fps"
+                f"this episode has {fps} rows per second, and the earlier ones have {self._fps}; "
+                "give --fps"
             )
         if features != self._features:
             differing = sorted(
@@ -171,8 +172,8 @@ class DatasetWriter:
                 if features.get(name) != self._features.get(name)
             )
             raise CallError(
-                f"this episode differs from those before in {', '.join(differing)}; all episodes "
-                "of a dataset have the same joints, actions and cameras"
+                f"this episode differs from the earlier ones in {', '.join(differing)}; all "
+                "episodes of a dataset have the same joints, actions and cameras"
             )
 
     def _columns(

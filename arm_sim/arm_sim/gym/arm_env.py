@@ -75,7 +75,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
             DescriptionError, GazeboError, ArmControlError: see `Simulation`.
         """
         if render_mode not in (None, *self.metadata["render_modes"]):
-            raise CallError(f"no render mode '{render_mode}'; there is rgb_array")
+            raise CallError(f"no render mode '{render_mode}'; the only one is rgb_array")
         self.render_mode = render_mode
         self.task = task or Task()
         options = RobotOptions(description, joints, decision_s, control_rate_hz, simulation or {})

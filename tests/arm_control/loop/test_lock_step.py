@@ -90,7 +90,7 @@ def test_a_silent_partner_is_named_after_the_time_out(started):
     started.clock.advance(1.0)
     assert started.lock_step.remaining_s() <= 0.0
     started.lock_step.give_up()
-    assert "nothing from /b for the time 0.010 s within 5 s" in started.lock_step.failure
+    assert "no answer from /b for the time 0.010 s within 5 s" in started.lock_step.failure
 
 
 def test_one_that_was_given_up_comes_back_with_any_stamp(started):
@@ -191,7 +191,7 @@ def test_the_loop_runs_a_tick_for_each_answer_and_pauses_in_silence(start):
     run = start(0.2, 500)
     wait_until_paused(run.loop)
     assert run.ticks == 500
-    assert "nothing from /partner for the time 5.000 s" in run.lock_step.failure
+    assert "no answer from /partner for the time 5.000 s" in run.lock_step.failure
 
 
 def test_steps_wait_for_answers_too(start):

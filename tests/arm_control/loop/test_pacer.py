@@ -180,7 +180,7 @@ def test_a_stall_soon_after_a_warning_is_reported_with_the_next(
     while clock.now_s() < 1.5 * WARNING_INTERVAL_S:
         run_tick(pacer, clock)
     assert caplog.text.count("cannot keep its pace") == 2
-    assert "0.990 s given up" in caplog.text
+    assert "0.990 s were given up" in caplog.text
     # The stall lies in the 9.1 s that it is told of, though a window ended with it.
     assert "real-time factor 0.89 instead of 1" in caplog.text
 
@@ -195,7 +195,7 @@ def test_a_stall_without_effect_on_the_pace_is_reported_as_a_stall(
         run_tick(pacer, clock)
     (said,) = caplog.messages
     assert said == (
-        "the control loop was held up: a tick started 54.0 ms after its time, 0.004 s given up"
+        "the control loop was held up: a tick started 54.0 ms late, and 0.004 s were given up"
     )
 
 

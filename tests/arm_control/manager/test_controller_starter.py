@@ -67,7 +67,7 @@ def test_parameters_of_a_namespace_are_found():
     [
         (file({}), "The 'type' param was not defined for 'ctrl'"),
         (file({"ctrl": {"type": 3}}), "'ctrl.type' must be a string or a list of strings, not 3"),
-        (file({"ctrl": {"type": "no/Type"}}), "no controller type 'no/Type'; known are"),
+        (file({"ctrl": {"type": "no/Type"}}), "no controller type 'no/Type'; known:"),
         (file({"ctrl": {"type": FORWARD}}), "'joints' parameter was empty"),
         (file({"ctrl": {"type": FORWARD}}, ctrl={"joints": 1}), "controller 'ctrl': parameter 'jo"),
         (

@@ -209,7 +209,7 @@ def test_two_components_of_one_name_are_refused() -> None:
 
 
 def test_two_components_with_the_same_interface_are_refused() -> None:
-    with pytest.raises(ControllerManagerError, match=r"'j0/position' belongs to .*'FakeSystem'"):
+    with pytest.raises(ControllerManagerError, match=r"already belongs to .*'FakeSystem'"):
         ControllerManager([fake_hardware(), fake_hardware(("j0",), name="B")], 100)
 
 

@@ -63,9 +63,7 @@ def test_an_installed_package_adds_a_type(installed: list[EntryPoint]) -> None:
 
 
 def test_an_unknown_type_is_refused_with_those_there_are(installed: list[EntryPoint]) -> None:
-    with pytest.raises(
-        RegistryError, match=r"no controller type 'x/Y'; known are .*position_contr"
-    ):
+    with pytest.raises(RegistryError, match=r"no controller type 'x/Y'; known: .*position_contr"):
         controller_class("x/Y")
 
 
@@ -91,7 +89,7 @@ def test_hardware_is_made_by_its_plugin() -> None:
 
 def test_an_unknown_plugin_is_refused(installed: list[Any]) -> None:
     info = HardwareInfo("H", "system", "x/Y")
-    with pytest.raises(RegistryError, match="no hardware plugin 'x/Y'; known are mock_components/"):
+    with pytest.raises(RegistryError, match="no hardware plugin 'x/Y'; known: mock_components/"):
         create_hardware(info)
 
 

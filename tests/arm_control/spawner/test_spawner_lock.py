@@ -124,4 +124,4 @@ def test_a_folder_that_cannot_be_written_does_no_harm(
     with spawner_lock(tmp_path / "file" / "x.lock", Waiting(), ManualClock()):
         reached = True
     assert reached
-    assert "going on without the spawner lock" in caplog.text
+    assert "continuing without the spawner lock" in caplog.text

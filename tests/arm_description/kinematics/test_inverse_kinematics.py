@@ -81,7 +81,7 @@ def test_limits_are_kept():
 
 
 def test_a_joint_that_does_not_carry_the_link_is_refused(arm):
-    with pytest.raises(KinematicsError, match="joint 'finger' does not move link 'l6'; j0"):
+    with pytest.raises(KinematicsError, match="'finger' does not move link 'l6'; these do: j0"):
         InverseKinematics(arm, "l6", ("j0", "finger"))
 
 

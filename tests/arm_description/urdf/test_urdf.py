@@ -92,7 +92,7 @@ def test_text_that_is_not_xml_is_an_xml_error():
         ),
         (
             f"<robot name='r'>\n{TWO_LINKS}</robot>",
-            "arm.urdf, a robot has one root link, but no joint has as its child any of "
+            "arm.urdf, a robot has one root link, but these links have no parent joint: "
             "'a' (line 2), 'b' (line 3)",
         ),
         (
@@ -233,7 +233,7 @@ def test_what_ros_accepts_is_accepted_with_a_remark(inside, told):
 @pytest.mark.parametrize(
     ("limit", "expected", "told"),
     [
-        ("lower='2' upper='-1'", (-1.0, 2.0, 3.0, 4.0), "lower=2 above upper=-1; they are exchang"),
+        ("lower='2' upper='-1'", (-1.0, 2.0, 3.0, 4.0), "lower=2 above upper=-1; they are swapped"),
         ("effort='-1'", (0.0, 0.0, 0.0, 4.0), "effort=-1; a negative number sets no limit"),
         ("velocity='-2'", (0.0, 0.0, 3.0, 0.0), "velocity=-2; a negative number sets no"),
     ],

@@ -206,6 +206,6 @@ def test_a_gpu_that_is_not_there_is_a_sentence(tmp_path: Path, monkeypatch: pyte
     without = SimpleNamespace(get_cuda_device_count=lambda: 0)
     for module in ("warp", "mujoco_warp"):
         monkeypatch.setitem(sys.modules, module, without)
-    with pytest.raises(BatchError, match="one that CUDA finds, and there is none"):
+    with pytest.raises(BatchError, match="a GPU that CUDA finds, and there is none"):
         make_copies(physics, hardware, 2, device="cuda")
     sim.close()

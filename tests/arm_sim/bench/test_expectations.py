@@ -68,7 +68,7 @@ def test_the_message_says_where_each_joint_is_and_since_when(history: StateHisto
         "the joints do not reach the target within 0.2 s",
         "  a: at 0.4000 rad, 0.6000 rad from 1.0000 rad (tolerance 0.01); "
         "it has been at rest since 0.100 s",
-        "  b: there",
+        "  b: at the target",
     ]
 
 

@@ -51,9 +51,9 @@ def test_rows_take_the_latest_message_and_count_what_that_costs():
     assert [one.tolist() for one in rows.rows] == [[1, 2, 3], [2, 5, 7], [0, 0, 0]]
     assert [use.is_exact for use in rows.uses] == [True, False, False]
     assert str(rows.uses[1]) == (
-        "observation.state: 6 messages, 3 in no row; 0 rows repeat one; up to 10.0 ms old"
+        "observation.state: 6 messages, 3 in no row; 0 rows repeat a message; up to 10.0 ms old"
     )
-    assert "2 rows repeat one; up to 143.0 ms old" in str(rows.uses[2])
+    assert "2 rows repeat a message; up to 143.0 ms old" in str(rows.uses[2])
 
 
 def test_frames_of_control_periods_are_one_in_each_row():
@@ -83,7 +83,7 @@ def test_a_pause_of_the_reference_repeats_its_last_message():
 @pytest.mark.parametrize(
     ("streams", "fps", "problem"),
     [
-        ([state([0])], None, "one message only, which has no rate; give --fps"),
+        ([state([0])], None, "only one message, so it has no rate; give --fps"),
         ([state([0, 10]), state([50], "action")], None, "action begins after the last message"),
         ([state([0, 0])], 10, "the stamps of observation.state do not increase"),
         ([state([])], 10, "observation.state has no messages"),
@@ -198,7 +198,7 @@ def test_a_video_with_other_frames_is_found(written: Path):
     short = written.with_name("short") / videos.relative_to(written) / "file-000.mp4"
     (videos / "file-001.mp4").write_bytes(short.read_bytes())
     assert check_dataset(written) == [
-        "episode 1: observation.images.front has no frame at each row"
+        "episode 1: not every row has a frame in observation.images.front"
     ]
 
 
@@ -211,7 +211,7 @@ def add(writer: DatasetWriter, *episodes: list) -> None:
     ("first", "second", "problem"),
     [
         ([state([0, 50])], [camera([0, 50]), state([0, 50])], "observation.images.front"),
-        ([state([0, 50])], [state([0, 10])], "100 rows a second and those before 20"),
+        ([state([0, 50])], [state([0, 10])], "100 rows per second, and the earlier ones have 20"),
     ],
 )
 def test_an_episode_that_differs_is_refused_and_nothing_is_left(

@@ -148,7 +148,7 @@ def test_what_cannot_be_used_is_said(pendulum: Path, tmp_path: Path, reach: ArmR
         ArmEnv(pendulum, joints=["j9"])
     with pytest.raises(CallError, match=r"0.015 s, which is not a whole number"):
         ArmEnv(pendulum, decision_s=0.015)
-    with pytest.raises(CallError, match="no render mode 'human'; there is rgb_array"):
+    with pytest.raises(CallError, match="no render mode 'human'; the only one is rgb_array"):
         ArmEnv(pendulum, render_mode="human")
     with pytest.raises(UnknownNameError, match="no link 'hand'; there are "):
         reach.point("hand")

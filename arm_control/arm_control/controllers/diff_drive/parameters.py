@@ -34,7 +34,9 @@ class DiffDriveParameters:
     right_wheel_names: tuple[str, ...] = parameter(
         (), "Joints of the right wheels", at_configuration=True
     )
-    wheel_separation: float = parameter(0.0, "Left to right wheels, in m", above=0.0)
+    wheel_separation: float = parameter(
+        0.0, "Distance between the left and right wheels, in m", above=0.0
+    )
     wheel_radius: float = parameter(0.0, "Radius of a wheel, in m", above=0.0)
     wheels_per_side: int = parameter(
         0, "Legacy parameter; the named wheels are counted", at_configuration=True
@@ -123,8 +125,8 @@ class DiffDriveParameters:
         left, right = self.left_wheel_names, self.right_wheel_names
         if not left or len(left) != len(right):
             raise ControllerError(
-                "parameters 'left_wheel_names' and 'right_wheel_names' take equally many wheels, "
-                f"at least one each; they have {len(left)} and {len(right)}"
+                "parameters 'left_wheel_names' and 'right_wheel_names' must name the same number "
+                f"of wheels, at least one each; they name {len(left)} and {len(right)}"
             )
         if self.wheels_per_side not in (0, len(left)):
             raise ControllerError(

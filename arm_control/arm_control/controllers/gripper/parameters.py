@@ -18,7 +18,9 @@ from arm_control.parameters import (
 
 LOWEST_MONITOR_RATE_HZ = 0.1
 JOINT = "The joint that opens and closes the gripper"
-MONITOR_RATE = "ros2_control parameter without effect: a result is sent in the cycle of the end"
+MONITOR_RATE = (
+    "ros2_control parameter without effect: results are sent in the cycle of a goal's end"
+)
 
 LIMIT_OF_EFFORT = "Full name of the command interface for the effort limit; empty for none"
 

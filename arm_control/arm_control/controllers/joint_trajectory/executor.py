@@ -227,7 +227,7 @@ class TrajectoryExecutor:
         """Return the current plan's set-point at a time of the controller's clock."""
         measured = self._measured()[:MOTION_ROWS]
         if self.time_s is None or self._next is not None:
-            return QueriedState("there is no trajectory under way yet", measured)
+            return QueriedState("no trajectory has started yet", measured)
         plan = self._execution.plan
         elapsed_s = self._execution.elapsed_s + time_s - self.time_s
         if elapsed_s < -RESOLUTION_S:

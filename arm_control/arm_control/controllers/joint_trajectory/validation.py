@@ -102,8 +102,8 @@ class JointModel:
             return None
         number, unit = np.flatnonzero(coming)[row] + 1, self.units[i]
         return (
-            f"joint {self.joints[i]} would have to move with {speeds[row, i]:.4g} {unit}/s to be "
-            f"in time at point {number} of {len(due_s)}; its velocity limit is "
+            f"joint {self.joints[i]} would have to move at {speeds[row, i]:.4g} {unit}/s to reach "
+            f"point {number} of {len(due_s)} in time; its velocity limit is "
             f"{self.velocity[i]:.4g} {unit}/s"
         )
 
@@ -150,7 +150,7 @@ class LimitCheck:
             speed = np.abs(motions[:, VELOCITY])
             for row, i in np.argwhere(speed > model.velocity + SLACK):
                 return _refusal(
-                    f"The trajectory moves joint {model.joints[i]} with {speed[row, i]:f}, "
+                    f"The trajectory moves joint {model.joints[i]} at {speed[row, i]:f}, "
                     f"above its velocity limit of {model.velocity[i]:f}",
                     float(sampled_s[row]),
                 )

@@ -274,8 +274,11 @@ def test_another_controller_may_command_the_speeds(bench):
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
-        ({"left_wheel_names": ["a"]}, "equally many wheels, at least one each; they have 1 and 2"),
-        ({"left_wheel_names": [], "right_wheel_names": []}, "they have 0 and 0"),
+        (
+            {"left_wheel_names": ["a"]},
+            "the same number of wheels, at least one each; they name 1 and 2",
+        ),
+        ({"left_wheel_names": [], "right_wheel_names": []}, "they name 0 and 0"),
         ({"wheels_per_side": 1}, "'wheels_per_side' is 1, but 2 wheels are named"),
         ({"wheel_radius": 0.0}, "'wheel_radius' must be above 0, but is 0"),
         ({"wheel_separation": nan}, "'wheel_separation' must be above 0, but is nan"),
@@ -295,7 +298,7 @@ def test_parameters_that_make_no_sense_are_refused(values, sentence):
 
 def test_a_robot_that_cannot_drive_is_not_configured(bench):
     parameters = DiffDriveController.build_parameters({**WHEELS, **SIZES, "left_wheel_names": []})
-    with pytest.raises(ControllerManagerError, match="they have 0 and 2"):
+    with pytest.raises(ControllerManagerError, match="they name 0 and 2"):
         bench.manager.configure_controller("base", parameters)
 
 

@@ -60,7 +60,7 @@ def test_a_spline_that_overshoots_between_the_points(fault: Callable[..., str]):
 def test_a_first_point_too_far_for_its_time(fault: Callable[..., str]):
     message = fault([(1.0, [0.0, 0.0, 1.6])])
 
-    assert message.startswith("The trajectory moves joint j2 with 1.600000, above its velocity")
+    assert message.startswith("The trajectory moves joint j2 at 1.600000, above its velocity")
 
 
 def test_a_stamp_before_the_first_update_is_judged_by_it(
@@ -72,7 +72,7 @@ def test_a_stamp_before_the_first_update_is_judged_by_it(
     rig.goal([(1.0, [0.0, 0.0, 1.6])], stamp_s=rig.time_s)
     rig.tick()
 
-    assert rig.result.message.startswith("The trajectory moves joint j2 with 1.616162, above its")
+    assert rig.result.message.startswith("The trajectory moves joint j2 at 1.616162, above its")
     assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
 
@@ -176,7 +176,7 @@ def test_a_goal_that_is_too_fast_for_a_joint_is_executed_with_one_warning(
     violations: Callable[..., Any],
 ):
     assert violations([(0.5, [0.1, 1.0, 0.9])]) == [
-        "Goal too fast: joint j1 would have to move with 2 rad/s to be in time at point 1 of 1; "
+        "Goal too fast: joint j1 would have to move at 2 rad/s to reach point 1 of 1 in time; "
         "its velocity limit is 1.5 rad/s"
     ]
 
@@ -184,13 +184,13 @@ def test_a_goal_that_is_too_fast_for_a_joint_is_executed_with_one_warning(
 def test_the_point_that_asks_for_most_is_named(violations: Callable[..., Any]):
     points = [(1.0, [0.0] * 3), (2.0, [1.6, 0.0, 0.0]), (2.1, [1.6, 0.0, -0.4])]
     (said,) = violations([*points, (9.0, [0.0] * 3)], "prismatic")
-    assert "joint j2 would have to move with 4 m/s to be in time at point 3 of 4" in said
+    assert "joint j2 would have to move at 4 m/s to reach point 3 of 4 in time" in said
 
 
 def test_the_velocity_at_a_point_is_checked_as_well(violations: Callable[..., Any]):
     moving = [(5.0, [0.0] * 3, [0.0, 0.0, -1.6]), (9.0, [0.0] * 3, [0.0] * 3)]
     (said,) = violations(moving)
-    assert "joint j2 would have to move with 1.6 rad/s" in said
+    assert "joint j2 would have to move at 1.6 rad/s" in said
 
 
 def test_a_goal_that_the_joints_can_follow_is_not_spoken_of(violations: Callable[..., Any]):

@@ -92,7 +92,7 @@ def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> Non
         ("nothere", "The 'type' param was not defined for 'nothere'."),
         (
             "strange_controller",
-            "no controller type 'strange_controllers/StrangeController'; known are ",
+            "no controller type 'strange_controllers/StrangeController'; known: ",
         ),
     ],
 )
