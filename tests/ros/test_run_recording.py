@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import psutil
 import pytest
@@ -56,8 +57,11 @@ def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
     commands = client.publisher(Float64MultiArray, "/position_controller/commands")
     states = states_of(client)
     move(client, commands, states, 0.5, 0.2, 0.1, 0.3)
-    # What came before this move has reached the file by its end.
-    move(client, commands, states, -0.5, 0.2, 0.1, 0.3)
+    stamp = states.wait_for()[-1].header.stamp
+    moved_s = stamp.sec + stamp.nanosec * 1e-9
+    deadline = time.monotonic() + TIMEOUT_S
+    while Replay(RunFile(path)).run().time_s < moved_s:
+        assert time.monotonic() < deadline, "the file is not written any more"
     (simulation,) = (
         process
         for process in psutil.Process(running.process.pid).children(recursive=True)
@@ -68,7 +72,7 @@ def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
     result = Replay(RunFile(path)).run()
     assert result.difference is None
     assert result.is_cut_off
-    assert result.time_s > 0.5
+    assert result.time_s >= moved_s
 
 
 def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter(

@@ -5,15 +5,18 @@ import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from control_msgs.action import FollowJointTrajectory, GripperCommand
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from arm_sim.bench.errors import BenchError
 from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
 from arm_sim.bench.history import StateHistory
 from arm_sim.bench.processes import LoggedProcess
@@ -29,6 +32,8 @@ READY_TIMEOUT_S = 120.0
 GOAL_TIMEOUT_S = 60.0
 STATUS_SUCCEEDED = 4
 """Of action_msgs/msg/GoalStatus."""
+SIMULATION = "/arm_gazebo"
+FINISH_TIMEOUT_S = 5.0
 LOG, PLOT = "launch.log", "joints.png"
 
 
@@ -263,7 +268,7 @@ class RosBench:
             save_plot(self.history, folder / PLOT, self.faults.log.spans)
             yield f"joints: {folder / PLOT}"
         if self._recording.exists():
-            # The recording continues; what is in the file by now can be replayed.
+            self._finish_recording()
             copied = shutil.copy(self._recording, folder)
             yield f"run it again: arm sim replay {quote(str(copied))}"
         log = self.log
@@ -273,6 +278,18 @@ class RosBench:
         for program in self._programs:
             yield f"output of {program.name}:"
             yield program.log
+
+    def _finish_recording(self) -> None:
+        """Let the simulation write the rest of the recording; it does so twice a second."""
+        finish = Parameter("record_run", value="").to_parameter_msg()
+        # A simulation that has died or hangs has written all but its last half second.
+        with suppress(BenchError):
+            self._connection.call(
+                f"{SIMULATION}/set_parameters",
+                SetParameters,
+                SetParameters.Request(parameters=[finish]),
+                FINISH_TIMEOUT_S,
+            )
 
     def _listen(self) -> None:
         node = self._connection.node

@@ -191,14 +191,14 @@ class RosConnection:
             name: of the service.
             service_type: its class.
             request: the request; None for one with default values.
-            timeout_s: wall time to wait for the answer.
+            timeout_s: wall time to wait for the service, and again for its answer.
 
         Raises:
             BenchError: there is no such service, or it does not answer in time.
         """
         client = self.run(lambda: self.node.create_client(service_type, name), name)
         try:
-            self.wait_until(client.service_is_ready, f"the service {name}")
+            self.wait_until(client.service_is_ready, f"the service {name}", timeout_s)
             self._be_known(DiscoveryCheck.with_server(self.node, client.service_name), name)
             asked = client.call_async(request or service_type.Request())
             return self.result_of(asked, name, timeout_s)
