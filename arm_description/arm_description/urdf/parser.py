@@ -5,7 +5,8 @@ known ones are fully checked.
 """
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import lxml.etree as etree
 
@@ -14,8 +15,9 @@ from arm_description.urdf.document import Description, as_document
 from arm_description.urdf.element import Remark, UrdfElement, written_name
 from arm_description.urdf.joint_reader import read_joint
 from arm_description.urdf.link_reader import read_link, read_material, resolve_materials
-from arm_description.urdf.robot import Robot
+from arm_description.urdf.robot import Joint, Robot
 from arm_description.urdf.xml_document import is_foreign
+from arm_node.names import listing
 
 _logger = logging.getLogger(__name__)
 
@@ -83,5 +85,23 @@ def _read_robot(root: UrdfElement) -> Robot:
     return Robot(
         name=name,
         links=resolve_materials(links, map(read_material, root.children("material"))),
-        joints=tuple(read_joint(joint) for joint in root.children("joint")),
+        joints=tuple(_read_joints(list(root.children("joint")))),
     )
+
+
+def _read_joints(elements: Sequence[UrdfElement]) -> Iterator[Joint]:
+    """Yield the joints; those that mimic a joint that does not exist move by themselves.
+
+    ROS's own parser accepts them.
+    """
+    joints = [read_joint(element) for element in elements]
+    names = [joint.name for joint in joints]
+    for element, joint in zip(elements, joints, strict=True):
+        if joint.mimic is None or joint.mimic.joint in names:
+            yield joint
+            continue
+        element.named(joint.name).warn(
+            f"mimics joint '{joint.mimic.joint}', which does not exist; it moves by itself. The "
+            f"robot has {listing(names)}"
+        )
+        yield replace(joint, mimic=None)

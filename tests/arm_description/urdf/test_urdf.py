@@ -15,6 +15,7 @@ from arm_description import (
     parse_urdf,
     parse_xml,
 )
+from arm_description.urdf.element import Remark
 
 TWO_LINKS = "<link name='a'/>\n<link name='b'/>\n"
 
@@ -125,11 +126,18 @@ def test_an_error_names_source_line_and_what_exists(text, message):
     assert refusal(text) == message
 
 
-def test_a_mimic_of_an_unknown_joint_is_refused():
+def test_a_mimic_of_an_unknown_joint_moves_by_itself():
     inside = "<mimic joint='x'/>"
-    assert refusal(f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b', inside)}</robot>") == (
-        "arm.urdf, line 4: joint 'j' mimics joint 'x', which does not exist; the robot has j"
+    remarks: list[Remark] = []
+    robot = parse_urdf(
+        f"<robot name='r'>\n{TWO_LINKS}{joint('j', 'a', 'b', inside)}</robot>",
+        remark=remarks.append,
     )
+    assert robot.joint("j").mimic is None
+    assert list(map(str, remarks)) == [
+        "line 4: joint 'j' mimics joint 'x', which does not exist; it moves by itself. "
+        "The robot has j"
+    ]
 
 
 def test_many_names_are_cut_short():
