@@ -173,7 +173,7 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
 
 def simulate_several(path: str) -> list[Action]:
     """Return the nodes of the robots that a file names, in one world."""
-    from arm_gazebo.launching.controllers_file import controllers_below
+    from arm_gazebo.launching.controllers_file import controllers_in_namespace
     from arm_gazebo.launching.robot_setup import set_up_robot
     from arm_gazebo.launching.robots_file import read_robots_file
     from arm_gazebo.robot.placed_description import placed
@@ -184,7 +184,7 @@ def simulate_several(path: str) -> list[Action]:
         setup = set_up_robot(
             robot.model, robot.model_args, robot.controllers, robot.spawn, robot.package_path
         )
-        controllers.append(controllers_below(name, setup.controllers))
+        controllers.append(controllers_in_namespace(name, setup.controllers))
         settings[name] = {"base": robot.base}
         if robot.base == "fixed":
             setup = replace(setup, description=placed(setup.description, robot.pose))

@@ -45,7 +45,7 @@ def read_flag(value: object) -> bool:
     return value
 
 
-def read_whole(value: object, wanted: str = "a whole number") -> int:
+def read_integer(value: object, wanted: str = "a whole number") -> int:
     """Return a whole number."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise refusal(wanted, value)
@@ -59,7 +59,7 @@ def read_number(value: object, wanted: str = "a finite number") -> float:
     return float(value)
 
 
-def read_not_negative(value: object) -> float:
+def read_non_negative(value: object) -> float:
     """Return a finite number of at least 0."""
     if not is_number(value) or not 0.0 <= value < math.inf:
         raise refusal("a finite number of at least 0", value)
@@ -73,7 +73,7 @@ def read_text(value: object, wanted: str = "a text") -> str:
     return value
 
 
-def read_filled_text(value: object, wanted: str = "a text") -> str:
+def read_nonempty_text(value: object, wanted: str = "a text") -> str:
     """Return a string that is not empty."""
     if not isinstance(value, str) or not value:
         raise refusal(wanted, value)
@@ -82,7 +82,7 @@ def read_filled_text(value: object, wanted: str = "a text") -> str:
 
 def read_path(value: object) -> Path:
     """Return the path of a file, with `~` expanded; the file need not exist."""
-    return Path(read_filled_text(value, "the path of a file")).expanduser()
+    return Path(read_nonempty_text(value, "the path of a file")).expanduser()
 
 
 def one_of(choices: Iterable[str]) -> Reader[str]:

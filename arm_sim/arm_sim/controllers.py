@@ -10,7 +10,7 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.controller_starter import ControllerStarter
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_sim.errors import CallError, GoalError, UnknownNameError
-from arm_sim.goals import Goal, GoalBook
+from arm_sim.goals import Goal, RunningGoals
 
 if TYPE_CHECKING:
     from arm_control.controllers.gripper import GripperResult
@@ -35,7 +35,7 @@ class ControllerHandle:
         self.state = LifecycleState.UNCONFIGURED
         # Only a core that serves goals has this method.
         goal_controller: Any = core if hasattr(core, "submit_goal") else None
-        self.goals = GoalBook(goal_controller) if goal_controller is not None else None
+        self.goals = RunningGoals(goal_controller) if goal_controller is not None else None
 
     @property
     def name(self) -> str:
@@ -190,7 +190,7 @@ class Controllers(Mapping[str, ControllerHandle]):
         for name, book in self._books():
             book.restore(running.get(name, {}))
 
-    def _books(self) -> Iterator[tuple[str, GoalBook]]:
+    def _books(self) -> Iterator[tuple[str, RunningGoals]]:
         for name, handle in self._handles.items():
             if handle.goals is not None:
                 yield name, handle.goals

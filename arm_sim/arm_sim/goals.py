@@ -63,7 +63,7 @@ class GoalServer(GoalController, Protocol):
         ...
 
 
-class GoalBook:
+class RunningGoals:
     """Takes the results of one controller's goals; it is the controller's sink."""
 
     def __init__(self, controller: GoalServer) -> None:

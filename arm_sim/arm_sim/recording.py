@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from arm_gazebo.recording.session import RunParts, begin_recording, end_recording
-from arm_sim.assembled import Assembled
+from arm_sim.parts import SimulationParts
 
 ResultT = TypeVar("ResultT")
 
@@ -28,7 +28,7 @@ class _ThisThread:
         return future
 
 
-def run_parts(parts: Assembled) -> RunParts:
+def run_parts(parts: SimulationParts) -> RunParts:
     """Return what a recording needs of a simulation."""
     return RunParts(
         parts.physics,
@@ -43,7 +43,7 @@ def run_parts(parts: Assembled) -> RunParts:
 
 
 @contextmanager
-def recording(parts: Assembled, path: Path) -> Iterator[None]:
+def recording(parts: SimulationParts, path: Path) -> Iterator[None]:
     """Record a simulation from now on to the end of the `with` block.
 
     Args:

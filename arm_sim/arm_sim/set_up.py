@@ -16,7 +16,7 @@ from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
 
 
 @dataclass(frozen=True, slots=True)
-class SetUp:
+class SimulationSetup:
     """A robot and a simulation, ready to be built.
 
     Attributes:
@@ -37,7 +37,7 @@ def set_up(
     spawn: Iterable[str] | None,
     package_path: Iterable[AnyPath],
     settings: Mapping[str, object],
-) -> SetUp:
+) -> SimulationSetup:
     """Read the robot, and add the defaults that the launch files add.
 
     Args:
@@ -65,7 +65,7 @@ def set_up(
         SPAWN_AUTO if names is None else ",".join(names),
         pathsep.join(fspath(folder) for folder in package_path),
     )
-    return SetUp(
+    return SimulationSetup(
         read_settings(_parameters(_values(setup, robot, settings))),
         ParametersByNode(read_controllers(setup.controllers), _source(setup)),
         setup.remarks,

@@ -7,10 +7,10 @@ from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from arm_sim.assembled import Assembled, assemble
 from arm_sim.controllers import ControllerHandle
 from arm_sim.errors import CallError, GoalError
 from arm_sim.goals import Goal, ResultT
+from arm_sim.parts import SimulationParts, assemble
 from arm_sim.pose import AnyPose, Matrix
 from arm_sim.robots import AnyPath
 from arm_sim.snapshots import SavedState, Snapshots
@@ -394,7 +394,7 @@ class Simulation:
             raise CallError("the simulation is closed")
 
     @property
-    def _open(self) -> Assembled:
+    def _open(self) -> SimulationParts:
         """The parts of the simulation, unless it is closed."""
         self._check_open()
         return self.parts

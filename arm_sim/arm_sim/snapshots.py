@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import StateError
-from arm_sim.assembled import Assembled
 from arm_sim.errors import CallError
 from arm_sim.goals import Goal
+from arm_sim.parts import SimulationParts
 from arm_sim.robots import AnyPath
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Snapshots:
         seed: the present seed of the noise.
     """
 
-    def __init__(self, parts: Assembled) -> None:
+    def __init__(self, parts: SimulationParts) -> None:
         """Remember the state at the start, if every controller can be saved."""
         self._parts = parts
         self.seed = parts.settings.seed

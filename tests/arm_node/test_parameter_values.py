@@ -8,16 +8,16 @@ import pytest
 from arm_node.parameter_values import (
     ParameterValueError,
     one_of,
-    read_filled_text,
     read_flag,
-    read_not_negative,
+    read_integer,
+    read_non_negative,
+    read_nonempty_text,
     read_number,
     read_numbers,
     read_parameter,
     read_path,
     read_text,
     read_texts,
-    read_whole,
     read_words,
     wanted_by,
 )
@@ -28,12 +28,12 @@ from arm_node.parameter_values import (
     [
         (read_number, 2, 2.0),
         (read_number, -0.5, -0.5),
-        (read_not_negative, 0, 0.0),
-        (read_whole, -3, -3),
+        (read_non_negative, 0, 0.0),
+        (read_integer, -3, -3),
         (read_flag, True, True),
         (read_flag, False, False),
         (read_text, "", ""),
-        (read_filled_text, "a b", "a b"),
+        (read_nonempty_text, "a b", "a b"),
         (read_texts, None, ()),
         (read_texts, ["a", "b"], ("a", "b")),
         (read_words, "", ()),
@@ -58,16 +58,16 @@ def test_takes_what_can_be_converted(read, value, result):
         (read_number, True, "must be a finite number, not True"),
         (read_number, "2", "must be a finite number, not '2'"),
         (read_number, float("inf"), "must be a finite number, not inf"),
-        (read_not_negative, [2.0], "must be a finite number of at least 0, not [2.0]"),
-        (read_not_negative, -1, "must be a finite number of at least 0, not -1"),
-        (read_not_negative, float("nan"), "must be a finite number of at least 0, not nan"),
-        (read_whole, 1.0, "must be a whole number, not 1.0"),
-        (read_whole, False, "must be a whole number, not False"),
+        (read_non_negative, [2.0], "must be a finite number of at least 0, not [2.0]"),
+        (read_non_negative, -1, "must be a finite number of at least 0, not -1"),
+        (read_non_negative, float("nan"), "must be a finite number of at least 0, not nan"),
+        (read_integer, 1.0, "must be a whole number, not 1.0"),
+        (read_integer, False, "must be a whole number, not False"),
         (read_flag, 1, "must be true or false, not 1"),
         (read_flag, "true", "must be true or false, not 'true'"),
         (read_flag, None, "must be true or false, not None"),
         (read_text, 5, "must be a text, not 5"),
-        (read_filled_text, "", "must be a text, not ''"),
+        (read_nonempty_text, "", "must be a text, not ''"),
         (read_path, "", "must be the path of a file, not ''"),
         (read_path, None, "must be the path of a file, not None"),
         (read_texts, "a", "must be a list of texts, not 'a'"),
@@ -88,7 +88,7 @@ def test_refuses_any_other_value_and_says_what_it_must_be(read, value, message):
 
 
 def test_what_a_reader_takes_can_be_asked():
-    assert wanted_by(read_not_negative) == "a finite number of at least 0"
+    assert wanted_by(read_non_negative) == "a finite number of at least 0"
     assert wanted_by(one_of(("a", "b"))) == "one of a, b"
     assert wanted_by(str) == ""
 

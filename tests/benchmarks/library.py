@@ -18,7 +18,7 @@ import harness
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 from arm_sim import Simulation
-from arm_sim.assembled import Assembled, assemble
+from arm_sim.parts import SimulationParts, assemble
 
 START = """
 import json, time
@@ -44,7 +44,7 @@ class NodeLoop:
     """The node's loop and tick, with the same controllers, without ROS."""
 
     def __init__(self, robot: str) -> None:
-        self.parts: Assembled = assemble(robot, None, {}, None, (), {})
+        self.parts: SimulationParts = assemble(robot, None, {}, None, (), {})
         self.parts.start_controllers()
         period_s = self.parts.physics.timing.period_s
         self._loop = ControlLoop(self.parts.tick, Pacer(period_s))

@@ -10,7 +10,7 @@ import harness
 import numpy as np
 
 from arm_gazebo.state.complete_state import CompleteState
-from arm_sim.assembled import Assembled, assemble
+from arm_sim.parts import SimulationParts, assemble
 
 RESETS_CLIENT = Path(__file__).with_name("resets_client.py")
 REPEATS = 300
@@ -50,7 +50,7 @@ def timed_ms(action: Callable[[], object], repeats: int = REPEATS) -> float:
     return median(taken)
 
 
-def moving(robot: str) -> Assembled:
+def moving(robot: str) -> SimulationParts:
     """Return a robot whose arm follows a long trajectory."""
     controller, joints = TRAJECTORY[robot]
     parts = assemble(robot, None, {}, ["joint_state_broadcaster", controller], (), {})

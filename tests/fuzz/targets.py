@@ -116,9 +116,9 @@ def _read_yaml(folder: Path, name: str, data: bytes) -> bool:
     path = seeds.write(folder, name, data)
     readers: tuple[Callable[[], object], ...] = (
         lambda: controllers_file.startable_controllers(
-            controllers_file.fill_in(path, {"side": "l"}), frozenset({"x"})
+            controllers_file.substitute_arguments(path, {"side": "l"}), frozenset({"x"})
         ),
-        lambda: controllers_file.controllers_below("left", path),
+        lambda: controllers_file.controllers_in_namespace("left", path),
         lambda: ControllerParameterFile(str(path)).lookup("arm", "/left", "joints"),
         lambda: robots_file.read_robots_file(path),
         lambda: read_pose_file(path, ("a", "b")),

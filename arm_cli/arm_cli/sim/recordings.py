@@ -116,10 +116,10 @@ def replay(options: argparse.Namespace) -> int:
     with _sentences():
         from arm_gazebo.recording.replay import Replay
         from arm_gazebo.recording.run_file import RunFile
-        from arm_gazebo.state.made_with import differences_of_makers
+        from arm_gazebo.state.made_with import machine_differences
 
         file = RunFile(options.file)
-        others = differences_of_makers(file.header.get("made_with", {}))
+        others = machine_differences(file.header.get("made_with", {}))
         if others:
             complain(
                 f"{options.file} was made with {', '.join(others)}; equal bits are promised for "

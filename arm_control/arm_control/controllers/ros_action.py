@@ -19,7 +19,11 @@ from rclpy.task import Future
 
 from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
 from arm_control.loop.control_loop import ControlLoop
-from arm_control.loop.ros_executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer, settle
+from arm_control.loop.ros_executor_bridge import (
+    EXECUTOR_TIMEOUT_S,
+    complete_future,
+    let_executor_answer,
+)
 
 RESULT_TIMEOUT_S = 10
 """How long a result is kept for its client. With rclpy's default of 15 minutes, a stream of goals
@@ -117,7 +121,7 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
         """End a goal, unless its client has already received a result; any thread."""
         running = self._running.get(goal_id)
         if running is not None:
-            settle(running.ended, result, self._executor)
+            complete_future(running.ended, result, self._executor)
 
     # Executor's thread
 

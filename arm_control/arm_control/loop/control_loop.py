@@ -229,7 +229,7 @@ class ControlLoop:
         self._finish_steps()
         self._paused = True
         if self.lock_step is not None:
-            self.lock_step.rest()
+            self.lock_step.pause_timeout()
         self._priority.lower()
 
     def _resume(self) -> None:

@@ -19,7 +19,8 @@ class LockStep:
     since the start, or since the loop gave up on it, may answer with any stamp; that is how it
     announces itself.
 
-    `hear` may be called on any thread, one at a time; everything else is for the loop thread.
+    `record_answer` may be called on any thread, one at a time; everything else is for the loop
+    thread.
 
     Attributes:
         partners: names of the partners.
@@ -45,7 +46,7 @@ class LockStep:
         self._tick_ns = 0
         self._closed_since_s = math.nan
 
-    def hear(self, partner: str, stamp_ns: int) -> bool:
+    def record_answer(self, partner: str, stamp_ns: int) -> bool:
         """Record an answer; return whether it opens the gate, so that the loop must be woken."""
         answered_ns = self._answered_ns[partner]
         if answered_ns == NEVER_NS:
@@ -93,7 +94,7 @@ class LockStep:
             self._closed_since_s = now_s
         return self._closed_since_s + self._timeout_s - now_s
 
-    def rest(self) -> None:
+    def pause_timeout(self) -> None:
         """Stop the time-out until the loop wants to tick again, for example during a pause."""
         self._closed_since_s = math.nan
 
@@ -108,7 +109,7 @@ class LockStep:
             f"{self._timeout_s:g} s; the simulation is paused"
         )
         logger.error("%s. Resume it with: arm sim play", self.failure)
-        self.rest()
+        self.pause_timeout()
 
     def _missing(self) -> list[str]:
         tick_ns = self._tick_ns

@@ -23,7 +23,7 @@ PASSES_TO_ANSWER = 2
 answer them."""
 
 
-def settle(future: Future, result: object, executor: Executor) -> None:
+def complete_future(future: Future, result: object, executor: Executor) -> None:
     """Complete a future that a coroutine of `executor` awaits; any thread."""
     future.set_result(result)
     executor.wake()
@@ -37,10 +37,10 @@ async def call_on_loop(
     Returns:
         Its result or exception; `LoopStoppedError` if the loop has ended.
     """
-    return await completed(loop.call(function), executor)
+    return await wait_for_future(loop.call(function), executor)
 
 
-async def completed(pending: "LoopFuture[ResultT]", executor: Executor) -> ResultT:
+async def wait_for_future(pending: "LoopFuture[ResultT]", executor: Executor) -> ResultT:
     """Wait for a future that another thread completes; for coroutines of `executor`.
 
     Returns:
@@ -51,7 +51,7 @@ async def completed(pending: "LoopFuture[ResultT]", executor: Executor) -> Resul
     def pass_on(done: "LoopFuture[Any]") -> None:
         error = done.exception()
         if error is None:
-            settle(future, done.result(), executor)
+            complete_future(future, done.result(), executor)
             return
         future.set_exception(error)
         executor.wake()

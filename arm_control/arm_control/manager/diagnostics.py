@@ -81,7 +81,7 @@ class RefusedRequests:
             if len(self._reasons) > CAPACITY:
                 del self._reasons[next(iter(self._reasons))]
 
-    def settle(self, request: str, name: str) -> None:
+    def clear(self, request: str, name: str) -> None:
         """Drop a refusal, because the same request has succeeded."""
         with self._lock:
             self._reasons.pop((request, name), None)

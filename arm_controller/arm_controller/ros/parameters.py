@@ -11,7 +11,7 @@ from arm_node.parameter_values import (
     Reader,
     Value,
     one_of,
-    read_filled_text,
+    read_nonempty_text,
     wanted_by,
 )
 from arm_node.parameters import declare_untyped
@@ -93,4 +93,4 @@ def declare_match_timeout_s(node: Node) -> float:
 
 
 def _read_topic(value: object) -> str:
-    return read_filled_text(value, "the name of a topic")
+    return read_nonempty_text(value, "the name of a topic")

@@ -12,10 +12,10 @@ from arm_node.parameter_values import (
     Reader,
     Value,
     read_flag,
+    read_integer,
     read_number,
     read_parameter,
     read_texts,
-    read_whole,
     refusal,
 )
 
@@ -110,7 +110,7 @@ def _dependence(joint: str, keys: Mapping[str, Any]) -> Mimic:
 
 def _read_rate(value: object) -> int:
     wanted = "an integer from 1 to 10000 (Hz)"
-    rate = read_whole(value, wanted)
+    rate = read_integer(value, wanted)
     if not 1 <= rate <= 10_000:
         raise refusal(wanted, value)
     return rate

@@ -8,9 +8,9 @@ from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_node.parameter_values import (
     one_of,
     read_flag,
-    read_not_negative,
+    read_integer,
+    read_non_negative,
     read_text,
-    read_whole,
     read_words,
     refusal,
 )
@@ -79,12 +79,12 @@ def read_settings(value: Parameters) -> SimulationSettings:
         real_time_factor=value(
             "real_time_factor",
             1.0,
-            read_not_negative,
+            read_non_negative,
             "ratio of simulation time to wall time; 0 is as fast as possible",
             read_only=False,
         ),
         physics_step_s=value(
-            "physics_step", 0.0, read_not_negative, "step in seconds; 0 chooses one up to 2 ms"
+            "physics_step", 0.0, read_non_negative, "step in seconds; 0 chooses one up to 2 ms"
         )
         or None,
         paused=value("paused", False, read_flag, "start paused"),
@@ -107,7 +107,7 @@ def read_settings(value: Parameters) -> SimulationSettings:
             one_of(PREFERENCES),
             f"render backend of the cameras: {', '.join(PREFERENCES)}",
         ),
-        seed=value("seed", 0, read_whole, "seed of the sensors' noise"),
+        seed=value("seed", 0, read_integer, "seed of the sensors' noise"),
         world_limit=_limit(value, WORLD_LIMIT, "a world's"),
         spawn_limit=_limit(value, SPAWN_LIMIT, "a spawned"),
         headless=value("headless", True, read_flag, "false opens a window"),
@@ -126,14 +126,14 @@ def read_settings(value: Parameters) -> SimulationSettings:
 
 def read_above_zero(value: object) -> float:
     """Return a finite number above 0."""
-    number = read_not_negative(value)
+    number = read_non_negative(value)
     if not number:
         raise refusal("a finite number above 0", value)
     return number
 
 
 def _read_gain(value: object) -> float:
-    gain = read_not_negative(value)
+    gain = read_non_negative(value)
     if gain > 1.0:
         raise refusal("a number from 0 to 1", value)
     return gain
@@ -141,5 +141,5 @@ def _read_gain(value: object) -> float:
 
 def _limit(value: Parameters, default: MemoryLimit, whose: str) -> MemoryLimit:
     description = f"limit on the memory of {whose} MJCF in MB"
-    mb = value(default.parameter, default.mb, read_not_negative, description)
+    mb = value(default.parameter, default.mb, read_non_negative, description)
     return replace(default, mb=mb)

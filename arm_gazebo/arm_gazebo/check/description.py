@@ -17,7 +17,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Mesh, Robot
 from arm_gazebo.check.mesh_sizes import mesh_sizes
 from arm_gazebo.check.unread_elements import unread_elements
-from arm_gazebo.drives.servo_tuning import too_weak, tune
+from arm_gazebo.drives.servo_tuning import tune, weak_drives
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.hardware.simulated_hardware import MAX_EFFORT, STATES
 from arm_gazebo.launching.default_control import commandable_joints, with_hardware
@@ -217,7 +217,7 @@ def _check_interfaces(
 def _check_strength(built: BuiltModel, report: BuildReport) -> None:
     driven = [joint for joint in built.joints.values() if joint.actuator is not None]
     tuning = tune(built.model, driven, built.qpos, PERIOD_S)
-    for name, problem in too_weak(built.model, driven, tuning):
+    for name, problem in weak_drives(built.model, driven, tuning):
         report.warn(f"joint '{name}'", problem)
 
 

@@ -22,7 +22,7 @@ from arm_gazebo.drives.servo import (
     Servo,
 )
 from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, resistance
-from arm_gazebo.drives.setpoint_batch import Streams, approach, held_back
+from arm_gazebo.drives.setpoint_batch import CommandStreams, approach, held_back
 from arm_node.index_slice import as_slice
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ class ServoBatch:
         self._still = np.zeros(shape)
         self._position, self._velocity = np.zeros(shape), np.zeros(shape)
         self._start_position, self._start_velocity = np.zeros(shape), np.zeros(shape)
-        self._streams = Streams.at(np.zeros(shape))
+        self._streams = CommandStreams.at(np.zeros(shape))
         self._taken = np.full(shape, np.nan)
         self.activations, self.rates = np.zeros(shape), np.zeros(shape)
 
@@ -108,7 +108,9 @@ class ServoBatch:
         stop = position + 0.5 * velocity * np.abs(velocity) / self._braking
         self._position[rows], self._velocity[rows] = position, velocity
         self._start_position[rows], self._start_velocity[rows] = position, velocity
-        self._streams.put(rows, Streams.at(np.minimum(np.maximum(stop, self._lower), self._upper)))
+        self._streams.put(
+            rows, CommandStreams.at(np.minimum(np.maximum(stop, self._lower), self._upper))
+        )
         self._ticks[rows] = 0
         self._awake_ticks[rows] = self._settle_ticks
         self._taken[rows] = np.nan

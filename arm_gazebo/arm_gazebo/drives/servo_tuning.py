@@ -193,7 +193,7 @@ def retune(
     return replace(tuning, coupling=coupling, gears=gears)
 
 
-def too_weak(
+def weak_drives(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
 ) -> Iterator[tuple[str, str]]:
     """Yield the driven joints whose effort limit is too small, with a sentence for each."""

@@ -19,7 +19,7 @@ LONG_AGO = -1_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Streams:
+class CommandStreams:
     """The `CommandStream` of every joint of every copy, arrays of shape (copies, joints).
 
     Attributes:
@@ -37,9 +37,9 @@ class Streams:
     last_change: Integers
 
     @staticmethod
-    def at(positions: Array) -> "Streams":
+    def at(positions: Array) -> "CommandStreams":
         """Return streams that rest at positions."""
-        return Streams(
+        return CommandStreams(
             positions.copy(),
             np.zeros(positions.shape),
             positions.copy(),
@@ -51,7 +51,7 @@ class Streams:
         """Return the arrays, in the order of the attributes."""
         return self.target, self.velocity, self.command, self.left, self.last_change
 
-    def put(self, rows: NDArray[np.intp], other: "Streams") -> None:
+    def put(self, rows: NDArray[np.intp], other: "CommandStreams") -> None:
         """Replace the streams of some copies."""
         for mine, new in zip(self.arrays(), other.arrays(), strict=True):
             mine[rows] = new

@@ -55,7 +55,7 @@ class CameraProgress:
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class FeedReport:
     """What the camera process has reported since the last call.
 
     Attributes:
@@ -116,11 +116,11 @@ class FeedEnd:
         """Wait for a report of the camera process; any thread, while the end is open."""
         select.select([self._socket], [], [], timeout_s)
 
-    def answers(self) -> Answers:
+    def answers(self) -> FeedReport:
         """Return what the camera process has reported since the last call."""
         said = [data for data, _files in _receive_all(self._socket)[0]]
         progress = [data[1:] for data in said if data[:1] == PROGRESS]
-        return Answers(
+        return FeedReport(
             [data[1:].decode() for data in said if data[:1] == BACKEND],
             tuple(CameraProgress(*counts) for counts in COUNTS.iter_unpack(progress[-1]))
             if progress

@@ -26,7 +26,7 @@ _ARGUMENT = re.compile(r"\$\{\s*(\w+)\s*\}|\$\(\s*var\s+(\w+)\s*\)")
 
 
 @dataclass(frozen=True, slots=True)
-class Startable:
+class StartableControllers:
     """The controllers to start, in the file's order.
 
     Attributes:
@@ -38,7 +38,7 @@ class Startable:
     remarks: tuple[str, ...]
 
 
-def fill_in(path: Path, arguments: Mapping[str, str]) -> Controllers:
+def substitute_arguments(path: Path, arguments: Mapping[str, str]) -> Controllers:
     """Substitute the robot's xacro arguments in a file; return the path if it has none to fill.
 
     Args:
@@ -61,7 +61,9 @@ def fill_in(path: Path, arguments: Mapping[str, str]) -> Controllers:
     return _content(_ARGUMENT.sub(lambda match: arguments[_name(match)], text), path)
 
 
-def startable_controllers(controllers: Controllers, known_types: frozenset[str]) -> Startable:
+def startable_controllers(
+    controllers: Controllers, known_types: frozenset[str]
+) -> StartableControllers:
     """Return the controllers of a file that can be active together.
 
     Args:
@@ -85,10 +87,10 @@ def startable_controllers(controllers: Controllers, known_types: frozenset[str])
         else:
             names.append(name)
             holders.update(dict.fromkeys(joints, name))
-    return Startable(tuple(names), tuple(remarks))
+    return StartableControllers(tuple(names), tuple(remarks))
 
 
-def controllers_below(namespace: str, controllers: Controllers) -> Mapping[str, Any]:
+def controllers_in_namespace(namespace: str, controllers: Controllers) -> Mapping[str, Any]:
     """Return the content of a controllers' file with its nodes in a namespace.
 
     Nodes that the file itself puts into a namespace stay there. "/**" is limited to this namespace,

@@ -13,8 +13,8 @@ from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import (
     Controllers,
     checked_controllers,
-    fill_in,
     startable_controllers,
+    substitute_arguments,
 )
 from arm_gazebo.launching.default_control import (
     COMMANDER,
@@ -94,13 +94,13 @@ def set_up_robot(
     if isinstance(controllers, Mapping):
         content = checked_controllers(controllers, "the controllers' parameters")
     elif controllers:
-        content = fill_in(path_of(controllers, expansion.finder), expansion.arguments)
+        content = substitute_arguments(path_of(controllers, expansion.finder), expansion.arguments)
     else:
         content = default_parameters(joints)
         remarks.append(f"no controllers are given: {_describe_defaults(joints)}")
         remarks += (
             f"the description names a file for Gazebo's plugin; to use it: controllers:={file}"
-            for file in files_for_gazebo(description)
+            for file in gz_parameter_files(description)
         )
     return RobotSetup(
         description,
@@ -175,7 +175,7 @@ def _describe_defaults(joints: HardwareJoints) -> str:
     return "; ".join(clauses)
 
 
-def files_for_gazebo(description: str) -> list[str]:
+def gz_parameter_files(description: str) -> list[str]:
     """Return the parameter files that a description names for gz_ros2_control."""
     named = parse_xml(description).iterfind("gazebo/plugin/parameters")
     files = (str(element.text or "").strip() for element in named)

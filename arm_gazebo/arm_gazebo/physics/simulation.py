@@ -11,7 +11,7 @@ import numpy as np
 from arm_control.run_inputs import InputGate, run_input, run_input_noted_as
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import Servo
-from arm_gazebo.drives.servo_tuning import ServoTuning, retune, too_weak, tune
+from arm_gazebo.drives.servo_tuning import ServoTuning, retune, tune, weak_drives
 from arm_gazebo.errors import RecordingError, TimingError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.saved_model import SavedModel
@@ -89,7 +89,7 @@ class Simulation:
         driven = [joint for joint in built.joints.values() if joint.actuator is not None]
         driven.sort(key=lambda joint: joint.actuator or 0)
         tuning = tune(self.model, driven, built.qpos, timing.period_s)
-        for name, problem in too_weak(self.model, driven, tuning):
+        for name, problem in weak_drives(self.model, driven, tuning):
             logger.warning("joint '%s': %s", name, problem)
         self._tuning = tuning
         self.servo = Servo(self.model, self.data, driven, tuning, timing, proportional_gain)

@@ -22,7 +22,7 @@ def without_independent_mimics(robot: Robot, hardware: Iterable[HardwareInfo]) -
     return replace(robot, joints=tuple(joints))
 
 
-def followings(robot: Robot, report: BuildReport) -> dict[str, Mimic]:
+def mimic_rules(robot: Robot, report: BuildReport) -> dict[str, Mimic]:
     """Return for each joint that mimics another how it follows the end of its chain."""
     found: dict[str, Mimic] = {}
     for joint in robot.joints:

@@ -24,7 +24,7 @@ from arm_gazebo.robot.floor_contact import FloorContact
 from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.initial_state import initial_positions
 from arm_gazebo.robot.link_geometry import LinkGeometry
-from arm_gazebo.robot.mimic_joints import add_equalities, followings, without_independent_mimics
+from arm_gazebo.robot.mimic_joints import add_equalities, mimic_rules, without_independent_mimics
 from arm_gazebo.robot.rollers import add_rollers
 from arm_gazebo.robot.start_contacts import report_overlaps
 from arm_gazebo.robot.wheels import set_up_wheels
@@ -125,7 +125,7 @@ class RobotPart:
         self._free = options.base == "free" and robot.root != WORLD_LINK
         self._bodies = self._add_links(layer)
         add_rollers(spec, self._bodies, robot, entry.tags, report)
-        self._follow = followings(robot, report)
+        self._follow = mimic_rules(robot, report)
         add_equalities(spec, robot, self._follow, options.step_s, report)
         self._drives = drives(robot, entry.hardware, self._follow, report)
         add_actuators(spec, self._drives, mujoco.MjSpec().default)

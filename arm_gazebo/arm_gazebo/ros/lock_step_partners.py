@@ -22,7 +22,7 @@ from arm_control.loop.supervision import failure_of
 from arm_gazebo.ros.topic import message_class
 from arm_node.executor_thread import ExecutorThread
 
-EARS = "_lock_step"
+NODE_NAME = "_lock_step"
 """Name of the node that receives the answers."""
 SEARCH_S = 0.1
 """Interval between two searches for partners and new controllers."""
@@ -68,14 +68,14 @@ class LockStepPartners:
         self._commands: tuple[Subscription, ...] = ()
         self._taken = _TakenByTheLoop()
         # The fewer entities, the faster rclpy's executor.
-        self._ears = Node(
-            EARS,
+        self._listener = Node(
+            NODE_NAME,
             enable_rosout=False,
             start_parameter_services=False,
             parameter_overrides=[Parameter("start_type_description_service", value=False)],
         )
         self._thread = ExecutorThread("lock-step", SingleThreadedExecutor())
-        self._thread.executor.add_node(self._ears)
+        self._thread.executor.add_node(self._listener)
         self._thread.start()
         node.create_timer(SEARCH_S, self._search, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -93,7 +93,7 @@ class LockStepPartners:
 
     def destroy(self) -> None:
         """Destroy the node that receives them, after the loop has ended."""
-        self._ears.destroy_node()
+        self._listener.destroy_node()
 
     # Executor's thread
 
@@ -137,13 +137,13 @@ class LockStepPartners:
 
         def take(message: Any) -> None:
             stamp = stamp_of(message)
-            if self._lock_step.hear(name, stamp.sec * NS_PER_S + stamp.nanosec):
+            if self._lock_step.record_answer(name, stamp.sec * NS_PER_S + stamp.nanosec):
                 self._loop.wake()
                 time.sleep(STEP_BACK_S)
 
         # A best-effort publisher does not match a reliable subscription.
         qos = QoSProfile(depth=DEPTH, reliability=offered.reliability)
-        self._ears.create_subscription(class_, topic, take, qos)
+        self._listener.create_subscription(class_, topic, take, qos)
         logger.info("lock-step with %s on %s", name, topic)
         return True
 

@@ -43,7 +43,7 @@ from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.feed import WindowFeed
 from arm_node.notify import notify
-from arm_node.parameter_values import read_not_negative
+from arm_node.parameter_values import read_non_negative
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
 from arm_node.workarounds.discovery import prompt_discovery
@@ -284,7 +284,7 @@ def _follow_pace(
     node: Node, executor: Executor, loop: ControlLoop, nodes: ExitStack, ending: ExitStack
 ) -> None:
     """Let clients change the pace, and with a lock-step its partners."""
-    follow_parameter(node, "real_time_factor", read_not_negative, partial(_set_speed, loop))
+    follow_parameter(node, "real_time_factor", read_non_negative, partial(_set_speed, loop))
     if loop.lock_step is not None:
         _follow_partners(node, executor, loop, loop.lock_step, nodes, ending)
 

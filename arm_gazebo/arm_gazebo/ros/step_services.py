@@ -11,7 +11,7 @@ from simulation_interfaces.srv import StepSimulation
 
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
-from arm_control.loop.ros_executor_bridge import call_on_loop, completed
+from arm_control.loop.ros_executor_bridge import call_on_loop, wait_for_future
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.ros.world_convert import create_services, refuse
 from arm_gazebo.world.refusal import Refusal, RequestError
@@ -62,7 +62,7 @@ class StepServices:
 
     async def _step(self, request: StepSimulation.Request, response: Any) -> Any:
         try:
-            done = await completed(self._run.step(request.steps), self._executor)
+            done = await wait_for_future(self._run.step(request.steps), self._executor)
         except RequestError as error:
             return refuse(response, {}, error)
         except (LoopStoppedError, ValueError) as error:
@@ -76,7 +76,7 @@ class StepServices:
                 await self._pictures_are_out()
                 before = [camera.missed() for camera in self._cameras]
                 while done < request.steps and goes_on():
-                    done += await completed(self._run.step(1), self._executor)
+                    done += await wait_for_future(self._run.step(1), self._executor)
                     await self._pictures_are_out()
                     self._check_sent(before)
         except RequestError as error:

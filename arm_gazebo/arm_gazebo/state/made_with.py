@@ -22,7 +22,7 @@ def made_with() -> dict[str, str]:
     }
 
 
-def differences_of_makers(recorded: Mapping[str, str]) -> list[str]:
+def machine_differences(recorded: Mapping[str, str]) -> list[str]:
     """Return a phrase for each way in which this machine differs from that of a recording."""
     here = made_with()
     return [

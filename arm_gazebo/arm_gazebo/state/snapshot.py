@@ -12,7 +12,7 @@ import zstandard
 
 from arm_control.errors import StateError
 from arm_control.state.encoding import decode, encode
-from arm_gazebo.state.made_with import differences_of_makers
+from arm_gazebo.state.made_with import machine_differences
 from arm_gazebo.world.changes import Spawned, WorldChanges
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
@@ -131,9 +131,9 @@ def _damaged(path: Path, error: Exception) -> RequestError:
     return RequestError(Refusal.UNREADABLE, f"{path} is damaged: {error}")
 
 
-def remark_on(snapshot: RunSnapshot) -> str:
+def machine_remark(snapshot: RunSnapshot) -> str:
     """Return how this machine differs from the snapshot's, "" if a run continues bit for bit."""
-    others = differences_of_makers(snapshot.made_with)
+    others = machine_differences(snapshot.made_with)
     if not others:
         return ""
     return f"made with {', '.join(others)}: the run may continue with other rounding errors"

@@ -10,9 +10,9 @@ from arm_gazebo.state.made_with import made_with
 from arm_gazebo.state.snapshot import (
     SUFFIX,
     RunSnapshot,
+    machine_remark,
     model_hash,
     read_snapshot,
-    remark_on,
     write_snapshot,
 )
 from arm_gazebo.world.changes import WorldChanges
@@ -109,7 +109,7 @@ class SnapshotStore:
         self._editor.change_to(snapshot.changes, restore)
         if refused:
             raise RequestError(Refusal.FAILED, "; ".join(refused))
-        return snapshot, remark_on(snapshot)
+        return snapshot, machine_remark(snapshot)
 
     def remove(self, where: str) -> None:
         """Forget a snapshot, or delete its file.

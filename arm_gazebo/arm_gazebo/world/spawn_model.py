@@ -22,7 +22,7 @@ from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import exclude_neighbour_contacts, exclude_own_contacts
 from arm_gazebo.robot.gazebo_tags import GazeboTags, parse_gazebo_tags
 from arm_gazebo.robot.link_geometry import LinkGeometry
-from arm_gazebo.robot.mimic_joints import add_equalities, followings
+from arm_gazebo.robot.mimic_joints import add_equalities, mimic_rules
 from arm_gazebo.sdf.body import WORLD_MASKS, add_model
 from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.include import sdf_file_in
@@ -153,7 +153,7 @@ class ModelSource:
         bodies = BodyTree(
             spec, robot, geometry, TreeOptions(self.step_s, default, free, Pose()), report
         ).add()
-        follow = followings(robot, report)
+        follow = mimic_rules(robot, report)
         add_equalities(spec, robot, follow, self.step_s, report)
         _leave_out_own_contacts(spec, bodies, tags, report)
         root = _only_body(spec, "URDF")

@@ -8,7 +8,7 @@ from arm_gazebo.errors import RecordingError
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.run_file import Record, RecordedInput, RunFileWriter, StateBlock
 from arm_gazebo.recording.session import first_inputs, header_of
-from arm_sim.assembled import Assembled
+from arm_sim.parts import SimulationParts
 from arm_sim.recording import run_parts
 
 
@@ -19,7 +19,7 @@ class BlackBox:
         refusal: why the run cannot be recorded; "" if it can.
     """
 
-    def __init__(self, parts: Assembled) -> None:
+    def __init__(self, parts: SimulationParts) -> None:
         self.refusal = ""
         self._parts = parts
         self._run = run_parts(parts)

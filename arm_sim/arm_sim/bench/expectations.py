@@ -6,7 +6,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_sim.bench.history import QUANTITIES, Guide, StateHistory
+from arm_sim.bench.history import QUANTITIES, ReferenceLine, StateHistory
 from arm_sim.errors import CallError, UnknownNameError
 
 Target = Mapping[str, float] | Sequence[float] | NDArray[np.float64]
@@ -19,7 +19,7 @@ AT_REST = 1e-3
 """Speed in rad/s or m/s below which a message says that a joint is at rest."""
 
 
-class Reaching:
+class TargetCheck:
     """Whether joints are at their targets, all at the same time.
 
     Call it as the history grows; it looks only at new states.
@@ -47,7 +47,7 @@ class Reaching:
         self._values = np.array(list(self._targets.values()))
         self._first = self._next = max(0, len(history) - 1)
         self._there_since_s: float | None = None
-        history.guides += [Guide("position", name, v) for name, v in self._targets.items()]
+        history.guides += [ReferenceLine("position", name, v) for name, v in self._targets.items()]
 
     def __call__(self) -> bool:
         """Return whether the joints have been at their targets for long enough."""
@@ -125,14 +125,14 @@ def expect_reached(
     Args:
         history: their states.
         run_until: lets time pass until a condition holds, but at most this many simulated seconds.
-        target: see `Reaching`.
+        target: see `TargetCheck`.
         within_s: how long to wait, in simulated seconds.
-        tolerance: see `Reaching`.
-        hold_s: see `Reaching`.
+        tolerance: see `TargetCheck`.
+        hold_s: see `TargetCheck`.
         circumstances: returns more sentences for the message.
     """
     __tracebackhide__ = True
-    reaching = Reaching(history, target, tolerance, hold_s)
+    reaching = TargetCheck(history, target, tolerance, hold_s)
     if not run_until(reaching, within_s):
         raise AssertionError("\n".join([reaching.explain(within_s), *circumstances()]))
 
@@ -178,7 +178,10 @@ def violations(history: StateHistory, quantity: str, limit: Limit) -> list[str]:
         # A NaN is not within any bounds.
         beyond = ~((values >= lowest) & (values <= highest))
         if beyond.any():
-            history.guides += [Guide(quantity, name, lowest), Guide(quantity, name, highest)]
+            history.guides += [
+                ReferenceLine(quantity, name, lowest),
+                ReferenceLine(quantity, name, highest),
+            ]
             found.append(_violation(history, name, quantity, (lowest, highest), beyond))
     return found
 

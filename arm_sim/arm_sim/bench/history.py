@@ -13,7 +13,7 @@ FIRST_CAPACITY = 1024
 
 
 @dataclass(frozen=True, slots=True)
-class Guide:
+class ReferenceLine:
     """A value that an assertion compares a joint with, drawn as a line in plots.
 
     Attributes:
@@ -39,7 +39,7 @@ class StateHistory:
     def __init__(self, names: Sequence[str], units: Sequence[str] = ()) -> None:
         self.names = tuple(names)
         self.units = tuple(units) or ("",) * len(self.names)
-        self.guides: list[Guide] = []
+        self.guides: list[ReferenceLine] = []
         self._rows = np.empty((FIRST_CAPACITY, 1 + len(QUANTITIES) * len(self.names)))
         self._count = 0
 

@@ -78,9 +78,11 @@ def _pass_signals_on(supervisor_pid: int, awaited: set[signal.Signals]) -> int:
 
 def _key_passed_on(supervisor_pid: int) -> AbstractContextManager[None]:
     # Imported only here, because most launches have no terminal.
-    from launch_py.supervision.terminal_key import space_bar_heard
+    from launch_py.supervision.terminal_key import space_bar_watched
 
-    return space_bar_heard(STANDARD_INPUT, lambda: linux.signal_process(supervisor_pid, KEY_SIGNAL))
+    return space_bar_watched(
+        STANDARD_INPUT, lambda: linux.signal_process(supervisor_pid, KEY_SIGNAL)
+    )
 
 
 def stop_signals() -> list[signal.Signals]:

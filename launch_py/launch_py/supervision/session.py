@@ -30,7 +30,7 @@ from launch_py.supervision.notify_socket import NotifySocket
 from launch_py.supervision.probe_client import ProbeClient
 from launch_py.supervision.runner import LocalRunner
 from launch_py.supervision.supervisor import Supervisor
-from launch_py.supervision.terminal_key import KeyCommand, is_heard
+from launch_py.supervision.terminal_key import KeyCommand, is_in_foreground
 from launch_py.system.child_environment import default_environment
 
 OBSERVE_DELAYS_S = (0.02, 0.1, 0.5)
@@ -74,7 +74,7 @@ def run_plan(plan: LaunchPlan, environ: Mapping[str, str], options: LaunchOption
         StartError: the log folder cannot be created.
     """
     logs = LogFolder(log_root(environ), options.log_limit_bytes)
-    if not is_heard(STANDARD_INPUT):
+    if not is_in_foreground(STANDARD_INPUT):
         options = replace(options, key=None)
     return supervise_in_fork(
         lambda foreground_pid: _LaunchSession(plan, environ, options, logs, foreground_pid).run(),

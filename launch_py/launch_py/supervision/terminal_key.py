@@ -31,7 +31,7 @@ class KeyCommand:
     words: tuple[str, ...]
 
 
-def is_heard(fd: int) -> bool:
+def is_in_foreground(fd: int) -> bool:
     """Return whether keys typed on this terminal are meant for this process."""
     try:
         return os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()
@@ -40,7 +40,7 @@ def is_heard(fd: int) -> bool:
 
 
 @contextmanager
-def space_bar_heard(fd: int, press: Callable[[], None]) -> Iterator[None]:
+def space_bar_watched(fd: int, press: Callable[[], None]) -> Iterator[None]:
     """Call back for each press of the space bar, on a thread of its own; Ctrl-C works as before.
 
     In the background nothing is read, because the keys belong to the shell. Without a terminal
@@ -50,7 +50,7 @@ def space_bar_heard(fd: int, press: Callable[[], None]) -> Iterator[None]:
         fd: standard input.
         press: called for each press.
     """
-    if not is_heard(fd):
+    if not is_in_foreground(fd):
         yield
         return
     before = termios.tcgetattr(fd)
@@ -62,7 +62,7 @@ def space_bar_heard(fd: int, press: Callable[[], None]) -> Iterator[None]:
         yield
     finally:
         ending.set()
-        if is_heard(fd):
+        if is_in_foreground(fd):
             with suppress(termios.error):
                 termios.tcsetattr(fd, termios.TCSANOW, before)
 
@@ -77,7 +77,7 @@ def _take_single_keys(fd: int) -> None:
 def _listen(fd: int, press: Callable[[], None], ending: threading.Event) -> None:
     was_away = False
     while not ending.is_set():
-        if not is_heard(fd):
+        if not is_in_foreground(fd):
             was_away = True
             time.sleep(BACKGROUND_POLL_S)
             continue
@@ -85,7 +85,7 @@ def _listen(fd: int, press: Callable[[], None], ending: threading.Event) -> None
             # The shell has changed the terminal's modes in the meantime.
             was_away = False
             _take_single_keys(fd)
-        if not select.select([fd], [], [], BACKGROUND_POLL_S)[0] or not is_heard(fd):
+        if not select.select([fd], [], [], BACKGROUND_POLL_S)[0] or not is_in_foreground(fd):
             continue
         try:
             typed = os.read(fd, 1024)

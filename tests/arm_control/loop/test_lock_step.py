@@ -22,7 +22,7 @@ class Gate:
         self.lock_step = LockStep(["/a", "/b"], 5.0, self.clock)
 
     def hear(self, partner: str, time_s: float) -> bool:
-        return self.lock_step.hear(partner, round(time_s * NS_PER_S))
+        return self.lock_step.record_answer(partner, round(time_s * NS_PER_S))
 
     def tick(self, time_s: float) -> None:
         assert self.lock_step.is_open()
@@ -113,7 +113,7 @@ def test_a_pause_does_not_count(started):
     started.tick(0.01)
     started.lock_step.remaining_s()
     started.clock.advance(4.0)
-    started.lock_step.rest()
+    started.lock_step.pause_timeout()
     started.clock.advance(100.0)
     assert started.lock_step.remaining_s() == 5.0
 
@@ -162,7 +162,7 @@ class Answering:
         for number in range(self._answers):
             if number:
                 self._sent.acquire()
-            if self.lock_step.hear("/partner", number * NS_PER_S // 100):
+            if self.lock_step.record_answer("/partner", number * NS_PER_S // 100):
                 self.loop.wake()
 
 

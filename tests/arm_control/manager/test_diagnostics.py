@@ -237,7 +237,7 @@ def test_a_refused_request_is_readable_until_it_succeeds(ward: Ward) -> None:
     values = ward.controllers.values
     assert values["x.load_controller"] == "The 'type' param was not defined for 'x'."
     assert values["switch_controller"] == "Could not activate"
-    ward.refusals.settle("load_controller", "x")
+    ward.refusals.clear("load_controller", "x")
     assert "x.load_controller" not in ward.controllers.values
 
 

@@ -7,8 +7,8 @@ from arm_gazebo.drives.servo_tuning import (
     GEAR_SHARE,
     TIME_CONSTANT_S,
     resistance,
-    too_weak,
     tune,
+    weak_drives,
 )
 
 PERIOD_S = 0.01
@@ -110,7 +110,7 @@ def test_leader_feels_its_followers(parts):
     ],
 )
 def test_joints_that_friction_or_damping_hold_back_are_named(parts, dynamics, said):
-    found = [*too_weak(*tuned(parts, parts.pendulum(f"<dynamics {dynamics}/>")))]
+    found = [*weak_drives(*tuned(parts, parts.pendulum(f"<dynamics {dynamics}/>")))]
     assert len(found) == len(said)
     for (joint, problem), beginning in zip(found, said, strict=True):
         assert joint == "j"

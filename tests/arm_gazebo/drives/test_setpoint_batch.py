@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from arm_gazebo.drives.driven_joint import CommandStream
 from arm_gazebo.drives.setpoint import Setpoint
-from arm_gazebo.drives.setpoint_batch import Streams, approach
+from arm_gazebo.drives.setpoint_batch import CommandStreams, approach
 
 PERIOD_S = 0.01
 near = st.floats(-3.0, 3.0)
@@ -67,7 +67,7 @@ def test_a_whole_approach_has_the_same_bits(near_end: float):
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.one_of(st.none(), st.floats(-1.0, 1.0)), max_size=40))
 def test_streams_turn_commands_into_targets_as_one_stream_does(commands: list[float | None]):
-    one, many = CommandStream(0.25, PERIOD_S), Streams.at(np.full((2, 1), 0.25))
+    one, many = CommandStream(0.25, PERIOD_S), CommandStreams.at(np.full((2, 1), 0.25))
     last = 0.25
     for tick, command in enumerate(commands):
         last = last if command is None else command

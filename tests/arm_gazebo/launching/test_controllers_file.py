@@ -3,7 +3,7 @@
 import pytest
 
 from arm_gazebo.errors import SimSettingsError
-from arm_gazebo.launching.controllers_file import fill_in, startable_controllers
+from arm_gazebo.launching.controllers_file import startable_controllers, substitute_arguments
 
 TYPES = frozenset({"a/Broadcaster", "a/Position", "a/Trajectory"})
 CONTENT = """
@@ -84,7 +84,7 @@ def test_a_controller_that_two_managers_have_starts_once(file):
 
 def test_places_in_a_file_with_nested_namespaces_are_filled_node_by_node(file):
     file.write_text(NESTED.replace("j0", "${prefix}j0") % "left")
-    content = fill_in(file, {"prefix": "p_"})
+    content = substitute_arguments(file, {"prefix": "p_"})
     assert not isinstance(content, type(file))
     assert content["/left/arm"] == {"ros__parameters": {"joints": ["p_j0"]}}
     assert list(content["/left/controller_manager"]["ros__parameters"]) == ["states", "arm", "hand"]
@@ -122,7 +122,7 @@ def test_a_single_joint_is_held_too(file):
 
 def test_arguments_of_the_robot_take_their_places(file):
     file.write_text(CONTENT.replace("[j0, j1]", "['${prefix}j0', '${ prefix }${tool}']"))
-    content = fill_in(file, {"prefix": "left_", "tool": "gun", "other": ""})
+    content = substitute_arguments(file, {"prefix": "left_", "tool": "gun", "other": ""})
     assert not isinstance(content, type(file))
     assert content["arm"] == {"ros__parameters": {"joints": ["left_j0", "left_gun"]}}
     assert startable_controllers(content, TYPES).names == ("states", "arm", "position", "hand")
@@ -131,14 +131,14 @@ def test_arguments_of_the_robot_take_their_places(file):
 def test_var_is_replaced_by_an_argument_of_the_robot_as_well(file):
     """As in the files of real robots' drivers, which ROS 2's launch fills in."""
     file.write_text(CONTENT.replace("[j0, j1]", "[$(var prefix)j0, '$( var prefix )${tool}']"))
-    content = fill_in(file, {"prefix": "left_", "tool": "gun"})
+    content = substitute_arguments(file, {"prefix": "left_", "tool": "gun"})
     assert not isinstance(content, type(file))
     assert content["arm"] == {"ros__parameters": {"joints": ["left_j0", "left_gun"]}}
 
 
 def test_a_file_without_places_stays_a_file(file):
     file.write_text(CONTENT)
-    assert fill_in(file, {"prefix": "left_"}) == file
+    assert substitute_arguments(file, {"prefix": "left_"}) == file
 
 
 def test_a_placeholder_for_an_unknown_argument_is_refused_with_the_known_ones(file):
@@ -146,9 +146,9 @@ def test_a_placeholder_for_an_unknown_argument_is_refused_with_the_known_ones(fi
     with pytest.raises(
         SimSettingsError, match=r"\$\{side\}, which is not an argument .*; it has base, p"
     ):
-        fill_in(file, {"p": "", "base": "fixed"})
+        substitute_arguments(file, {"p": "", "base": "fixed"})
     file.write_text(CONTENT.replace("j0", "$(var side)j0"))
     with pytest.raises(
         SimSettingsError, match=r"has \$\(var side\), which is not an argument .*; it has"
     ):
-        fill_in(file, {"p": "", "base": "fixed"})
+        substitute_arguments(file, {"p": "", "base": "fixed"})

@@ -3,7 +3,7 @@
 import pytest
 
 from arm_gazebo.errors import SimSettingsError
-from arm_gazebo.launching.controllers_file import controllers_below
+from arm_gazebo.launching.controllers_file import controllers_in_namespace
 from arm_gazebo.launching.robots_file import RobotRequest, read_robots_file
 
 
@@ -83,6 +83,6 @@ def test_nodes_of_a_controllers_file_go_below_the_namespace(tmp_path):
         "there: {a: {ros__parameters: {joints: [j]}}}\n"
         "/**: {a: {ros__parameters: {joints: [j]}}}\n"
     )
-    assert list(controllers_below("left", path)) == [
+    assert list(controllers_in_namespace("left", path)) == [
         *("/left/controller_manager", "/elsewhere/a", "/there/a", "/left/**/a"),
     ]

@@ -8,7 +8,7 @@ import pytest
 from arm_control.controllers.diff_drive.odometry import PlanarTwist
 from arm_control.controllers.gripper import GripperRequest
 from arm_control.controllers.mecanum_drive.kinematics import MecanumTwist
-from arm_sim.assembled import Assembled, assemble
+from arm_sim.parts import SimulationParts, assemble
 
 DEMOS = "package://gz_ros2_control_demos"
 ROSMASTER = "package://yahboom_rosmaster"
@@ -16,11 +16,11 @@ TICKS = 60
 
 
 @pytest.fixture
-def assembled() -> Iterator[Callable[..., Assembled]]:
+def assembled() -> Iterator[Callable[..., SimulationParts]]:
     """Return a maker of robots with the controllers of their files, active."""
-    made: list[Assembled] = []
+    made: list[SimulationParts] = []
 
-    def make(model: str, controllers: Any, **arguments: str) -> Assembled:
+    def make(model: str, controllers: Any, **arguments: str) -> SimulationParts:
         base = {"base": arguments.pop("base", "fixed")}
         parts = assemble(model, controllers, arguments, None, (), base)
         made.append(parts)
@@ -32,7 +32,7 @@ def assembled() -> Iterator[Callable[..., Assembled]]:
         parts.close()
 
 
-def run(parts: Assembled, ticks: int = TICKS) -> list[bytes]:
+def run(parts: SimulationParts, ticks: int = TICKS) -> list[bytes]:
     digests = []
     for _ in range(ticks):
         parts.tick()
@@ -40,11 +40,11 @@ def run(parts: Assembled, ticks: int = TICKS) -> list[bytes]:
     return digests
 
 
-def core(parts: Assembled, name: str) -> Any:
+def core(parts: SimulationParts, name: str) -> Any:
     return parts.controllers[name].core
 
 
-def assert_goes_on(parts: Assembled, disturb: Callable[[], object]) -> None:
+def assert_goes_on(parts: SimulationParts, disturb: Callable[[], object]) -> None:
     """Check that the run goes on from here as it did, whatever happened in between."""
     saved = parts.state.save()
     first = run(parts), parts.state.save()

@@ -4,7 +4,7 @@ from math import nan
 
 import pytest
 
-from arm_sim.bench.expectations import Reaching, violations
+from arm_sim.bench.expectations import TargetCheck, violations
 from arm_sim.bench.history import StateHistory
 from arm_sim.errors import CallError, UnknownNameError
 
@@ -21,7 +21,7 @@ def add(history: StateHistory, time_s: float, a: float, b: float = 0.0, speed: f
 
 
 def test_joints_reach_a_target_all_at_the_same_time(history: StateHistory):
-    reaching = Reaching(history, [1.0, 2.0], 0.01)
+    reaching = TargetCheck(history, [1.0, 2.0], 0.01)
     add(history, 0.1, 1.0, 0.0)
     assert not reaching()
     add(history, 0.2, 0.0, 2.0)
@@ -31,20 +31,20 @@ def test_joints_reach_a_target_all_at_the_same_time(history: StateHistory):
 
 
 def test_joints_that_are_not_named_may_be_anywhere(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01)
     add(history, 0.1, 1.0, 77.0)
     assert reaching()
 
 
 def test_a_state_between_two_looks_counts(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01)
     add(history, 0.1, 1.0)
     add(history, 0.2, 5.0)
     assert reaching()
 
 
 def test_joints_that_must_stay_have_not_reached_it_before(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01, hold_s=0.2)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01, hold_s=0.2)
     for tenth, position in enumerate([1.0, 1.0, 0.0, 1.0, 1.0], start=1):
         add(history, 0.1 * tenth, position)
         assert not reaching()
@@ -53,14 +53,14 @@ def test_joints_that_must_stay_have_not_reached_it_before(history: StateHistory)
 
 
 def test_a_position_that_is_not_a_number_is_not_at_a_target(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01)
     add(history, 0.1, nan)
     assert not reaching()
     assert "a: at nan rad" in reaching.explain(0.1)
 
 
 def test_the_message_says_where_each_joint_is_and_since_when(history: StateHistory):
-    reaching = Reaching(history, [1.0, 0.0], 0.01)
+    reaching = TargetCheck(history, [1.0, 0.0], 0.01)
     add(history, 0.1, 0.4, speed=0.5)
     add(history, 0.2, 0.4)
     assert not reaching()
@@ -73,14 +73,14 @@ def test_the_message_says_where_each_joint_is_and_since_when(history: StateHisto
 
 
 def test_the_message_says_that_a_joint_still_moves(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01)
     add(history, 0.1, 0.4, speed=0.5)
     assert not reaching()
     assert "it moves at 0.5000 rad/s" in reaching.explain(0.1)
 
 
 def test_the_message_says_that_joints_did_not_stay(history: StateHistory):
-    reaching = Reaching(history, {"a": 1.0}, 0.01, hold_s=1.0)
+    reaching = TargetCheck(history, {"a": 1.0}, 0.01, hold_s=1.0)
     add(history, 0.1, 1.0)
     assert not reaching()
     assert reaching.explain(0.1) == (
@@ -99,13 +99,13 @@ def test_the_message_says_that_joints_did_not_stay(history: StateHistory):
 )
 def test_a_target_that_cannot_be_one_is_refused(history: StateHistory, target, message: str):
     with pytest.raises((CallError, UnknownNameError), match=message):
-        Reaching(history, target, 0.01)
+        TargetCheck(history, target, 0.01)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, nan])
 def test_a_tolerance_must_be_positive(history: StateHistory, tolerance: float):
     with pytest.raises(CallError, match="tolerance must be positive"):
-        Reaching(history, {"a": 1.0}, tolerance)
+        TargetCheck(history, {"a": 1.0}, tolerance)
 
 
 def test_values_within_bounds_are_no_violation(history: StateHistory):

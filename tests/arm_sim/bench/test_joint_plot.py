@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from arm_sim.bench.history import Guide, StateHistory
+from arm_sim.bench.history import ReferenceLine, StateHistory
 from arm_sim.bench.joint_plot import COLOURS, save_plot
 from arm_sim.fault_log import FaultSpan
 
@@ -43,7 +43,7 @@ def test_a_joint_is_drawn_in_its_colour(tmp_path: Path):
 def test_a_value_that_was_expected_is_drawn_as_well(tmp_path: Path):
     history = history_of([0.0] * 50)
     before = pixels(picture_of(history, tmp_path / "a.png"), COLOURS[0])
-    history.guides.append(Guide("position", "a", 1.0))
+    history.guides.append(ReferenceLine("position", "a", 1.0))
     assert pixels(picture_of(history, tmp_path / "b.png"), COLOURS[0]) > before + 100
 
 

@@ -112,7 +112,7 @@ class ManagerServices:
             logger.error("%s", error)
             self._refusals.note(request, name, str(error))
             return False
-        self._refusals.settle(request, name)
+        self._refusals.clear(request, name)
         return True
 
     def _list_controllers(
@@ -153,7 +153,7 @@ class ManagerServices:
         )
         response.ok, response.message = result.ok, result.message
         if result.ok:
-            self._refusals.settle("switch_controller", "")
+            self._refusals.clear("switch_controller", "")
         else:
             self._refusals.note("switch_controller", "", result.message)
         return response

@@ -64,7 +64,7 @@ def test_a_future_completed_on_another_thread_wakes_an_executor_asleep(
 
     def complete() -> None:
         assert awaited.wait(TIMEOUT_S)
-        bridge.settle(future, 42, client.executor)
+        bridge.complete_future(future, 42, client.executor)
 
     thread = threading.Thread(target=complete)
     thread.start()

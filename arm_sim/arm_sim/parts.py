@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 logger = logging.getLogger("arm_sim")
 
 
-class Assembled:
+class SimulationParts:
     """The parts of a simulation; those that take long to load are made when they are first used.
 
     Attributes:
@@ -139,7 +139,7 @@ def assemble(
     spawn: Iterable[str] | None,
     package_path: Iterable[AnyPath],
     settings: Mapping[str, object],
-) -> Assembled:
+) -> SimulationParts:
     """Build a robot in its world, with its hardware in its initial state; see `set_up`.
 
     Raises:
@@ -150,13 +150,13 @@ def assemble(
     from arm_gazebo.assembly.world import assemble_world
     from arm_sim.set_up import set_up
 
-    asked = set_up(description, controllers, arguments, spawn, package_path, settings)
-    for remark in asked.remarks:
+    setup = set_up(description, controllers, arguments, spawn, package_path, settings)
+    for remark in setup.remarks:
         logger.info("%s", remark)
-    chosen, name = asked.settings, f"/{MANAGER}"
-    of_manager = manager_settings(asked.parameters)
+    chosen, name = setup.settings, f"/{MANAGER}"
+    manager = manager_settings(setup.parameters)
     robot = AssembledRobot(chosen.robots[0])
-    world = assemble_world([robot], chosen, {name: of_manager.update_rate})
-    robot.drive(world.simulation, chosen.seed, of_manager, name)
-    starter = ControllerStarter(robot.manager, asked.parameters, robot.document)
-    return Assembled(chosen, of_manager, robot, world, Controllers(robot.manager, starter))
+    world = assemble_world([robot], chosen, {name: manager.update_rate})
+    robot.drive(world.simulation, chosen.seed, manager, name)
+    starter = ControllerStarter(robot.manager, setup.parameters, robot.document)
+    return SimulationParts(chosen, manager, robot, world, Controllers(robot.manager, starter))
