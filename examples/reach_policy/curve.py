@@ -12,12 +12,12 @@ STYLE = 'font-family="sans-serif" font-size="13" fill="#777"'
 
 @dataclass(frozen=True)
 class Generation:
-    """What one generation did.
+    """The results of one generation.
 
     Attributes:
         time_s: time since the start.
         cost: median cost of its candidates.
-        reached: share of the goals that its candidates reach.
+        reached: fraction of the goals that its candidates reach.
     """
 
     time_s: float
@@ -35,7 +35,7 @@ def write(curve: Sequence[Generation], path: Path) -> None:
 
 
 def draw(curve: Sequence[Generation], path: Path) -> None:
-    """Draw cost and share of reached goals over the generations, as SVG."""
+    """Draw cost and fraction of reached goals over the generations, as SVG."""
     most = max(one.cost for one in curve)
     costs = _line([one.cost / most for one in curve], COST_COLOUR)
     reached = _line([one.reached for one in curve], REACHED_COLOUR)

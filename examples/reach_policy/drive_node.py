@@ -1,10 +1,10 @@
-"""The trained policy drives a running arm over ROS to random points, each from its first pose.
+"""The trained policy drives a running arm over ROS to random points, each from its initial pose.
 
     arm launch                      # in another terminal
     python drive_node.py --goals 100
 
 It reads /joint_states, knows the gripper's position from the description, and commands
-/position_controller/commands each 0.04 s of simulation time, as in the environment.
+/position_controller/commands every 0.04 s of simulation time, as in the environment.
 """
 
 import argparse
@@ -54,7 +54,7 @@ class Arm:
         return forward_kinematics(self._robot, positions)[TIP][:3, 3]
 
     def random_goal(self, random: np.random.Generator) -> Array:
-        """Return a point as those of the environment."""
+        """Return a random point, drawn like those of the environment."""
         while True:
             point = self.tip(random.uniform(RANGE_SHARE * self.lower, RANGE_SHARE * self.upper))
             if point[2] >= LOWEST_M and np.hypot(point[0], point[1]) >= NEAREST_M:

@@ -1,6 +1,6 @@
 """A small policy that moves the 4-DOF arm's gripper to a point: 84 weights.
 
-It sees the joints and the way to the goal, and answers with the next step of each joint.
+It sees the joints and the vector to the goal, and answers with the next step of each joint.
 """
 
 import json
@@ -24,13 +24,14 @@ NEAR_M = 0.1
 def act(weights: Array, position: NDArray[np.floating], error: NDArray[np.floating]) -> Array:
     """Return actions from -1 to 1 for the environment's actions "step", shape (..., 4).
 
-    The inputs are the products of each part of the way to the goal, as the turntable sees it, with
-    the sine and cosine of the angle of each link. So the weights are how far each joint turns.
+    The inputs are the components of the vector to the goal, in the turntable's frame, each
+    multiplied by 1 and by the sine and the cosine of the angle of each link. The weights say how
+    far each joint turns for each input.
 
     Args:
         weights: shape (..., 84).
         position: positions of the joints in rad, shape (..., 4).
-        error: way from the gripper to the goal in m, shape (..., 3).
+        error: vector from the gripper to the goal in m, shape (..., 3).
     """
     turn, links = position[..., :1], np.cumsum(position[..., 1:], axis=-1)
     ahead = np.cos(turn) * error[..., :1] + np.sin(turn) * error[..., 1:2]

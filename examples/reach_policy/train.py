@@ -47,8 +47,8 @@ def distances(env: BatchEnv, weights: Array, seeds: list[int]) -> Array:
 
     Args:
         env: the copies.
-        weights: of each copy, shape (copies, 84) or (84,).
-        seeds: of the goals of each copy.
+        weights: weights of each copy, shape (copies, 84) or (84,).
+        seeds: seed of the goals of each copy.
     """
     seen, _ = env.reset(seed=list[int | None](seeds))
     found = np.zeros((EPISODES * EPISODE_STEPS, env.num_envs))
@@ -60,7 +60,7 @@ def distances(env: BatchEnv, weights: Array, seeds: list[int]) -> Array:
 
 
 def costs(found: Array) -> Array:
-    """Return the cost of each candidate, whose copies follow each other."""
+    """Return the cost of each candidate; the copies of a candidate are consecutive."""
     late = found[:, -END_STEPS:].mean(axis=(0, 1))
     return (found.mean(axis=(0, 1)) + END_SHARE * late).reshape(CANDIDATES, GOALS).mean(axis=1)
 
@@ -86,7 +86,7 @@ def train(generations: int, seed: int) -> tuple[Array, list[Generation]]:
 
 
 def share_reached(weights: Array, copies: int = 100) -> float:
-    """Return the share of goals that were not trained with and that the policy reaches."""
+    """Return the fraction of new goals, not used in the training, that the policy reaches."""
     env = environment(copies)
     found = distances(env, weights, [10**6 + goal for goal in range(copies)])
     env.close()
@@ -94,7 +94,7 @@ def share_reached(weights: Array, copies: int = 100) -> float:
 
 
 def main() -> None:
-    """Train, and write what was learned."""
+    """Train, and write the weights and the curve."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--generations", type=int, default=80, help="generations (80)")
     parser.add_argument("--seed", type=int, default=0, help="seed of candidates and goals (0)")

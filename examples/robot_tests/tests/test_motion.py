@@ -1,4 +1,4 @@
-"""The decisions, on the simulated arm without ROS: some milliseconds a test."""
+"""The decisions, on the simulated arm without ROS: some milliseconds per test."""
 
 import pytest
 from patrol.motion import POSES, STUCK_AFTER_S, Patrol

@@ -1,4 +1,4 @@
-"""The node, against a real launch: some seconds a test."""
+"""The node, against a real launch: some seconds per test."""
 
 import sys
 
