@@ -1,4 +1,4 @@
-"""`arm sweep`: makes the runs of a study on all cores."""
+"""`arm sweep`: makes the runs of a study on all cores, or on a Ray cluster."""
 
 import argparse
 import os
@@ -12,6 +12,7 @@ from arm_node.printable import printable
 
 if TYPE_CHECKING:
     from arm_sim.sweep.journal import Journal, Outcome
+    from arm_sim.sweep.pool import Pool
     from arm_sim.sweep.study import Study
 
 
@@ -21,8 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--processes",
         type=positive_whole_number,
-        default=os.cpu_count() or 1,
         help="processes that make runs (default: one for each core)",
+    )
+    parser.add_argument(
+        "--ray",
+        metavar="ADDRESS",
+        help="make the runs on the Ray cluster whose head has this address: HOST:PORT, or auto for "
+        "the cluster of this machine",
     )
     parser.add_argument(
         "--output",
@@ -39,16 +45,17 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         ArmCliError: the study cannot be read or run.
     """
+    from arm_sim.errors import ArmSimError
     from arm_sim.sweep.journal import Journal
-    from arm_sim.sweep.study import StudyError, read_study
+    from arm_sim.sweep.study import read_study
     from arm_sim.sweep.table import write_tables
 
     folder = options.output or options.study.with_name(f"{options.study.stem}-results")
     try:
         study = read_study(options.study)
         with Journal(folder, study) as journal:
-            _make_runs(study, journal, options.processes)
-    except StudyError as error:
+            _make_runs(study, journal, options)
+    except ArmSimError as error:
         raise ArmCliError(str(error)) from error
     for path in write_tables(folder, journal.outcomes.values()):
         say(str(path))
@@ -58,13 +65,14 @@ def run(options: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _make_runs(study: "Study", journal: "Journal", processes: int) -> None:
+def _make_runs(study: "Study", journal: "Journal", options: argparse.Namespace) -> None:
     """Make the runs that the journal lacks, with a progress bar."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from arm_sim.sweep.engine import Engine
 
+    pool = _pool(study, journal.folder, options)
     total, before = len(study.runs()), len(journal.outcomes)
     if before:
         say(f"{before} of {total} runs were made before; the others follow")
@@ -79,4 +87,15 @@ def _make_runs(study: "Study", journal: "Journal", processes: int) -> None:
                 line = f"run {outcome.number} failed: {outcome.error}"
                 progress.console.print(printable(line), markup=False)
 
-        Engine(study, journal, processes, told).run()
+        Engine(study, journal, pool, told).run()
+
+
+def _pool(study: "Study", folder: Path, options: argparse.Namespace) -> "Pool":
+    if options.ray is None:
+        from arm_sim.sweep.process_pool import ProcessPool
+
+        return ProcessPool(study, folder, options.processes or os.cpu_count() or 1)
+    # Ray is an extra.
+    from arm_sim.sweep.ray_pool import RayPool
+
+    return RayPool(options.ray, study, folder, options.processes)

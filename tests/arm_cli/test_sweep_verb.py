@@ -1,5 +1,8 @@
 """`arm sweep`: what it prints, and its exit code."""
 
+import socket
+import sys
+
 import pytest
 
 from arm_cli.main import main
@@ -39,3 +42,23 @@ def test_a_failed_run_is_told_and_the_exit_code_is_1(folder, capsys):
 def test_what_is_not_a_study_is_a_sentence(folder, capsys):
     assert main(["sweep", "none.yaml"]) == 1
     assert capsys.readouterr().err == "arm sweep: none.yaml does not exist\n"
+
+
+def test_an_address_without_a_cluster_is_a_sentence(folder, capsys):
+    (folder / "s.yaml").write_text("task: task.py:double\nvariations: {x: [1, 2]}\n")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"127.0.0.1:{server.getsockname()[1]}"
+    assert main(["sweep", "s.yaml", "--ray", address]) == 1
+    refused = f"arm sweep: no Ray cluster listens at {address}: Connection refused\n"
+    assert capsys.readouterr().err == refused
+    assert main(["sweep", "s.yaml", "--ray", "here"]) == 1
+    assert "'here' is not the address of a Ray cluster: HOST:PORT" in capsys.readouterr().err
+
+
+def test_without_ray_its_extra_is_named(folder, capsys, monkeypatch):
+    (folder / "s.yaml").write_text("task: task.py:double\nvariations: {x: [1, 2]}\n")
+    monkeypatch.setitem(sys.modules, "ray", None)
+    monkeypatch.delitem(sys.modules, "arm_sim.sweep.ray_pool", raising=False)
+    assert main(["sweep", "s.yaml", "--ray", "auto"]) == 1
+    sentence = "arm sweep: Ray is not installed; pip install 'arm-suite[ray]'\n"
+    assert capsys.readouterr().err == sentence

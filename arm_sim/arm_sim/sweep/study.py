@@ -141,6 +141,10 @@ class Run:
             self._made.pop().close()
 
 
+TaskFunction = Callable[[Run], Mapping[str, Value]]
+"""Makes a run; returns its results."""
+
+
 def read_study(path: Path) -> Study:
     """Return the study of a YAML file, or of a Python file that has a mapping `STUDY`.
 
@@ -172,13 +176,13 @@ def load_module(path: Path) -> Any:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         # An import runs the user's code, which may raise anything.
         raise StudyError(f"{path} cannot be imported: {type(error).__name__}: {error}") from error
     return module
 
 
-def find_task(task: str) -> Callable[[Run], Mapping[str, Value]]:
+def find_task(task: str) -> TaskFunction:
     """Return the function that 'FILE.py:FUNCTION' names.
 
     Raises:
@@ -187,7 +191,7 @@ def find_task(task: str) -> Callable[[Run], Mapping[str, Value]]:
     file, _, name = task.rpartition(":")
     function: Any = getattr(load_module(Path(file)), name, None)
     if callable(function):
-        return cast(Callable[[Run], Mapping[str, Value]], function)
+        return cast(TaskFunction, function)
     raise StudyError(f"{file} has no function '{name}'")
 
 

@@ -12,6 +12,7 @@ from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim.sweep.engine import Engine
 from arm_sim.sweep.journal import FILE_NAME, Journal
+from arm_sim.sweep.process_pool import ProcessPool
 from arm_sim.sweep.study import Study, StudyError
 from arm_sim.sweep.table import write_tables
 
@@ -75,7 +76,7 @@ def study(tmp_path):
 def made(study: Study, folder, processes: int = 2):
     """Make the runs; return the outcomes by number."""
     with Journal(folder, study) as journal:
-        Engine(study, journal, processes).run()
+        Engine(study, journal, ProcessPool(study, folder, processes)).run()
     return journal.outcomes
 
 
@@ -136,16 +137,20 @@ def test_a_process_that_dies_between_two_runs_loses_neither(study, tmp_path):
             killed.append(process.pid)
 
     with Journal(tmp_path / "out", xs) as journal:
-        Engine(xs, journal, 1, kill_its_process).run()
+        Engine(xs, journal, ProcessPool(xs, journal.folder, 1), kill_its_process).run()
     assert killed
     assert {n: o.results["square"] for n, o in journal.outcomes.items()} == {0: 0, 1: 1, 2: 4}
     assert sorted(map(int, (tmp_path / "made.txt").read_text().split())) == [0, 1, 2]
 
 
 def test_a_task_whose_import_ends_its_process_ends_the_study(tmp_path):
-    (tmp_path / "task.py").write_text("import sys\nsys.exit(0)\n")
+    xs = Study(f"{tmp_path / 'task.py'}:run", {"x": (1,)})
+    (tmp_path / "task.py").write_text("import os\nos._exit(0)\n")
     with pytest.raises(StudyError, match="ended with exit code 0 before its first run"):
-        made(Study(f"{tmp_path / 'task.py'}:run", {"x": (1,)}), tmp_path / "out")
+        made(xs, tmp_path / "out")
+    (tmp_path / "task.py").write_text("import sys\nsys.exit(3)\n")
+    with pytest.raises(StudyError, match="cannot be imported: SystemExit: 3"):
+        made(xs, tmp_path / "out")
 
 
 def test_processes_end_without_a_word_when_their_owner_is_killed(study, tmp_path):
@@ -155,10 +160,12 @@ import sys
 from pathlib import Path
 from arm_sim.sweep.engine import Engine
 from arm_sim.sweep.journal import Journal
+from arm_sim.sweep.process_pool import ProcessPool
 from arm_sim.sweep.study import Study
 if __name__ == "__main__":
     study = Study(sys.argv[1], {"x": (1,)})
-    Engine(study, Journal(Path(sys.argv[2]), study), 1).run()
+    folder = Path(sys.argv[2])
+    Engine(study, Journal(folder, study), ProcessPool(study, folder, 1)).run()
 """
     (tmp_path / "owner.py").write_text(owner)
     command = [sys.executable, tmp_path / "owner.py", xs.task, tmp_path / "out"]

@@ -1,21 +1,14 @@
-"""A process that makes the runs of a study, one after the other."""
+"""Makes a run of a study: the same on every kind of worker."""
 
 import math
-import os
-import signal
 import time
 import traceback
 from collections.abc import Mapping
-from contextlib import suppress
-from multiprocessing.connection import Connection
 from pathlib import Path
 from shlex import quote
-from typing import Any
 
 from arm_sim.sweep.journal import Outcome
-from arm_sim.sweep.study import Run, StudyError, Value, Values, find_task
-
-RECORDING = "run_{number}.run"
+from arm_sim.sweep.study import Run, StudyError, TaskFunction, Value, Values
 
 
 def run_seed(study_seed: int, number: int) -> int:
@@ -23,48 +16,45 @@ def run_seed(study_seed: int, number: int) -> int:
     return study_seed * 1_000_003 + number
 
 
-def work(connection: Connection, task: str, study_seed: int, folder: Path) -> None:
-    """Serve a study until the connection ends; the entry of the process.
+def recording_path(folder: Path, number: int) -> Path:
+    """Return where in a folder the recording of a failed run lies."""
+    return folder / f"run_{number}.run"
+
+
+def replay_command(recording: Path) -> str:
+    """Return the command that shows a recording; "" if there is none."""
+    return f"arm sim replay {quote(str(recording))}" if recording.exists() else ""
+
+
+def make_run(
+    task: TaskFunction, number: int, values: Values, study_seed: int, folder: Path
+) -> Outcome:
+    """Make a run; return what came of it, whatever the task does.
 
     Args:
-        connection: gives (number, values), and takes outcomes.
-        task: see `Study`.
+        task: the study's task.
+        number: the run's number.
+        values: its values.
         study_seed: the seed of the study.
-        folder: where the recordings of failed runs go.
+        folder: where the recording goes if the run fails.
     """
-    # Ctrl-C is for the process that owns the study; it ends this one.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        function = find_task(task)
-    except StudyError as error:
-        connection.send(error)
-        return
-    # The connection fails where the process that owns the study was killed.
-    with suppress(EOFError, OSError):
-        connection.send(os.getpid())
-        while True:
-            number, values = connection.recv()
-            connection.send(_outcome(function, number, values, study_seed, folder))
-
-
-def _outcome(function: Any, number: int, values: Values, study_seed: int, folder: Path) -> Outcome:
     seed = run_seed(study_seed, number)
     began_s = time.monotonic()
-    results, error = _attempt(function, Run(number, values, seed))
+    results, error = _attempt(task, Run(number, values, seed))
     if not error:
         return Outcome(number, values, results, wall_s=time.monotonic() - began_s)
     # The same run fails again, for it has the same seed; this time it is recorded.
-    path = folder / RECORDING.format(number=number)
-    path.unlink(missing_ok=True)
-    _attempt(function, Run(number, values, seed, path))
-    replay = f"arm sim replay {quote(str(path))}" if path.exists() else ""
-    return Outcome(number, values, {}, error, replay, time.monotonic() - began_s)
+    recording = recording_path(folder, number)
+    recording.unlink(missing_ok=True)
+    _attempt(task, Run(number, values, seed, recording))
+    wall_s = time.monotonic() - began_s
+    return Outcome(number, values, {}, error, replay_command(recording), wall_s)
 
 
-def _attempt(function: Any, run: Run) -> tuple[dict[str, Value], str]:
+def _attempt(task: TaskFunction, run: Run) -> tuple[dict[str, Value], str]:
     """Return the results of a run, or why it failed."""
     try:
-        return _checked(function(run)), ""
+        return _checked(task(run)), ""
     except Exception as error:
         # A task is the user's code and may raise anything.
         place = traceback.extract_tb(error.__traceback__)[-1]
