@@ -73,7 +73,7 @@ def test_a_web_server_is_no_cluster():
 
 def test_a_server_of_grpc_may_be_a_head(listener):
     thread = answering_as_grpc(listener)
-    check_address(address_of(listener))
+    assert check_address(address_of(listener)) is None
     thread.join()
 
 
