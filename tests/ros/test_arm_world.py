@@ -42,9 +42,10 @@ def test_the_arm_falls_without_position_hold(launch, client):
     )
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")
-    states.wait_until(
+    fallen = states.wait_until(
         lambda m: bool(m) and abs(m[-1].position[1]) > 1.2, "the arm lies on the floor"
     )
+    assert abs(fallen[-1].position[1]) > 1.2
 
 
 def test_unclaimed_joints_hold_by_default(launch, client):
