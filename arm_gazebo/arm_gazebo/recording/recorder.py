@@ -2,9 +2,9 @@
 
 import logging
 import threading
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Protocol, TypeVar
@@ -14,7 +14,6 @@ import numpy as np
 
 from arm_control.controllers.controller import Controller
 from arm_control.errors import ArmControlError, LoopStoppedError
-from arm_control.loop.clock import Clock, MonotonicClock
 from arm_control.manager.controller_manager import ControllerManager
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.physics.simulation import Simulation
@@ -24,16 +23,16 @@ from arm_gazebo.recording.run_file import (
     RecordingEnd,
     StateBlock,
 )
-from arm_gazebo.recording.run_state import Row, StateRow, chained_hash
+from arm_gazebo.recording.run_state import StateRow, chained_hashes
 from arm_gazebo.state.complete_state import CompleteState
 from arm_node.plain_data import PlainDataError
 
 ResultT = TypeVar("ResultT")
 
 FLUSH_S = 0.5
-"""Wall time after which what there is goes to the file, also while time stands still."""
+"""Wall time after which what there is goes to the file."""
 BLOCK_BYTES = 1 << 20
-"""A block of states is not larger. Each one costs a change of threads, which is dear when the
+"""A block of states is not larger. Each full one wakes the writing thread, which is dear when the
 simulation runs as fast as possible."""
 MAX_PERIODS = 2000
 """Control periods in a block."""
@@ -65,7 +64,7 @@ class RecordWriter(Protocol):
         ...
 
     def write(self, record: Record) -> None:
-        """Take a record, whose arrays are used again; may raise OSError, PlainDataError."""
+        """Take a record; may raise OSError, PlainDataError."""
         ...
 
     def flush(self) -> None:
@@ -77,28 +76,48 @@ class RecordWriter(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Rows:
-    """States on their way to the writing thread.
+class _StateQueue:
+    """States of one model that are not in the file yet.
+
+    The loop thread appends to them while the writing thread takes what is there.
 
     Attributes:
-        first: number of the first period.
-        count: number of periods.
-        rows: their states, and unused rows after them.
+        first: number of the first period; the writing thread's.
+        each: a copy of each state.
+        width: numbers in each.
         interval: every how many periods a state is to be stored.
     """
 
-    first: int
-    count: int
-    rows: Row
-    interval: int
+    __slots__ = ("each", "first", "interval", "width")
+
+    def __init__(self, first: int, width: int, interval: int) -> None:
+        self.first = first
+        self.each: list[bytes] = []
+        self.width = width
+        self.interval = interval
+
+    def take(self, count: int, previous: int) -> StateBlock:
+        """Take out the first states, so that the next ones get their memory; writing thread.
+
+        Args:
+            count: how many.
+            previous: the hash after the period before.
+        """
+        first, states = self.first, self.each[:count]
+        self.first += count
+        # Python's lock makes this one step for the loop thread.
+        del self.each[:count]
+        hashes = np.fromiter(chained_hashes(previous, states), np.uint64, count)
+        stored = np.frombuffer(b"".join(states[:: self.interval]))
+        return StateBlock(first, hashes, self.interval, stored.reshape(-1, self.width))
 
 
 class RunRecorder:
     """Notes inputs and states of a run, and writes them on a thread of its own.
 
-    The loop thread only fills rows and puts records into a queue. If the file cannot be written
-    any more, the recording ends with `failure`, and the run goes on.
+    The loop thread only copies states and lists inputs. It does not wake the writing thread but for
+    full blocks: the two would compete for Python's lock in the middle of a tick. If the file cannot
+    be written any more, the recording ends with `failure`, and the run goes on.
 
     Args:
         simulation: the simulation; the loop thread owns it.
@@ -106,7 +125,6 @@ class RunRecorder:
         managers: the controller managers of its robots.
         loop: runs them.
         writer: writes the file, which already has its header.
-        clock: wall time; default the operating system's monotonic clock.
 
     Attributes:
         failure: why the recording ended by itself; "" as long as it has not.
@@ -120,7 +138,6 @@ class RunRecorder:
         managers: Sequence[ControllerManager],
         loop: OnLoop,
         writer: RecordWriter,
-        clock: Clock | None = None,
     ) -> None:
         self.failure = ""
         self.periods = 0
@@ -129,11 +146,8 @@ class RunRecorder:
         self._managers = tuple(managers)
         self._loop = loop
         self._writer = writer
-        self._now_s = (clock or MonotonicClock()).now_s
-        self._is_flush_due = False
-        self._flushed_s = self._now_s()
-        self._spare_rows: SimpleQueue[Row] = SimpleQueue()
-        self._records: SimpleQueue[Record | _Rows | None] = SimpleQueue()
+        self._records: deque[Record | _StateQueue | None] = deque()
+        self._wake: SimpleQueue[None] = SimpleQueue()
         self._is_inside = False
         self._hash = 0
         self._begin_model()
@@ -150,8 +164,7 @@ class RunRecorder:
         Args:
             first: inputs that bring a run, as the header rebuilds it, to the present state.
         """
-        for item in first:
-            self._records.put(item)
+        self._records.extend(first)
         self._thread.start()
         self._set_gate(self)
 
@@ -163,8 +176,8 @@ class RunRecorder:
         """
         self._set_gate(None)
         self._end_block()
-        self._records.put(RecordingEnd(self.periods, reason))
-        self._records.put(None)
+        self._records.extend((RecordingEnd(self.periods, reason), None))
+        self._wake.put(None)
 
     def join(self) -> None:
         """Wait until the file is complete, after `stop`. Not on the loop thread."""
@@ -189,15 +202,13 @@ class RunRecorder:
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Note the state at the end of a control period; see `arm_gazebo.physics.tick.Feed`."""
-        if not self._state.is_of(self._simulation):
+        if data is not self._state.data:
             self._end_block()
             self._begin_model()
-        # After milliseconds of sleep each operation here costs several times its usual time, so the
-        # writing thread does what it can: hashes, and a look at the clock.
-        self._state.write(self._each_row[self._filled])
+        each = self._states.each
+        each.append(self._state.copy(time_s))
         self.periods += 1
-        self._filled += 1
-        if self._filled == self._periods_in_block or self._is_flush_due:
+        if len(each) >= self._periods_in_block:
             self._end_block()
 
     def _set_gate(self, gate: "RunRecorder | None") -> None:
@@ -225,7 +236,7 @@ class RunRecorder:
         finally:
             self._is_inside = False
             robot, controller = self._place_of(target)
-            self._records.put(
+            self._records.append(
                 RecordedInput(self.periods, robot, controller, method, arguments, raised)
             )
 
@@ -241,68 +252,70 @@ class RunRecorder:
         return None, None
 
     def _begin_model(self) -> None:
-        """Prepare rows for the states of the present model."""
+        """Note the states of the present model from now on."""
         self._state = StateRow(self._simulation, self._managers)
-        period_s = self._simulation.timing.period_s
-        self._interval = max(1, round(8 * self._state.width / period_s / MAX_BYTES_PER_S))
-        fitting = BLOCK_BYTES // (8 * self._state.width)
-        self._periods_in_block = max(1, min(MAX_PERIODS, fitting))
-        self._begin_block()
-
-    def _begin_block(self) -> None:
-        # The rows of written blocks are reused, because touching fresh memory costs more than
-        # noting a state.
-        shape = (self._periods_in_block, self._state.width)
-        spare = np.empty(0) if self._spare_rows.empty() else self._spare_rows.get()
-        self._rows = spare if spare.shape == shape else np.empty(shape)
-        self._each_row: list[Row] = list(self._rows[:])
-        self._filled = 0
-        self._is_flush_due = False
+        width, period_s = self._state.width, self._simulation.timing.period_s
+        interval = max(1, round(8 * width / period_s / MAX_BYTES_PER_S))
+        self._periods_in_block = max(1, min(MAX_PERIODS, BLOCK_BYTES // (8 * width)))
+        self._states = _StateQueue(self.periods, width, interval)
 
     def _end_block(self) -> None:
-        """Hand the block to the writing thread, and begin another one."""
-        count = self._filled
-        if count:
-            self._records.put(_Rows(self.periods - count, count, self._rows, self._interval))
-            self._begin_block()
+        """Hand the states to the writing thread, and begin to fill others."""
+        full = self._states
+        if full.each:
+            self._states = _StateQueue(self.periods, full.width, full.interval)
+            self._records.append(full)
+            self._wake.put(None)
 
     # The writing thread
 
     def _write(self) -> None:
         try:
-            while self._write_next():
-                pass
+            self._write_until_end()
         except (OSError, PlainDataError) as error:
             reason = error.strerror if isinstance(error, OSError) else str(error)
             self.failure = f"the recording {self.path} ends: {reason}"
             logger.error("%s", self.failure)
             # Until the loop stops the recording, its records must not fill the memory.
-            while self._records.get() is not None:
-                pass
+            self._write_until_end()
         finally:
             self._writer.close()
 
-    def _write_next(self) -> bool:
-        """Write a record, or flush if none comes; return whether there may be more."""
-        try:
-            record = self._records.get(timeout=FLUSH_S)
-        except Empty:
-            self._is_flush_due = True
-            return True
-        if isinstance(record, _Rows):
-            self._writer.write(self._hashed(record))
-            self._spare_rows.put(record.rows)
-            self._flushed_s = self._now_s()
-        elif record is not None:
-            self._writer.write(record)
-        if self._records.empty():
-            self._writer.flush()
-        self._is_flush_due = self._is_flush_due or self._now_s() >= self._flushed_s + FLUSH_S
-        return record is not None
+    def _write_until_end(self) -> None:
+        """Write what there is, again and again, until the loop ends the recording."""
+        is_going_on = True
+        while is_going_on:
+            try:
+                self._wake.get(timeout=FLUSH_S)
+                is_going_on = self._write_listed(None)
+            except Empty:
+                is_going_on = self._write_listed(self._states)
+            if not self.failure:
+                self._writer.flush()
 
-    def _hashed(self, raw: "_Rows") -> StateBlock:
-        hashes = np.empty(raw.count, np.uint64)
-        for index in range(raw.count):
-            self._hash = hashes[index] = chained_hash(self._hash, raw.rows[index])
-        states = raw.rows[: raw.count : raw.interval]
-        return StateBlock(raw.first, hashes, raw.interval, states)
+    def _write_listed(self, unfinished: _StateQueue | None) -> bool:
+        """Write inputs, full blocks, and what there is of one; return whether more will come."""
+        # Read first: the inputs that took effect before these periods are listed by now.
+        count = 0 if unfinished is None else len(unfinished.each)
+        while self._records:
+            record = self._records.popleft()
+            if record is None:
+                return False
+            if isinstance(record, _StateQueue):
+                self._write_states(record, len(record.each))
+            else:
+                self._write_record(record)
+        if unfinished is not None:
+            # If the loop has ended the block meanwhile, all its states are written already.
+            self._write_states(unfinished, min(count, len(unfinished.each)))
+        return True
+
+    def _write_states(self, states: _StateQueue, count: int) -> None:
+        if count:
+            block = states.take(count, self._hash)
+            self._hash = int(block.hashes[-1])
+            self._write_record(block)
+
+    def _write_record(self, record: Record) -> None:
+        if not self.failure:
+            self._writer.write(record)

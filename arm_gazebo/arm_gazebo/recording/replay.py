@@ -19,7 +19,7 @@ from arm_gazebo.model.saved_model import SavedModel
 from arm_gazebo.physics.tick import SilentClock, SimulationTick
 from arm_gazebo.recording.recorded_run import rebuild, run_of
 from arm_gazebo.recording.run_file import RecordedInput, RecordingEnd, RunFile, StateBlock
-from arm_gazebo.recording.run_state import Row, StateRow, chained_hash, state_names
+from arm_gazebo.recording.run_state import Row, StateRow, chained_hashes, state_names
 from arm_gazebo.state.complete_state import CompleteState
 
 MAX_NAMED = 6
@@ -86,9 +86,8 @@ class Replay:
         self._tick = SimulationTick(
             managers, self.simulation, SilentClock(), (), run.timing.period_s
         )
-        self._state = StateRow(self.simulation, managers)
-        self._row = np.empty(self._state.width)
         self._hash = 0
+        self._state = StateRow(self.simulation, managers)
         self._end: RecordingEnd | None = None
 
     def run(
@@ -205,11 +204,10 @@ class Replay:
             for component in robot.hardware:
                 component.rebind()
         self._state = StateRow(self.simulation, self._managers)
-        self._row = np.empty(self._state.width)
 
     def _compare(self, block: StateBlock, period: int) -> Difference | None:
-        self._state.write(self._row)
-        self._hash = chained_hash(self._hash, self._row)
+        state = self._state.copy(self.simulation.time_s)
+        (self._hash,) = chained_hashes(self._hash, [state])
         if self._hash == int(block.hashes[period - block.first]):
             return None
         recorded = block.state(period)
@@ -217,7 +215,7 @@ class Replay:
             lines = ["the hash of the state differs; the state itself was not recorded here"]
         else:
             names = state_names(self.simulation.model, self._managers)
-            lines = differing(names, recorded, self._row)
+            lines = differing(names, recorded, np.frombuffer(state))
         return Difference(period, self.simulation.time_s, tuple(lines))
 
 

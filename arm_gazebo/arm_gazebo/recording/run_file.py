@@ -252,8 +252,10 @@ def _decompressed(data: bytes) -> bytes:
 
 def _block_bytes(block: StateBlock) -> bytes:
     head = _BLOCK.pack(block.first, len(block.hashes), block.interval, block.states.shape[1])
-    content = block.hashes.tobytes() + block.states.tobytes()
-    return head + zstandard.compress(content, 1)
+    hashes, states = block.hashes, np.ascontiguousarray(block.states)
+    # Without a copy of megabytes, and without Python's lock, which the simulation needs.
+    parts = zstandard.ZstdCompressor(1).compressobj(hashes.nbytes + states.nbytes)
+    return b"".join((head, parts.compress(hashes), parts.compress(states), parts.flush()))
 
 
 def _block(data: bytes) -> StateBlock:

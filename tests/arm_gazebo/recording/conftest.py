@@ -64,7 +64,7 @@ def load_controller(manager: ControllerManager, document, name: str, type_name: 
 class RecordedBench:
     """A run with a recorder; `tick` runs one control period."""
 
-    def __init__(self, path: Path, built, urdf: str, seed: int = 0, clock=None) -> None:
+    def __init__(self, path: Path, built, urdf: str, seed: int = 0) -> None:
         self.path = path
         timing = physics_timing(100.0)
         robot = RecordedRobot(robot_settings(urdf), ManagerSettings(), MANAGER)
@@ -81,7 +81,7 @@ class RecordedBench:
         writer = RunFileWriter(path, {"made_with": made_with(), "run": run})
         self.state = CompleteState(self.simulation, [self.manager])
         self.recorder = RunRecorder(
-            self.simulation, self.state, [self.manager], InlineLoop(), writer, clock
+            self.simulation, self.state, [self.manager], InlineLoop(), writer
         )
         self.recorder.start()
         self.tick.add_feed(self.recorder)

@@ -2,7 +2,6 @@ import time
 
 import numpy as np
 
-from arm_control.testing import ManualClock
 from arm_gazebo.recording import recorder as recorder_module
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
 
@@ -44,7 +43,8 @@ def test_after_the_end_nothing_is_noted(recorded, parts):
 
 def test_states_are_stored_in_blocks_without_a_gap(recorded, parts, monkeypatch):
     monkeypatch.setattr(recorder_module, "MAX_PERIODS", 50)
-    run = recorded(parts.pendulum(), clock=ManualClock())
+    monkeypatch.setattr(recorder_module, "FLUSH_S", 3600.0)
+    run = recorded(parts.pendulum())
     run.run(120)
     found = blocks(run.finish())
     assert [(block.first, len(block.hashes)) for block in found] == [(0, 50), (50, 50), (100, 20)]
@@ -62,12 +62,34 @@ def test_what_there_is_is_flushed_after_half_a_second(recorded, parts):
         time.sleep(0.01)
     flushed = sum(len(block.hashes) for block in blocks(run.path))
     assert 0 < flushed <= run.recorder.periods < 2000
+    run.run(20)
+    # What was flushed before its block was full is followed by the rest of that block.
+    found = blocks(run.finish())
+    ends = [block.first + len(block.hashes) for block in found]
+    assert [block.first for block in found] == [0, *ends[:-1]]
+    assert ends[-1] == run.recorder.periods
+
+
+def test_only_a_full_block_wakes_the_writing_thread(recorded, parts, monkeypatch):
+    monkeypatch.setattr(recorder_module, "MAX_PERIODS", 50)
+    monkeypatch.setattr(recorder_module, "FLUSH_S", 3600.0)
+    run = recorded(parts.pendulum())
+    controller = run.start_controller("pos", FORWARD, joints=("j",))
+    run.run(49)
+    controller.offer([0.5])
+    assert not blocks(run.path)
+    run.run(1)
+    deadline_s = time.monotonic() + 30.0
+    while not blocks(run.path):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.01)
     run.finish()
 
 
 def test_of_large_states_some_are_stored_and_all_are_hashed(recorded, replayed, parts, monkeypatch):
     monkeypatch.setattr(recorder_module, "MAX_BYTES_PER_S", 5000)
-    run = recorded(parts.pendulum(), clock=ManualClock())
+    monkeypatch.setattr(recorder_module, "FLUSH_S", 3600.0)
+    run = recorded(parts.pendulum())
     run.run(50)
     path = run.finish()
     (block,) = blocks(path)
