@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from ament_index_python.packages import get_package_share_directory
 
@@ -90,7 +91,8 @@ def test_logs_each_publication_if_told_to(robot, run, until):
     line = "Publishing positions: [0.100000, 0.200000, 0.300000, 0.400000]"
     until(lambda: program.output.count(line) >= 3, "three lines")
     assert program.interrupt() == 0
-    assert program.output.count(line) == len(commands)
+    # The end of the node may overtake its last message.
+    assert program.output.count(line) - len(commands) in (0, 1)
 
 
 def test_prints_the_header_and_the_lines_of_its_format(robot, run, until):
@@ -145,7 +147,7 @@ def test_course_s0_prints_thirty_times_a_second(robot, run, until):
     until(lambda: program.output.count("Joint States:") >= 31, "a second of prints")
     lines = [line for line in program.output.splitlines() if line.endswith("Joint States:")]
     stamps = [float(line.split("[")[2].partition("]")[0]) for line in lines[:31]]
-    assert (stamps[-1] - stamps[0]) / 30 == pytest.approx(1 / 30, rel=0.25)
+    assert np.median(np.diff(stamps)) == pytest.approx(1 / 30, rel=0.25)
 
 
 def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pose):

@@ -1,7 +1,9 @@
 """The example package, from its sources."""
 
+import os
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -38,13 +40,14 @@ def port(tmp_path: Path) -> Iterator[Path]:
 
     link = tmp_path / "port"
     with pseudo_terminal(link) as near:
-        # It ends with the pseudo-terminal: reading from a closed one fails.
-        threading.Thread(target=serve_until_closed, args=(serve, near), daemon=True).start()
+        # The thread ends when nobody has the other end open any more. Its descriptor is its own: it
+        # must not read from another terminal that gets the number of a closed one.
+        own = os.dup(near)
+        threading.Thread(target=serve_until_closed, args=(serve, own), daemon=True).start()
         yield link
 
 
 def serve_until_closed(serve: Callable[[int, int], None], near: int) -> None:
-    try:
+    with suppress(OSError):
         serve(near, 2)
-    except OSError:
-        return
+    os.close(near)

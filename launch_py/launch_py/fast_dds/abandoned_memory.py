@@ -23,9 +23,15 @@ from launch_py.fast_dds.shared_memory import (
 
 _FILE = re.compile(r"(?:sem\.)?(fastrtps_(?:port\d+|[0-9a-f]+))(?:_[es]l|_mutex)?")
 _FILE_MARK = "fastrtps_"
+TRIES = 3
+"""An owner may give its lock up between the attempt to take it and the look at who has it."""
 
 
-class _UnseenOwnerError(Exception):
+class _LockedError(Exception):
+    """A file is locked by a process that has only just taken it."""
+
+
+class _UnseenOwnerError(_LockedError):
     """A file is locked by a process that is not visible from here."""
 
 
@@ -60,6 +66,8 @@ def remove_abandoned(folder: str = SHM_FOLDER, processes: str = "/proc") -> list
             removed += _remove(folder, list(abandoned[stem]))
         except _UnseenOwnerError:
             keep_ports = True
+        except _LockedError:
+            continue
     return removed
 
 
@@ -129,7 +137,11 @@ def _hold(path: str, held: ExitStack) -> None:
     except OSError:
         return
     held.callback(os.close, fd)
-    try:
-        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        raise _UnseenOwnerError from error
+    for _ in range(TRIES):
+        with suppress(OSError):
+            fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        # Another process that cleans up holds locks for a moment, too.
+        if os.fstat(fd).st_ino in lock_owners(os.path.dirname(path)):
+            raise _LockedError
+    raise _UnseenOwnerError

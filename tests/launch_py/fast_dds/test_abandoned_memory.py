@@ -101,6 +101,21 @@ def test_ports_stay_if_an_owner_is_not_visible(folder, tmp_path_factory, monkeyp
     assert set(remove_abandoned(str(folder), str(no_processes))) == {*SEGMENT, *PORT}
 
 
+def test_a_lock_that_is_taken_meanwhile_keeps_its_segment_only(
+    folder, tmp_path_factory, monkeypatch
+):
+    """As by another process that cleans up at the same time."""
+    from launch_py.fast_dds import abandoned_memory
+
+    before = iter([dict[int, set[int]]()])
+    now = abandoned_memory.lock_owners
+    monkeypatch.setattr(abandoned_memory, "lock_owners", lambda path: next(before, now(path)))
+    with (folder / SEGMENT[1]).open() as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        no_processes = str(tmp_path_factory.mktemp("proc"))
+        assert set(remove_abandoned(str(folder), no_processes)) == set(PORT)
+
+
 def test_files_of_other_users_stay(folder, monkeypatch):
     monkeypatch.setattr(os, "geteuid", lambda: os.getuid() + 1)
     assert sweep(folder) == set()
