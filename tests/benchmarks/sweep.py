@@ -28,6 +28,7 @@ from arm_sim.sweep.table import write_tables
 
 TASK = """
 import time
+from pathlib import Path
 from arm_sim import Simulation
 
 def second(run):
@@ -35,10 +36,11 @@ def second(run):
     with Simulation("arm", arguments={"camera": "none"}, seed=run.seed) as sim:
         sim["position_controller"].command([run.values["x"] / 100] * 4)
         sim.run(1.0)
-    return {"task_s": time.perf_counter() - began_s}
+    memory = Path("/proc/self/status").read_text().partition("VmRSS:")[2].split()[0]
+    return {"memory_mb": int(memory) / 1e3, "task_s": time.perf_counter() - began_s}
 
 def nothing(run):
-    return {"x": run.values["x"]}
+    return {"memory_mb": 0.0, "task_s": 0.0}
 """
 EMPTY_RUNS = 3000
 NOTED = 100_000
@@ -46,13 +48,13 @@ NOTED = 100_000
 
 @dataclass(frozen=True)
 class Made:
-    """What making the runs of a study cost.
+    """What making the runs of a study cost, without the first runs, which start the processes.
 
     Attributes:
-        each_s: wall time of a run and the engine, from the first results to the last.
-        task_s: median wall time that a run took in its process.
-        owner_s: processor time of this process for each run.
-        memory_mb: largest resident memory of a process that makes runs, if it is a child of ours.
+        each_s: mean wall time of a run and the engine.
+        task_s: mean wall time that a run took in its process.
+        owner_s: mean processor time of this process for each run.
+        memory_mb: largest resident memory of a process that makes runs.
     """
 
     each_s: float
@@ -63,26 +65,20 @@ class Made:
 
 def made(study: Study, folder: Path, pool: Pool, workers: int) -> Made:
     """Make the runs of a study."""
-    times_s: list[tuple[float, float]] = []
-    memory_mb: list[float] = []
+    seen: list[tuple[float, float, Outcome]] = []
 
-    def told(_outcome: Outcome) -> None:
-        times_s.append((time.perf_counter(), time.process_time()))
-        if len(times_s) % 10 == 0:
-            children = psutil.Process().children(recursive=True)
-            memory_mb.extend(child.memory_info().rss / 1e6 for child in children)
+    def told(outcome: Outcome) -> None:
+        seen.append((time.perf_counter(), time.process_time(), outcome))
 
     with Journal(folder, study) as journal:
         Engine(study, journal, pool, told).run()
-    # The first runs of each process start it.
-    (wall_s, owner_s), (last_s, owner_last_s) = times_s[2 * workers], times_s[-1]
-    count = len(times_s) - 2 * workers - 1
-    tasks_s = [float(o.results.get("task_s", 0.0)) for o in journal.outcomes.values()]
+    (begin_s, owner_begin_s, _), *rest = seen[2 * workers :]
+    outcomes = [outcome for _, _, outcome in rest]
     return Made(
-        (last_s - wall_s) / count,
-        statistics.median(tasks_s),
-        (owner_last_s - owner_s) / count,
-        max(memory_mb, default=0.0),
+        (rest[-1][0] - begin_s) / len(rest),
+        statistics.mean(float(outcome.results["task_s"]) for outcome in outcomes),
+        (rest[-1][1] - owner_begin_s) / len(rest),
+        max(float(outcome.results["memory_mb"]) for outcome in outcomes),
     )
 
 
@@ -137,8 +133,7 @@ def rows_of(
         Row("two processes, against one", f"{rate:.2f} times the runs", "1.8"),
     ]
     memory_mb = max(made.memory_mb for pair in pairs for made in pair)
-    if memory_mb:
-        rows.append(Row("memory of a process that makes runs", f"{memory_mb:.0f} MB"))
+    rows.append(Row("memory of a process that makes runs", f"{memory_mb:.0f} MB"))
     return [Row(f"{where}: {row.what}", row.measured, row.target) for row in rows]
 
 
