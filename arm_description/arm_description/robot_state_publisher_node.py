@@ -1,28 +1,66 @@
-"""The executable robot_state_publisher: /tf, /tf_static and /robot_description of a robot."""
+"""The executable robot_state_publisher: /tf, /tf_static and /robot_description of robots."""
 
+import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING
 
 from arm_description.errors import DescriptionError
 from arm_node.process import NodeProcess, run_process
 from arm_node.workarounds.discovery import prompt_discovery
 
-
-@contextmanager
-def application(_process: NodeProcess) -> Iterator[None]:
-    """Run the node."""
-    from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher, spinning
-
-    with prompt_discovery():
-        node = RobotStatePublisher()
-    with spinning(node):
-        yield
+if TYPE_CHECKING:
+    from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the process; return its exit code."""
-    return run_process(application, argv, user_errors=(DescriptionError,))
+    arguments = list(sys.argv if argv is None else argv)
+
+    @contextmanager
+    def application(_process: NodeProcess) -> Iterator[None]:
+        from rclpy.utilities import remove_ros_args
+
+        from arm_description.publishers.ros_robot_state_publisher import spinning
+
+        # Other words are ignored, as by ROS 2's program.
+        known, _ = _parser().parse_known_args(remove_ros_args(arguments)[1:])
+        with prompt_discovery():
+            nodes = _nodes(known.namespaces)
+        with spinning(*nodes):
+            yield
+
+    return run_process(application, arguments, user_errors=(DescriptionError,))
+
+
+def _nodes(namespaces: Sequence[str]) -> "list[RobotStatePublisher]":
+    """Return a node for each namespace; if one cannot be made, none of them stays."""
+    from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
+
+    with ExitStack() as made:
+        nodes: list[RobotStatePublisher] = []
+        for namespace in namespaces:
+            nodes.append(RobotStatePublisher(namespace))
+            made.callback(nodes[-1].destroy_node)
+        made.pop_all()
+    return nodes
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="robot_state_publisher",
+        description="Publish the transforms of a robot's links from its joint states. Parameters "
+        "and topics are those of the ROS 2 node of the same name.",
+    )
+    parser.add_argument(
+        "--namespaces",
+        nargs="+",
+        default=[""],
+        metavar="NAMESPACE",
+        help="make a node in each of these namespaces, one for each robot of a world",
+    )
+    return parser
 
 
 if __name__ == "__main__":

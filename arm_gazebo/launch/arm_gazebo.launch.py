@@ -13,19 +13,24 @@ from launch_py import (
     ReadyPanel,
 )
 from launch_py.actions import OpaqueFunction
-from launch_py.conditions import IfCondition, UnlessCondition
+from launch_py.conditions import IfCondition
+from launch_py.errors import UsageError
+from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node, ParameterValue
 from launch_py.substitution import Text
 from launch_py.substitutions import (
+    AndSubstitution,
     EqualsSubstitution,
     IfElseSubstitution,
     LaunchConfiguration,
+    NotSubstitution,
     PathJoinSubstitution,
 )
 
 OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=ros1 replace:=true"
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+IS_ALONE = EqualsSubstitution(LaunchConfiguration("copies"), "1")
 
 
 def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
@@ -34,7 +39,7 @@ def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
 
 
 def panels() -> list[ReadyPanel]:
-    """Return the panels shown to the user, one for each interface."""
+    """Return the panels shown to the user; sim.launch.py has that of copies."""
     return [
         ReadyPanel(
             title="The arm is up",
@@ -47,7 +52,7 @@ def panels() -> list[ReadyPanel]:
                 ("type poses", "publisher_terminal"),
                 ("five poses", "publisher_defined"),
             ],
-            condition=UnlessCondition(IS_ROS1),
+            condition=IfCondition(AndSubstitution(IS_ALONE, NotSubstitution(IS_ROS1))),
         ),
         ReadyPanel(
             title="The arm is up, as in ROS 1",
@@ -57,9 +62,23 @@ def panels() -> list[ReadyPanel]:
                 ("/camera/image_raw", "sensor_msgs/msg/Image, 800x800"),
             ],
             commands=[("its own pose", OWN_POSE)],
-            condition=IfCondition(IS_ROS1),
+            condition=IfCondition(AndSubstitution(IS_ALONE, IS_ROS1)),
         ),
     ]
+
+
+def check_controller_node(context: LaunchContext) -> None:
+    """Refuse the controller node beside copies of the arm.
+
+    Raises:
+        UsageError: the user asks for both.
+    """
+    words = context.launch_configurations
+    if words["controller_node"] == "true" and words["copies"] != "1":
+        raise UsageError(
+            "controller_node:=true is for one arm; with copies:= start it for one of them: "
+            "arm launch arm_controller arm_controller_node.launch.py namespace:=NAME"
+        )
 
 
 def controller_node() -> Node:
@@ -115,11 +134,18 @@ def generate_launch_description() -> LaunchDescription:
                 description="controllers to start with the simulation, separated by commas",
             ),
             DeclareLaunchArgument(
+                "copies",
+                default_value="1",
+                description="copies of the arm in one world, in the namespaces arm_0, arm_1 and so "
+                "on",
+            ),
+            DeclareLaunchArgument(
                 "controller_node",
-                default_value="true",
-                description="start arm_controller_node too, without a pose",
+                default_value=IfElseSubstitution(IS_ALONE, if_value="true", else_value="false"),
+                description="start arm_controller_node too, without a pose; not with copies",
                 choices=["true", "false"],
             ),
+            OpaqueFunction(function=check_controller_node),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(world),
                 launch_arguments={"spawn": LaunchConfiguration("spawn")},

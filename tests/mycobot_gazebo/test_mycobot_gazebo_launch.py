@@ -61,6 +61,14 @@ def test_the_base_stands_on_the_floor_unless_a_place_is_given():
     assert placed == [0.1, 0.0, 0.05, 0.0, 0.0, 1.5]
 
 
+def test_copies_have_controllers_of_their_own_joints():
+    nodes = parameters(copies="2")
+    gripper = nodes["/mycobot_280_1/gripper_action_controller"]
+    assert gripper["joint"] == "mycobot_280_1_gripper_controller"
+    titles = [panel.title for panel in plan(copies="2").panels]
+    assert titles == ["2 robots are up, from /mycobot_280_0 to /mycobot_280_1"]
+
+
 def test_the_state_publisher_can_be_left_out():
     assert set(processes()) == {"arm_gazebo_node", "robot_state_publisher"}
     assert set(processes(use_robot_state_pub="false")) == {"arm_gazebo_node"}

@@ -102,13 +102,16 @@ class _TransformGroup:
 class RobotStatePublisher(Node):
     """Publishes the poses of the links; every callback runs in the executor's thread.
 
+    Args:
+        namespace: namespace of the node; an argument __ns of the process takes its place.
+
     Raises:
         SettingsError: a parameter is invalid, for example an empty robot_description.
         XmlError, UrdfError: the description is not a robot.
     """
 
-    def __init__(self) -> None:
-        super().__init__("robot_state_publisher")
+    def __init__(self, namespace: str = "") -> None:
+        super().__init__("robot_state_publisher", namespace=namespace)
         self._stamp_clock = StampClock(self)
         for name, (default, read, description) in _PARAMETERS.items():
             declare_untyped(self, name, default, description, wanted_by(read), read_only=False)
@@ -261,13 +264,15 @@ MAX_WAIT_S = 1.0
 
 
 @contextmanager
-def spinning(node: Node) -> Iterator[None]:
-    """Run the node's callbacks in a separate thread; at the end stop it and destroy the node."""
-    thread = ExecutorThread("events", EventsExecutor(context=node.context), MAX_WAIT_S)
-    thread.executor.add_node(node)
+def spinning(*nodes: Node) -> Iterator[None]:
+    """Run the nodes' callbacks in a separate thread; at the end stop it and destroy the nodes."""
+    thread = ExecutorThread("events", EventsExecutor(context=nodes[0].context), MAX_WAIT_S)
+    for node in nodes:
+        thread.executor.add_node(node)
     thread.start()
     try:
         yield
     finally:
         thread.stop()
-        node.destroy_node()
+        for node in nodes:
+            node.destroy_node()

@@ -76,6 +76,7 @@ class AssembledRobot:
                 options,
                 base="free" if settings.base == "free" else "fixed",
                 spawn=settings.pose,
+                on_floor=settings.on_floor,
                 resources=ResourceFinder.of_description(
                     settings.robot_description, settings.package_path
                 ),

@@ -61,6 +61,7 @@ class RobotSettings:
         pose: pose of the robot's root in the world; None for the default.
         package_path: folders searched for package:// and model:// after the description's own
             package, before its neighbours and the installed packages.
+        on_floor: whether a free robot stands on the floor at its pose, whatever its z.
     """
 
     namespace: str
@@ -70,6 +71,7 @@ class RobotSettings:
     base: str
     pose: Pose | None
     package_path: tuple[Path, ...]
+    on_floor: bool = False
 
 
 def read_robots(value: Parameters) -> tuple[RobotSettings, ...]:
@@ -109,6 +111,9 @@ def _read_robot(parameters: Parameters, namespace: str) -> RobotSettings:
         ),
         pose=value(
             "pose", None, _read_pose, "x y z roll pitch yaw of the robot's root, in m and rad"
+        ),
+        on_floor=value(
+            "on_floor", False, read_flag, "a free robot stands on the floor at its pose"
         ),
         package_path=value(
             "package_path",

@@ -77,7 +77,7 @@ def startable_controllers(
     names: list[str] = []
     remarks: list[str] = []
     holders: dict[str, str] = {}
-    for name, type_name in _controllers(content).items():
+    for name, type_name in types_of(content).items():
         joints = _joints(content, name)
         held = next((joint for joint in joints if joint in holders), None)
         if type_name not in known_types:
@@ -140,7 +140,7 @@ def checked_controllers(content: object, source: str) -> Mapping[str, Any]:
     by_node: dict[str, dict[str, Any]] = {}
     for node, parameters in _nodes(content) if isinstance(content, Mapping) else ():
         by_node.setdefault(node, {PARAMETERS: {}})[PARAMETERS].update(parameters)
-    if not _controllers(by_node):
+    if not types_of(by_node):
         raise SimSettingsError(
             f"{source} names no controllers; it needs "
             f"{MANAGER}: {PARAMETERS}: NAME: type: TYPE, or NAME: {PARAMETERS}: type: TYPE"
@@ -162,7 +162,7 @@ def _nodes(content: Mapping[Any, Any], above: str = "") -> Iterator[tuple[str, M
             yield from _nodes(entry, f"{above}/{key}" if above else str(key))
 
 
-def _controllers(content: Mapping[str, Any]) -> dict[str, str]:
+def types_of(content: Mapping[str, Any]) -> dict[str, str]:
     """Return the types of the controllers by name.
 
     A type is in the manager's parameters, or else in the controller's own, as the spawner accepts

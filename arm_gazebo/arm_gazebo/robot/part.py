@@ -47,6 +47,7 @@ class BuildOptions:
         base: whether a root link other than `world` is bolted down or stands free.
         spawn: pose of the robot's root in the world. By default a fixed base is at the world's
             origin, and a free base is at the height at which it stands on the floor.
+        on_floor: whether a free base is at that height at the pose `spawn`, too.
         self_collide: whether links of the robot collide with each other; off by default, as in
             Gazebo.
         strict: whether an unavailable mesh is an error instead of a box and a warning.
@@ -58,6 +59,7 @@ class BuildOptions:
     step_s: float = MAX_STEP_S
     base: Base = "fixed"
     spawn: Pose | None = None
+    on_floor: bool = False
     self_collide: bool = False
     strict: bool = False
     resources: ResourceFinder = field(default_factory=ResourceFinder)
@@ -142,8 +144,9 @@ class RobotPart:
         for name, position in self._start.items():
             qpos[model.joint(name).qposadr[0]] = position
         if self._free:
-            root, spawn = self._entry.robot.root, self._entry.options.spawn
-            _place_on_floor(model, qpos, root, spawn, self._report)
+            root, options = self._entry.robot.root, self._entry.options
+            lower = options.on_floor or options.spawn is None
+            _place_on_floor(model, qpos, root, lower, self._report)
 
     def set_up_wheels(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> bool:
         """Make wheels roll and casters slide realistically; return whether there are wheels."""
@@ -207,17 +210,17 @@ def _place_on_floor(
     model: mujoco.MjModel,
     qpos: NDArray[np.float64],
     root: str,
-    spawn: Pose | None,
+    lower: bool,
     report: BuildReport,
 ) -> None:
-    """Put a free robot on the floor unless a pose is given, and warn if it will topple."""
+    """Put a free robot on the floor if it is to be lowered, and warn if it will topple."""
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     body = model.body(root)
     floor = FloorContact(model, data, body.id)
-    if spawn is None and floor.lowest is not None:
+    if lower and floor.lowest is not None:
         qpos[model.jnt_qposadr[body.jntadr[0]] + 2] -= floor.lowest
     overhang = floor.overhang()
     if overhang > 0:

@@ -1,6 +1,7 @@
 """A two-wheeled robot driven by diff_drive_controller."""
 
 from launch_py import IncludeLaunchDescription, LaunchDescription, ReadyPanel
+from launch_py.conditions import LaunchConfigurationEquals
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import PathJoinSubstitution
@@ -30,6 +31,7 @@ def generate_launch_description() -> LaunchDescription:
                     ("/tf", "odom to base_link"),
                 ],
                 commands=[("in circles", "arm run gz_ros2_control_demos example_diff_drive")],
+                condition=LaunchConfigurationEquals("copies", "1"),
             ),
         ]
     )

@@ -6,6 +6,7 @@ from launch_py import (
     LaunchDescription,
     ReadyPanel,
 )
+from launch_py.conditions import LaunchConfigurationEquals
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitution
@@ -46,6 +47,7 @@ def generate_launch_description() -> LaunchDescription:
                     ("/joint_states", "sensor_msgs/msg/JointState"),
                 ],
                 commands=[("close", "arm run gz_ros2_control_demos example_gripper")],
+                condition=LaunchConfigurationEquals("copies", "1"),
             ),
         ]
     )

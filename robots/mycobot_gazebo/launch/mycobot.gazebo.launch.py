@@ -16,7 +16,12 @@ from launch_py.errors import UsageError
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node
-from launch_py.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_py.substitutions import (
+    AndSubstitution,
+    EqualsSubstitution,
+    LaunchConfiguration,
+    PathJoinSubstitution,
+)
 
 SLIDERS = "joint_state_publisher_gui"
 SWITCH = ["true", "false"]
@@ -47,6 +52,8 @@ ARGUMENTS = {
     "roll": ("0.0", "roll of base_link in rad", None),
     "pitch": ("0.0", "pitch of base_link in rad", None),
     "yaw": ("0.0", "yaw of base_link in rad", None),
+    "copies": ("1", "copies on a square grid, in the namespaces mycobot_280_0, _1 and so on", None),
+    "copy_spacing": ("1.0", "distance of neighbours on that grid, in m", None),
 }
 
 
@@ -117,7 +124,12 @@ def panel() -> ReadyPanel:
             ("to and fro", "arm_gripper_loop_controller"),
             ("pick the cylinder up", "mycobot_pick_and_place"),
         ],
-        condition=IfCondition(LaunchConfiguration("load_controllers")),
+        condition=IfCondition(
+            AndSubstitution(
+                LaunchConfiguration("load_controllers"),
+                EqualsSubstitution(LaunchConfiguration("copies"), "1"),
+            )
+        ),
     )
 
 

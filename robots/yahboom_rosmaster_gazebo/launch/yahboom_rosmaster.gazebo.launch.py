@@ -1,6 +1,7 @@
 """The simulated ROSMASTER X3: it drives ahead, sideways and turns, all at once."""
 
 from launch_py import IncludeLaunchDescription, LaunchDescription, ReadyPanel
+from launch_py.conditions import LaunchConfigurationEquals
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare
 from launch_py.substitutions import PathJoinSubstitution
@@ -41,6 +42,7 @@ def generate_launch_description() -> LaunchDescription:
                     ("/tf", "odom to base_footprint"),
                 ],
                 commands=[("to the left", REFERENCE)],
+                condition=LaunchConfigurationEquals("copies", "1"),
             ),
         ]
     )

@@ -231,3 +231,45 @@ def test_the_description_is_uploaded_if_requested():
 def test_the_ros_1_names_of_launch_files_are_found(capsys):
     assert main(["launch", "arm_gazebo", "arm_upload.launch", "--show-args"]) == 0
     assert "origin_xyz  (default '0 0 0')" in capsys.readouterr().out
+
+
+def test_copies_have_a_simulation_and_a_process_of_state_publishers():
+    plan = plan_of("arm_gazebo.launch.py", copies="3", copy_spacing="0.5", pose="[1,0,0,0,0,0]")
+    assert [step.name for step in plan.processes] == ["arm_gazebo_node", "robot_state_publisher"]
+    simulation = parameters_of(plan, "arm_gazebo_node")
+    assert '"robots": ["arm_0", "arm_1", "arm_2"]' in simulation
+    assert '"/arm_2/position_controller": {"ros__parameters": {"joints": ["arm_2_j0"' in simulation
+    (publishers,) = (step for step in plan.processes if step.name == "robot_state_publisher")
+    assert publishers.command[-7:-3] == ("--namespaces", "arm_0", "arm_1", "arm_2")
+    assert "/arm_2/robot_state_publisher" in parameters_of(plan, "robot_state_publisher")
+    titles = [panel.title for panel in plan.panels]
+    assert titles == ["3 robots are up, from /arm_0 to /arm_2"]
+
+
+def test_one_copy_is_what_there_is_without_the_argument():
+    def processes(**arguments: str):
+        plan = plan_of("arm_gazebo.launch.py", **arguments)
+        return [(step.name, step.command) for step in plan.processes], plan.panels
+
+    assert processes(copies="1") == processes()
+
+
+def test_ros_1_s_copies_are_below_the_robot_s_name():
+    plan = plan_of("arm_gazebo.launch.py", interface="ros1", copies="2")
+    simulation = parameters_of(plan, "arm_gazebo_node")
+    assert '"/arm_1/j0p_controller": {"ros__parameters": {"joint": "arm_1_j0"' in simulation
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"copies": "0"}, "copies:=0 is not a number of robots that one world can have"),
+        ({"copies": "1000"}, "copies:=1000 is not a number of robots .* from 1 to 30"),
+        ({"copies": "2", "copy_spacing": "0"}, "copy_spacing:=0 is not a distance above 0"),
+        ({"copies": "2", "robots": "r.yaml"}, "copies:= repeats one model, and robots:=FILE lists"),
+        ({"copies": "2", "controller_node": "true"}, "controller_node:=true is for one arm"),
+    ],
+)
+def test_copies_that_cannot_be_are_refused(given, sentence):
+    with pytest.raises(UsageError, match=sentence):
+        plan_of("arm_gazebo.launch.py", **given)

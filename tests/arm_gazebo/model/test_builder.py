@@ -318,6 +318,9 @@ def test_free_robot_is_stood_on_the_floor(parts):
     built = parts.build(parts.arm(base="free"), base="free")
     assert built.qpos[2] == pytest.approx(0.0313, abs=2e-4)
     assert built.report.warnings == ()
+    spawn = Pose((1.0, 2.0, 0.0))
+    placed = parts.build(parts.arm(base="free"), base="free", spawn=spawn, on_floor=True)
+    assert placed.qpos[:3] == pytest.approx([1.0, 2.0, built.qpos[2]])
 
 
 def test_free_robot_that_leans_too_far_is_reported(parts):

@@ -80,6 +80,26 @@ def test_the_frame_prefix_stands_before_every_frame(client, tf, send, latched):
     assert ("left/slide", "left/tool") in transforms(static)
 
 
+def test_one_process_has_a_node_in_each_namespace(client, start, urdf, latched):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import String
+    from tf2_msgs.msg import TFMessage
+
+    start(MODULE, "--namespaces", "left", "right", robot_description=urdf)
+    for namespace in ("left", "right"):
+        topic = f"/{namespace}/robot_description"
+        assert client.subscribe(String, topic, latched).wait_for()[0].data == urdf
+    collector = client.subscribe(TFMessage, "/tf", 100)
+    client.wait_until(lambda: client.node.count_publishers("/tf") == 2, "both publishers of /tf")
+    states = client.publisher(JointState, "/right/joint_states")
+    message = JointState(name=["turn"], position=[0.0])
+    message.header.stamp.sec = 1
+    states.publish(message)
+    assert children(collector.wait_for()[0]) == {"arm"}
+    nodes = {f"{place}/{name}" for name, place in client.node.get_node_names_and_namespaces()}
+    assert nodes >= {f"/left/{NODE}", f"/right/{NODE}"}
+
+
 def test_another_frame_prefix_takes_effect_at_once(client, tf, send, latched, set_parameters):
     from tf2_msgs.msg import TFMessage
 
@@ -264,6 +284,13 @@ def test_a_start_that_cannot_be_ends_with_a_sentence_and_exit_code_1(start, para
     node = start(MODULE, **parameters)
     assert node.wait() == 1
     assert sentence in node.output
+    assert "Traceback" not in node.output
+
+
+def test_a_namespace_that_cannot_be_ends_with_a_sentence(start, urdf):
+    node = start(MODULE, "--namespaces", "left", "2 rights", robot_description=urdf)
+    assert node.wait() == 1
+    assert "cannot create the node: Invalid namespace" in node.output
     assert "Traceback" not in node.output
 
 
