@@ -65,20 +65,22 @@ def record(node: Node, topic: str, seconds: float, best_effort: bool) -> None:
     say(arrivals_s=arrivals, stamps_s=stamps)
 
 
-def command_latency(node: Node, steps: int) -> None:
+def command_latency(node: Node, steps: int, namespace: str) -> None:
     """Say how long after a command the first joint state shows motion, step by step.
 
     The executor spins in a thread, so that commands fall anywhere in the control period and not
     always right after a joint state.
     """
     states: deque[tuple[float, float]] = deque(maxlen=5000)
+    prefix = f"{namespace.removeprefix('/')}_" if namespace else ""
     node.create_subscription(
         JointState,
-        "/joint_states",
-        lambda m: states.append((time.monotonic(), m.position[m.name.index("j0")])),
+        f"{namespace}/joint_states",
+        lambda m: states.append((time.monotonic(), m.position[m.name.index(f"{prefix}j0")])),
         10,
     )
-    publisher = node.create_publisher(Float64MultiArray, "/position_controller/commands", 10)
+    commands = f"{namespace}/position_controller/commands"
+    publisher = node.create_publisher(Float64MultiArray, commands, 10)
     done = threading.Event()
     spinning = threading.Thread(target=spin_until, args=(node, done.is_set, 3600.0))
     spinning.start()
@@ -124,6 +126,7 @@ def main() -> None:
     parser.add_argument("--topic", default="/joint_states", choices=sorted(TYPES))
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--steps", type=int, default=50)
+    parser.add_argument("--namespace", default="", help="of the arm that is commanded, /arm_0")
     parser.add_argument("--best-effort", action="store_true")
     arguments = parser.parse_args()
     rclpy.init()
@@ -133,7 +136,7 @@ def main() -> None:
     elif arguments.job == "record":
         record(node, arguments.topic, arguments.seconds, arguments.best_effort)
     else:
-        command_latency(node, arguments.steps)
+        command_latency(node, arguments.steps, arguments.namespace)
     # The signal that ends the client may have done so, in the midst of this.
     with contextlib.suppress(RuntimeError):
         rclpy.try_shutdown()

@@ -18,6 +18,7 @@ SCRIPTS = (
     "start_up.py",
     "command_line.py",
     "control_loop.py",
+    "many_arms.py",
     "trajectory_control.py",
     "busy_process.py",
     "as_fast_as_possible.py",

@@ -36,7 +36,7 @@ from arm_gazebo.recording.session import RunParts
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.fault_parameter import FaultParameter
 from arm_gazebo.ros.live_parameters import follow_parameter
-from arm_gazebo.ros.managed_robot import ManagedRobot
+from arm_gazebo.ros.managed_robot import ManagedRobot, executor_of_robots
 from arm_gazebo.ros.run_recording import RunRecording
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_gazebo.state.complete_state import CompleteState
@@ -76,6 +76,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         settings = read_settings(partial(declare, node))
         outbox = Outbox()
         clock = RosClockPublisher(node, outbox)
+        executor = executor_of_robots(settings, process.executor, ending)
         robots = []
         for robot_settings in settings.robots:
             robots.append(ManagedRobot(robot_settings, arguments, clock))
@@ -101,7 +102,8 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         state = _complete_state(simulation, managers, consumers, clock)
         run = _parts(robots, settings, simulation, state, tick, loop)
         recording = ending.enter_context(closing(RunRecording(node, run, settings.record_run)))
-        _serve_robots(robots, node, loop, process.executor, ending)
+        _serve_robots(robots, executor, loop, ending)
+        _serve_all(robots, node, loop, process.executor)
         if not settings.paused:
             loop.resume()
         for feed in feeds:
@@ -118,12 +120,11 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
 
 def _serve_robots(
     robots: Sequence[ManagedRobot],
-    node: Node,
-    loop: ControlLoop,
     executor: Executor,
+    loop: ControlLoop,
     ending: ExitStack,
 ) -> None:
-    """Serve each robot's manager, and the emergency stop of all of them.
+    """Serve each robot's manager.
 
     Raises:
         ArmControlError: a required controller cannot start.
@@ -131,6 +132,12 @@ def _serve_robots(
     for robot in robots:
         ending.callback(robot.shutdown)
         robot.serve(loop, executor)
+
+
+def _serve_all(
+    robots: Sequence[ManagedRobot], node: Node, loop: ControlLoop, executor: Executor
+) -> None:
+    """Serve the emergency stop of all robots, unless one of them has it."""
     namespaces = {robot.node.get_namespace() for robot in robots}
     if node.get_namespace() not in namespaces:
         managers = [robot.robot.manager for robot in robots]

@@ -119,6 +119,44 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
     wait_for_pose(states, {prefixed(name, "left_"): -0.7 * k for name, k in FOLLOWERS.items()})
 
 
+def test_a_copy_has_actions_and_controllers_of_its_own(launch, client, result_of):
+    from action_msgs.msg import GoalStatus
+    from control_msgs.action import FollowJointTrajectory, GripperCommand
+    from controller_manager_msgs.srv import ListControllers, SwitchController, UnloadController
+    from sensor_msgs.msg import JointState
+
+    own, other = "mycobot_280_1", "mycobot_280_0"
+    launched = launch("mycobot", "copies:=2")
+    launched.wait_until_ready()
+    states = {name: client.subscribe(JointState, f"/{name}/joint_states") for name in (own, other)}
+    target = trajectory(TARGET, 1, "")
+    target.joint_names = [f"{own}_{name}" for name in ARM_JOINTS]
+    follow = f"/{own}/arm_controller/follow_joint_trajectory"
+    followed = result_of(
+        FollowJointTrajectory, follow, FollowJointTrajectory.Goal(trajectory=target)
+    )
+    assert followed.status == GoalStatus.STATUS_SUCCEEDED
+    wait_for_pose(states[own], dict(zip(target.joint_names, TARGET, strict=True)))
+
+    close = GripperCommand.Goal()
+    close.command.position, close.command.max_effort = -0.5, 5.0
+    gripped = result_of(GripperCommand, f"/{own}/gripper_action_controller/gripper_cmd", close)
+    assert gripped.status == GoalStatus.STATUS_SUCCEEDED
+    states[other].clear()
+    assert max(map(abs, states[other].wait_for()[-1].position)) < 0.005
+
+    manager = f"/{own}/controller_manager"
+    stop = SwitchController.Request(deactivate_controllers=["arm_controller"], strictness=2)
+    assert client.call(SwitchController, f"{manager}/switch_controller", stop).ok
+    unload = UnloadController.Request(name="arm_controller")
+    assert client.call(UnloadController, f"{manager}/unload_controller", unload).ok
+    for name, count in ((own, 2), (other, 3)):
+        service = f"/{name}/controller_manager/list_controllers"
+        listed = client.call(ListControllers, service, ListControllers.Request()).controller
+        assert [controller.state for controller in listed] == ["active"] * count
+    assert launched.stop() == 0
+
+
 def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
     from sensor_msgs.msg import JointState
     from tf2_msgs.msg import TFMessage
