@@ -24,6 +24,8 @@ CHECK_DRIVER = (
 INTERFACES_SHOWN = 6
 LEAST_SHARE = 0.9
 MISMATCHES_SHOWN = 3
+PAGE = "/arm_viewer"
+"""It also listens where nobody publishes, in case that somebody begins."""
 SINGLE = ("joint_states", "clock")
 
 
@@ -92,21 +94,21 @@ def _without_clock(observation: GraphObservation) -> Diagnosis:
 def check_joint_states(observation: GraphObservation) -> Diagnosis:
     """Check that joint states arrive, and that they are numbers."""
     topics = observation.joint_states
-    silent = [_silence(topic) for topic in topics if not topic.received]
+    silent = [topic for topic in topics if not topic.received]
     arriving = [topic.name for topic in topics if topic.received]
-    if not topics:
-        silent = ["nobody publishes /joint_states"]
     if not arriving:
+        silence = _silence(silent[0]) if silent else "nobody publishes /joint_states"
         return Diagnosis.error(
             "joint states",
-            f"{silent[0]}: the arm is displayed at rest, or not at all",
+            f"{silence}: the arm is displayed at rest, or not at all",
             START_SIMULATION,
         )
     unmeasured = _unmeasured(observation)
     if unmeasured:
         return Diagnosis.error("joint states", unmeasured, CHECK_DRIVER)
-    if silent:
-        return Diagnosis.warning("joint states", silent[0], START_SIMULATION)
+    missed = [topic for topic in silent if topic.publishers or set(topic.listeners) - {PAGE}]
+    if missed:
+        return Diagnosis.warning("joint states", _silence(missed[0]), START_SIMULATION)
     return Diagnosis.ok("joint states", f"they arrive on {', '.join(arriving)}")
 
 

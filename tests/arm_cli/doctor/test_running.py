@@ -139,6 +139,7 @@ def test_nodes_that_wait_for_a_missing_clock():
 
 LISTENED_TO = StateTopic("/joint_states", (), ("/robot_state_publisher",))
 SILENT = StateTopic("/joint_states", ("/jsb",), ("/robot_state_publisher",))
+WATCHED = StateTopic("/joint_states", (), ("/arm_viewer",))
 COMING = StateTopic("/left/joint_states", ("/left/jsb",), (), 3)
 
 
@@ -151,6 +152,8 @@ COMING = StateTopic("/left/joint_states", ("/left/jsb",), (), 3)
         ((SILENT, COMING), "warning", "/joint_states is published by /jsb, but no message arrives"),
         ((LISTENED_TO, COMING), "warning", "nobody publishes /joint_states, to which"),
         ((COMING,), "ok", "they arrive on /left/joint_states"),
+        ((WATCHED, COMING), "ok", "they arrive on /left/joint_states"),
+        ((WATCHED,), "error", "nobody publishes /joint_states, to which /arm_viewer listens"),
     ],
 )
 def test_joint_states(topics, severity, sentence):
