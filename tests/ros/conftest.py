@@ -179,9 +179,13 @@ class Collector:
 
 
 class Client:
-    """An ordinary user's rclpy node: default settings, and an executor in a thread."""
+    """An ordinary user's rclpy node: default settings, and an executor in a thread.
 
-    def __init__(self) -> None:
+    Args:
+        domain: ROS domain; by default that of the tests.
+    """
+
+    def __init__(self, domain: int | None = None) -> None:
         import rclpy
         from rclpy.context import Context
         from rclpy.executors import SingleThreadedExecutor
@@ -189,7 +193,11 @@ class Client:
         from rclpy.signals import SignalHandlerOptions
 
         self.context = Context()
-        rclpy.init(context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(
+            context=self.context,
+            signal_handler_options=SignalHandlerOptions.NO,
+            domain_id=domain,
+        )
         self.node = Node("test_client", context=self.context)
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
@@ -287,3 +295,17 @@ def client() -> Iterator[Client]:
     connected = Client()
     yield connected
     connected.close()
+
+
+@pytest.fixture
+def client_in() -> Iterator[Callable[[int], Client]]:
+    """Return a function that makes a client in a ROS domain."""
+    made: list[Client] = []
+
+    def make(domain: int) -> Client:
+        made.append(Client(domain))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()

@@ -2,33 +2,64 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 
 import pytest
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
+WORLDS = 8
+TOGETHER = 4
+"""Worlds that start at the same time, so that none of them waits too long on a busy machine."""
 TIMEOUT_S = 60.0
+SMALLEST = ("camera:=none", "controller_node:=false", "use_robot_state_pub:=false")
 
 
-def test_two_launches_do_not_hear_each_other(launch):
-    both = [launch("domain:=auto", "camera:=none") for _ in range(2)]
-    domains = []
-    for launched in both:
-        launched.wait_until_ready()
-        found = re.search(r"ROS_DOMAIN_ID=(\d+); export it", launched.output)
-        assert found, launched.output
-        domains.append(found[1])
-    assert domains[0] != domains[1]
-    assert os.environ["ROS_DOMAIN_ID"] not in domains
+def domain_of(launched) -> int:
+    found = re.search(r"ROS_DOMAIN_ID=(\d+); export it", launched.output)
+    assert found, launched.output
+    return int(found[1])
+
+
+def test_eight_worlds_side_by_side_do_not_hear_each_other(launch, client_in):
+    from sensor_msgs.msg import JointState
+    from std_msgs.msg import Float64MultiArray
+
+    worlds = []
+    while len(worlds) < WORLDS:
+        new = [launch("domain:=auto", *SMALLEST) for _ in range(TOGETHER)]
+        for launched in new:
+            launched.wait_until_ready()
+        worlds += new
+    domains = [domain_of(launched) for launched in worlds]
+    assert len({*domains, int(os.environ["ROS_DOMAIN_ID"])}) == WORLDS + 1
+    clients = [client_in(domain) for domain in domains]
+    states = [client.subscribe(JointState, "/joint_states") for client in clients]
+    topic = "/position_controller/commands"
+    publishers = [client.publisher(Float64MultiArray, topic) for client in clients]
+    goals = [0.1 * (number + 1) for number in range(WORLDS)]
+    for publisher, goal in zip(publishers, goals, strict=True):
+        publisher.publish(Float64MultiArray(data=[goal, 0.0, 0.0, 0.0]))
+    for _ in range(2):  # Whoever heard somebody else's command would not be there the second time.
+        for each, goal in zip(states, goals, strict=True):
+            each.clear()
+            each.wait_until(
+                lambda m, g=goal: bool(m) and abs(m[-1].position[0] - g) < 0.005, f"j0 is at {goal}"
+            )
+    for client in clients:
+        assert client.node.count_publishers("/joint_states") == 1
+        assert client.node.count_subscribers(topic) == 1
     nodes = subprocess.run(
         [sys.executable, "-m", "arm_cli", "node", "list"],
-        env={**os.environ, "ROS_DOMAIN_ID": domains[0]},
+        env={**os.environ, "ROS_DOMAIN_ID": str(domains[0])},
         capture_output=True,
         text=True,
         timeout=TIMEOUT_S,
     )
-    assert nodes.stdout.splitlines().count("/arm_controller_node") == 1, nodes.stdout
+    assert nodes.stdout.splitlines().count("/controller_manager") == 1, nodes.stdout
     # Nothing was said of a second node of a name, which would stop the later launch.
-    assert [launched.stop() for launched in both] == [0, 0]
+    for launched in worlds:
+        launched.process.send_signal(signal.SIGINT)
+    assert [launched.wait() for launched in worlds] == [0] * WORLDS
