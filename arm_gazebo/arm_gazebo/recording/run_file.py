@@ -255,7 +255,7 @@ def _block_bytes(block: StateBlock) -> bytes:
     hashes, states = block.hashes, np.ascontiguousarray(block.states)
     # Without a copy of megabytes, and without Python's lock, which the simulation needs.
     parts = zstandard.ZstdCompressor(1).compressobj(hashes.nbytes + states.nbytes)
-    return b"".join((head, parts.compress(hashes), parts.compress(states), parts.flush()))
+    return b"".join((head, parts.compress(hashes.data), parts.compress(states.data), parts.flush()))
 
 
 def _block(data: bytes) -> StateBlock:

@@ -55,7 +55,7 @@ class StateRow:
         each = (m.resources for m in managers)
         controlled = (values for r in each for values in (r.commands, r.states))
         parts = (self._time_s, *physics, *controlled)
-        self._views = tuple(memoryview(part).cast("B") for part in parts if len(part))
+        self._views = tuple(part.data.cast("B") for part in parts if len(part))
         self.width = sum(map(len, parts))
 
     def copy(self, time_s: float) -> bytes:
