@@ -5,7 +5,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from arm_cli.ros.graph import Graph
     from arm_cli.ros.parameters import NodeParameters
+
+EMPTY_S = 0.35
+"""If no other node has been found for this long, there is none."""
+ANSWER_TIMEOUT_S = 1.0
+SERVER_TIMEOUT_S = 1.0
+"""A node whose parameter services have not been discovered by then does not exist."""
 
 
 def topics(**_: Any) -> list[str]:
@@ -54,20 +61,22 @@ def _ask_node(
     from arm_cli.ros.connection import connect
 
     with connect() as session:
-        from arm_cli.ros.graph import Graph
+        from arm_cli.ros.graph import NodeName
         from arm_cli.ros.parameters import NodeParameters
 
-        node = Graph(session).find_node(parsed_args.node_name)
-        return ask(NodeParameters(session, node, answer_timeout_s=1.0))
+        # The services of a node are discovered before its name, which need not be awaited.
+        node = NodeName.of(parsed_args.node_name)
+        return ask(NodeParameters(session, node, ANSWER_TIMEOUT_S, SERVER_TIMEOUT_S))
 
 
-def _look(take: Callable[[Any], list[str]]) -> list[str]:
+def _look(take: Callable[["Graph"], list[str]]) -> list[str]:
     from arm_cli.ros.connection import connect
 
     with connect() as session:
         from arm_cli.ros.graph import Graph, SettleTimes
 
         graph = Graph(session)
-        # Tab must be fast, so it offers only what is discovered at once.
-        graph.settle(SettleTimes(quiet_s=0.1, empty_s=0.15, settled_s=0.5))
+        # Tab must be fast, so it does not wait for latecomers; but the first answers of the others
+        # take 0.1 to 0.3 s.
+        graph.settle(SettleTimes(quiet_s=0.1, empty_s=EMPTY_S, settled_s=0.5))
         return take(graph)

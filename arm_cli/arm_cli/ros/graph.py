@@ -45,6 +45,12 @@ class NodeName:
     namespace: str
     name: str
 
+    @classmethod
+    def of(cls, name: str) -> "NodeName":
+        """Return a node's name from the one that a user typed, such as '/arm/driver'."""
+        namespace, _, base = absolute_name(name).rpartition("/")
+        return cls(namespace or "/", base)
+
     @property
     def full_name(self) -> str:
         """The absolute name."""

@@ -13,7 +13,7 @@ from rcl_interfaces.srv import (
 
 from arm_cli.errors import NoSuchNameError
 from arm_cli.ros.graph import NodeName
-from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, call_service
+from arm_cli.ros.service_call import ANSWER_TIMEOUT_S, SERVER_TIMEOUT_S, call_service
 from arm_cli.ros.session import CommandSession
 from arm_node.names import describe_known
 
@@ -22,11 +22,16 @@ class NodeParameters:
     """Calls one node's parameter services. Every method may raise UnansweredError."""
 
     def __init__(
-        self, session: CommandSession, node: NodeName, answer_timeout_s: float = ANSWER_TIMEOUT_S
+        self,
+        session: CommandSession,
+        node: NodeName,
+        answer_timeout_s: float = ANSWER_TIMEOUT_S,
+        server_timeout_s: float = SERVER_TIMEOUT_S,
     ) -> None:
         """Call the services of a node, from a session's node."""
         self._session = session
         self._node = node
+        self._server_timeout_s = server_timeout_s
         self._answer_timeout_s = answer_timeout_s
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
@@ -77,5 +82,10 @@ class NodeParameters:
     def _call(self, service_class: Any, service: str, request: Any) -> Any:
         name = f"{self._node.full_name}/{service}"
         return call_service(
-            self._session, service_class, name, request, answer_timeout_s=self._answer_timeout_s
+            self._session,
+            service_class,
+            name,
+            request,
+            self._server_timeout_s,
+            self._answer_timeout_s,
         )
