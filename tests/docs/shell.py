@@ -110,9 +110,9 @@ class Running:
         """Do what Ctrl-C in its terminal does."""
         os.killpg(self.process.pid, signal.SIGINT)
 
-    def wait(self, timeout_s: float = TIMEOUT_S) -> int:
-        """Wait for the end, and return the exit code; may raise TimeoutExpired."""
-        code = self.process.wait(timeout_s)
+    def wait(self) -> int:
+        """Wait for the end, and return the exit code."""
+        code = self.process.wait(TIMEOUT_S)
         with self._changed:
             assert self._changed.wait_for(lambda: self._ended, TIMEOUT_S), self.output
         return code

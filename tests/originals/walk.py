@@ -3,15 +3,12 @@
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from subprocess import TimeoutExpired
 
 from originals_table import COURSE, INTERRUPT, Row, Step, read_parts
 from shell import TIMEOUT_S, Running, comparable, pattern
 
 ROWS = tuple(row for part in read_parts() for row in part.rows)
 ARRIVAL = "all(abs(dict(zip(m.name, m.position))[n] - q) < {within} for n, q in {wanted})"
-ARRIVAL_S = 25.0
-"""How long a listener waits for a motion of some seconds to end."""
 WITHIN = 0.02
 """How near each joint must come, in rad or m."""
 
@@ -93,10 +90,10 @@ class Walk:
             what = f"{line}: exit code {code}, {missing!r} is missing"
             assert time.monotonic() < deadline, f"{what}:\n{output}"
 
-    def _ended(self, line: str, timeout_s: float = TIMEOUT_S) -> tuple[int, str]:
+    def _ended(self, line: str) -> tuple[int, str]:
         running = Running(line, self._folder)
         try:
-            return running.wait(timeout_s), running.output
+            return running.wait(), running.output
         finally:
             running.close()
 
@@ -126,18 +123,8 @@ class Walk:
     def _wait_for_joints(self, step: Step) -> None:
         condition = ARRIVAL.format(wanted=list(step.reaches), within=WITHIN)
         line = f'arm topic echo {step.states} --once --filter "{condition}"'
-        deadline = time.monotonic() + TIMEOUT_S
-        while True:
-            try:
-                code, output = self._ended(line, ARRIVAL_S)
-            except TimeoutExpired:
-                # A listener can stay deaf if the machine stands still while it joins, see
-                # docs/explanation/discovery.md. It is the walk's own; the page's lines get no
-                # second try.
-                assert time.monotonic() < deadline, f"not reached: {line}"
-            else:
-                assert code == 0, output
-                return
+        code, output = self._ended(line)
+        assert code == 0, output
 
     def end(self) -> None:
         """End all that runs."""

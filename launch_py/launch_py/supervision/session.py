@@ -11,7 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from launch_py.fast_dds.shared_memory import SharedMemoryLedger, watch_folder
+from launch_py.fast_dds.ledger import SharedMemoryLedger
+from launch_py.fast_dds.shared_memory import watch_folder
 from launch_py.output import PlainScreen, ReadySummary, Screen, TerminalScreen
 from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder, log_root
 from launch_py.output.reporter import Reporter

@@ -1,8 +1,6 @@
-"""Shared-memory files that no process uses; the folder is the test's own."""
+"""Shared-memory files that no process uses, in a folder of the test's own."""
 
-import ctypes
 import fcntl
-import mmap
 import os
 import subprocess
 import sys
@@ -18,14 +16,25 @@ PORT = (
     "fastrtps_port7411_sl",
     "sem.fastrtps_port7411_mutex",
 )
+# The module mmap would also keep the file open.
+MAP = """
+import ctypes, sys
+libc = ctypes.CDLL(None)
+libc.mmap.restype = ctypes.c_void_p
+libc.mmap.argtypes = (ctypes.c_void_p, ctypes.c_size_t, *[ctypes.c_int] * 3, ctypes.c_long)
+with open(sys.argv[1], "r+b") as file:
+    assert libc.mmap(None, 64, 1, 1, file.fileno(), 0) not in (None, ctypes.c_void_p(-1).value)
+print("up", flush=True)
+sys.stdin.read()
+"""
 
 
 @pytest.fixture
-def folder(tmp_path):
+def folder(shm_folder):
     """A folder with the files of a dead process, and files that do not belong to Fast DDS."""
     for name in (*SEGMENT, *PORT, "fastrtps_notes.txt", "sem.other", "lttng-ust-wait-6"):
-        (tmp_path / name).write_bytes(b"\0" * 64)
-    return tmp_path
+        (shm_folder / name).write_bytes(b"\0" * 64)
+    return shm_folder
 
 
 def sweep(folder):
@@ -42,17 +51,26 @@ def test_only_the_files_of_a_dead_process_are_removed(folder):
     assert sweep(folder) == set()
 
 
+def test_a_mutex_stays_while_any_participant_lives(folder):
+    """Another process may wait to open it."""
+    with (folder / "fastrtps_1_el").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        assert sweep(folder) == {*SEGMENT, *PORT[:3]}
+        assert sweep(folder) == set()
+    assert sweep(folder) == {"fastrtps_1_el", PORT[3]}
+
+
 @pytest.mark.parametrize("lock", [SEGMENT[1], PORT[1], PORT[2]])
 @pytest.mark.parametrize("kind", [fcntl.LOCK_EX, fcntl.LOCK_SH])
 def test_a_locked_file_stays(folder, lock, kind):
     with (folder / lock).open() as file:
         fcntl.flock(file, kind)
-        kept = SEGMENT if lock in SEGMENT else PORT
+        kept = (*SEGMENT, PORT[3]) if lock in SEGMENT else PORT
         assert sweep(folder) == {*SEGMENT, *PORT} - set(kept)
     assert sweep(folder) == set(kept)
 
 
-@pytest.mark.parametrize("name", [*SEGMENT, *PORT])
+@pytest.mark.parametrize("name", [SEGMENT[1], *PORT])
 def test_an_open_file_stays(folder, name):
     with (folder / name).open():
         kept = SEGMENT if name in SEGMENT else PORT
@@ -60,26 +78,9 @@ def test_an_open_file_stays(folder, name):
     assert sweep(folder) == set(kept)
 
 
-@pytest.mark.parametrize("name", [SEGMENT[0], PORT[0], PORT[3]])
-def test_a_mapped_file_stays(folder, name):
-    # The module mmap would also keep the file open.
-    libc = ctypes.CDLL(None, use_errno=True)
-    libc.mmap.restype = ctypes.c_void_p
-    libc.mmap.argtypes = (ctypes.c_void_p, ctypes.c_size_t, *[ctypes.c_int] * 3, ctypes.c_long)
-    libc.munmap.argtypes = (ctypes.c_void_p, ctypes.c_size_t)
-    with (folder / name).open("r+b") as file:
-        address = libc.mmap(None, 64, mmap.PROT_READ, mmap.MAP_SHARED, file.fileno(), 0)
-    assert address not in (None, ctypes.c_void_p(-1).value)
-    kept = SEGMENT if name in SEGMENT else PORT
-    assert sweep(folder) == {*SEGMENT, *PORT} - set(kept)
-    assert libc.munmap(address, 64) == 0
-    assert sweep(folder) == set(kept)
-
-
-def test_another_process_s_use_counts_too(folder):
-    code = "import sys; file = open(sys.argv[1]); print('up', flush=True); sys.stdin.read()"
+def test_a_port_that_another_process_has_mapped_stays(folder):
     with subprocess.Popen(
-        [sys.executable, "-S", "-c", code, str(folder / PORT[0])],
+        [sys.executable, "-S", "-c", MAP, str(folder / PORT[0])],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
     ) as process:
@@ -87,33 +88,6 @@ def test_another_process_s_use_counts_too(folder):
         assert process.stdout.readline() == b"up\n"
         assert sweep(folder) == set(SEGMENT)
     assert sweep(folder) == set(PORT)
-
-
-def test_ports_stay_if_an_owner_is_not_visible(folder, tmp_path_factory, monkeypatch):
-    """As in a folder shared with another container, the lock is visible and its process is not."""
-    from launch_py.fast_dds import abandoned_memory
-
-    monkeypatch.setattr(abandoned_memory, "lock_owners", lambda folder: {})
-    no_processes = tmp_path_factory.mktemp("proc")
-    with (folder / SEGMENT[1]).open() as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        assert remove_abandoned(str(folder), str(no_processes)) == []
-    assert set(remove_abandoned(str(folder), str(no_processes))) == {*SEGMENT, *PORT}
-
-
-def test_a_lock_that_is_taken_meanwhile_keeps_its_segment_only(
-    folder, tmp_path_factory, monkeypatch
-):
-    """As by another process that cleans up at the same time."""
-    from launch_py.fast_dds import abandoned_memory
-
-    before = iter([dict[int, set[int]]()])
-    now = abandoned_memory.lock_owners
-    monkeypatch.setattr(abandoned_memory, "lock_owners", lambda path: next(before, now(path)))
-    with (folder / SEGMENT[1]).open() as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        no_processes = str(tmp_path_factory.mktemp("proc"))
-        assert set(remove_abandoned(str(folder), no_processes)) == set(PORT)
 
 
 def test_files_of_other_users_stay(folder, monkeypatch):

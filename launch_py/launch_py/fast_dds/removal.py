@@ -1,0 +1,146 @@
+"""Removes segments and ports that no process uses, without disturbing one that begins to use them.
+
+The name of a segment is used once. The number of a port is used again by the next participant, in
+any domain, and Fast DDS opens a port in steps: it takes the port's mutex, maps the segment, locks
+the lock file, and gives the mutex back. Removed between two of the steps, the port would be a file
+without a name: its reader discovers every topic and hears nothing.
+
+So the kernel is asked for a write lease on each file; see fcntl(2). It grants one only if no
+process has the file open or mapped, in whatever container. A process that opens the file later
+waits until the lease is given back. A port's mutex comes first, which Fast DDS opens before all.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import os
+import signal
+import tempfile
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+
+from launch_py.fast_dds.shared_memory import (
+    PORT_PREFIX,
+    lock_names,
+    locked_segments,
+    mutex_file,
+)
+
+_SEMAPHORE_BYTES = 32
+"""The size of glibc's sem_t on 64-bit machines, and of the file of a named semaphore."""
+_LONGEST_TURN_S = 1.0
+_POLL_S = 0.005
+
+
+def remove_unused(stems: Iterable[str], folder: str) -> list[str]:
+    """Remove the files of those segments and ports that have no living owner; return their names.
+
+    A port stays while any process has it mapped: one that has sent to the dead participant sends to
+    the next participant of the same number there. A port's mutex stays while any participant lives,
+    because a process that waits to open it goes on with the old one.
+    """
+    with _turn(folder):
+        return [
+            name
+            for stem in stems
+            for name in (
+                _remove_port(stem, folder)
+                if stem.startswith(PORT_PREFIX)
+                else _remove_segment(stem, folder)
+            )
+        ]
+
+
+def _remove_segment(stem: str, folder: str) -> list[str]:
+    with ExitStack() as leases:
+        # The owner holds the lock file as long as it lives. Others may still read the segment.
+        locks = _take_leases(lock_names(stem), folder, leases)
+        if locks is None or (not locks and _take_leases([stem], folder, leases) is None):
+            return []
+        return _unlink((stem, *lock_names(stem)), folder)
+
+
+def _remove_port(stem: str, folder: str) -> list[str]:
+    files, mutex = (stem, *lock_names(stem)), mutex_file(stem)
+    _make_mutex(os.path.join(folder, mutex))
+    with ExitStack() as leases:
+        leased = _take_leases((mutex, *files), folder, leases)
+        if leased is None or mutex not in leased:
+            return []
+        removed = _unlink(files, folder)
+        # A process that was killed while it held the mutex has left it taken for ever.
+        os.pwrite(leased[mutex], _free_semaphore(), 0)
+        return removed if locked_segments(folder) else removed + _unlink([mutex], folder)
+
+
+@contextmanager
+def _turn(folder: str) -> Iterator[None]:
+    """Wait until no other process cleans up the folder: two of them keep each other from leases.
+
+    A process that has been stopped while it cleans up is not waited for.
+    """
+    with ExitStack() as opened:
+        with suppress(OSError):
+            fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+            opened.callback(os.close, fd)
+            deadline_s = time.monotonic() + _LONGEST_TURN_S
+            while not _lock(fd) and time.monotonic() < deadline_s:
+                time.sleep(_POLL_S)
+        yield
+
+
+def _lock(fd: int) -> bool:
+    with suppress(BlockingIOError):
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return True
+    return False
+
+
+def _take_leases(names: Iterable[str], folder: str, leases: ExitStack) -> dict[str, int] | None:
+    """Take a write lease on each of the files that exist.
+
+    Return their descriptors, which `leases` closes, or None if not all leases are granted.
+    """
+    leased: dict[str, int] = {}
+    for name in names:
+        try:
+            fd = os.open(os.path.join(folder, name), os.O_RDWR | os.O_NONBLOCK)
+        except FileNotFoundError:
+            continue
+        except OSError:
+            return None
+        leases.callback(os.close, fd)
+        try:
+            # A process that opens the file meanwhile raises this signal, which is ignored.
+            fcntl.fcntl(fd, fcntl.F_SETSIG, signal.SIGURG)
+            fcntl.fcntl(fd, fcntl.F_SETLEASE, fcntl.F_WRLCK)
+        except OSError:
+            return None
+        leased[name] = fd
+    return leased
+
+
+def _free_semaphore() -> bytes:
+    content = ctypes.create_string_buffer(_SEMAPHORE_BYTES)
+    ctypes.CDLL(None).sem_init(content, 1, 1)
+    return content.raw
+
+
+def _make_mutex(path: str) -> None:
+    """Make a port's mutex unless it exists, complete from the beginning, as sem_open(3) does."""
+    if not os.path.exists(path):
+        with suppress(OSError), tempfile.NamedTemporaryFile(dir=os.path.dirname(path)) as file:
+            file.write(_free_semaphore())
+            file.flush()
+            os.link(file.name, path)
+
+
+def _unlink(names: Iterable[str], folder: str) -> list[str]:
+    removed: list[str] = []
+    for name in names:
+        with suppress(OSError):
+            os.unlink(os.path.join(folder, name))
+            removed.append(name)
+    return removed
