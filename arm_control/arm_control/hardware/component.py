@@ -119,14 +119,16 @@ class HardwareComponent:
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Read the states if a read is due; an exception counts as ERROR."""
-        due_s = self._reading.due_period_s(time_s, period_s)
+        cadence = self._reading
+        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
         if due_s is None:
             return HardwareReturn.OK
         return self._exchange(self.hardware.read, self.reads, time_s, due_s)
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
         """Write the commands if a write is due; an exception counts as ERROR."""
-        due_s = self._writing.due_period_s(time_s, period_s)
+        cadence = self._writing
+        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
         if due_s is None:
             return HardwareReturn.OK
         return self._exchange(self.hardware.write, self.writes, time_s, due_s)
@@ -148,7 +150,7 @@ class HardwareComponent:
             # component off and goes on.
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
-        runs.add(period_s, self._now_s() - began_s)
+        runs.add((period_s, self._now_s() - began_s))
         if outcome is HardwareReturn.DEACTIVATE and self.state is not LifecycleState.ACTIVE:
             # It is already inactive: a driver may repeat its request in every read.
             return HardwareReturn.OK

@@ -11,6 +11,7 @@ class Cadence:
 
     Attributes:
         rate_hz: the lower rate.
+        skips: whether some cycles are not due; if not, nobody needs to ask `due_period_s`.
     """
 
     def __init__(self, rate_hz: int, cycle_rate_hz: int) -> None:
@@ -21,7 +22,8 @@ class Cadence:
             cycle_rate_hz: the loop's rate.
         """
         self.rate_hz = rate_hz
-        self._own_period_s = 1.0 / rate_hz if rate_hz < cycle_rate_hz else 0.0
+        self.skips = rate_hz < cycle_rate_hz
+        self._own_period_s = 1.0 / rate_hz
         self._last_s = nan
         self._elapsed_s = 0.0
 
@@ -47,7 +49,7 @@ class Cadence:
             time_s: of this cycle.
             cycle_s: from the last cycle to this one.
         """
-        if not self._own_period_s:
+        if not self.skips:
             return cycle_s
         # Sums the cycles instead of subtracting times, because the clock may have been set.
         self._elapsed_s += cycle_s

@@ -156,7 +156,8 @@ class ManagedController:
 
     def run(self, time_s: float, period_s: float) -> bool:
         """Update the controller if it is due; return False if the update failed."""
-        due_s = self._cadence.due_period_s(time_s, period_s)
+        cadence = self._cadence
+        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
         if due_s is None:
             return True
         began_s = self._now_s()
@@ -169,7 +170,7 @@ class ManagedController:
             # deactivates it and goes on.
             self._on_exception(f"controller '{self.name}' raised in its update", error)
             return False
-        self.runs.add(due_s, self._now_s() - began_s)
+        self.runs.add((due_s, self._now_s() - began_s))
         return outcome is ReturnType.OK
 
     def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:

@@ -27,7 +27,7 @@ from arm_control.manager.ros.simulated_clock import DeadlineClock, SimulatedCloc
 from arm_description.errors import DescriptionError
 from arm_description.urdf.document import UrdfDocument
 from arm_node.process import EXIT_FAILED, NodeProcess
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 LISTENING_S = 0.1
 REMINDER_INTERVAL_S = 1.0
@@ -48,8 +48,7 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
     with ExitStack() as nodes, ExitStack() as ending:
         # Destroying a node while the executor uses it crashes the process.
         ending.callback(process.join_spinning)
-        with prompt_discovery():
-            node = ControllerManagerNode(arguments)
+        node = first_node(lambda: ControllerManagerNode(arguments))
         own = nodes.enter_context(ExitStack())
         own.callback(node.destroy_node)
         descriptions = DescriptionTopic(node)
