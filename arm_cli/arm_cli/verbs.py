@@ -274,7 +274,9 @@ VERBS = (
     TF,
     BAG,
     DATASET,
-    Verb("sweep", "make the runs of a study on all cores", "arm_cli.sweep_verb"),
+    Verb(
+        "sweep", "make the runs of a study on all cores, or on a Ray cluster", "arm_cli.sweep_verb"
+    ),
     Verb("stop", "stop all robots at once, or release them", "arm_cli.stop_verb"),
     Verb("view", "show the robots in the browser, and move them", "arm_cli.run_verb:VIEW"),
     Verb("check", "check a robot or world file as the simulation reads it", "arm_cli.check_verb"),

@@ -51,6 +51,7 @@ class Running:
     def __init__(self, line: str, folder: Path, terminal: bool = False) -> None:
         search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
         environment = {**os.environ, "PATH": search, "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
+        environment.pop("PYTEST_ADDOPTS", None)  # Of this run, not of those that pages show.
         near, far = pty.openpty() if terminal else os.pipe()
         self._near = near
         writer = far

@@ -76,7 +76,9 @@ def begin_recording(run: RunParts, path: Path) -> RunRecorder:
 
     def begin() -> None:
         if run.simulation.built is not built:
-            raise RecordingError("the world changed just as the recording began; ask for it again")
+            raise RecordingError(
+                "the world changed just as the recording began; start the recording again"
+            )
         recorder.start(list(first_inputs(run)))
         run.tick.add_feed(recorder)
 

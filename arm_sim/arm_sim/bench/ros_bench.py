@@ -82,7 +82,7 @@ class RosBench:
         """End everything that was started; return what did not end properly."""
         problems: list[str] = []
         with ExitStack() as stack:
-            # All of it ends, also where one part fails to.
+            # Even if one part does not close, the others must.
             for process in [self._launch, *self._programs]:
                 stack.callback(lambda ended=process: problems.append(ended.end()))
             stack.callback(self._connection.close)

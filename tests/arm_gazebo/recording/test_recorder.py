@@ -53,7 +53,7 @@ def test_states_are_stored_in_blocks_without_a_gap(recorded, parts, monkeypatch)
     np.testing.assert_allclose(times_s, np.arange(1, 121) / 100)
 
 
-def test_what_there_is_is_flushed_after_half_a_second(recorded, parts):
+def test_recorded_states_are_flushed_after_half_a_second(recorded, parts):
     run = recorded(parts.pendulum())
     deadline_s = time.monotonic() + 30.0
     while not blocks(run.path):
