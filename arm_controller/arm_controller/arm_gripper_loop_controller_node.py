@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
 from arm_node.process import NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -19,8 +19,7 @@ def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.arm_gripper_loop import run_for_ever
     from arm_controller.ros.arm_gripper_loop_controller import ArmGripperLoopController
 
-    with prompt_discovery():
-        node = ArmGripperLoopController()
+    node = first_node(ArmGripperLoopController)
     process.executor.add_node(node)
     process.executor.create_task(run_for_ever, node)
     yield

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from arm_controller.errors import ArmControllerError
 from arm_node.process import EXIT_FAILED, NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 logger = logging.getLogger(__name__)
 
@@ -23,8 +23,7 @@ def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.ros.pick_and_place import PickAndPlaceNode
     from arm_description.errors import DescriptionError
 
-    with prompt_discovery():
-        node = PickAndPlaceNode()
+    node = first_node(PickAndPlaceNode)
 
     async def pick() -> None:
         try:

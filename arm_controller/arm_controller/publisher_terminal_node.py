@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from arm_controller.errors import ArmControllerError
 from arm_controller.terminal import InputLines, TerminalDialogue
 from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 LINGER_S = 0.2
 """Time for the last message to arrive after the input has ended."""
@@ -24,8 +24,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _application(process: NodeProcess) -> Iterator[None]:
     from arm_controller.ros.publisher_terminal import PublisherTerminal
 
-    with prompt_discovery():
-        node = PublisherTerminal(process)
+    node = first_node(lambda: PublisherTerminal(process))
     process.executor.add_node(node)
     with _standard_input() as descriptor, InputLines(descriptor) as lines:
         dialogue = TerminalDialogue(node.joint_names, lines.read_line, _write, node.deliver)

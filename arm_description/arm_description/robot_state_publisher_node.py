@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from arm_description.errors import DescriptionError
 from arm_node.process import NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 if TYPE_CHECKING:
     from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
@@ -26,8 +26,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         # Other words are ignored, as by ROS 2's program.
         known, _ = _parser().parse_known_args(remove_ros_args(arguments)[1:])
-        with prompt_discovery():
-            nodes = _nodes(known.namespaces)
+        nodes = first_node(lambda: _nodes(known.namespaces), _destroy)
         with spinning(*nodes):
             yield
 
@@ -45,6 +44,11 @@ def _nodes(namespaces: Sequence[str]) -> "list[RobotStatePublisher]":
             made.callback(nodes[-1].destroy_node)
         made.pop_all()
     return nodes
+
+
+def _destroy(nodes: "Sequence[RobotStatePublisher]") -> None:
+    for node in nodes:
+        node.destroy_node()
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -18,7 +18,7 @@ from arm_gazebo.feed.channel import CameraEnd
 from arm_gazebo.feed.child_process import add_parent_arguments, follow_parent
 from arm_node.printable import printable_message
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 if TYPE_CHECKING:
     from arm_gazebo.camera.pipeline import CameraPipeline
@@ -63,8 +63,7 @@ def _application(
     from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
     from arm_gazebo.ros.camera_publisher import CameraPublisher
 
-    with prompt_discovery():
-        node = Node("camera")
+    node = first_node(lambda: Node("camera"))
     publishers = [CameraPublisher(node, sensor) for sensor in settings.cameras]
     pipeline = CameraPipeline(
         settings.cameras, publishers, partial(_open_renderer, settings, channel), settings.seed

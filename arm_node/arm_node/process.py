@@ -25,7 +25,7 @@ from arm_node.parameter_values import ParameterValueError
 from arm_node.printable import first_line, printable, printable_message
 from arm_node.stop_event import StopEvent
 from arm_node.user_file import MAX_TEXT_BYTES, check_file
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.local_profile import use_local_profile
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
 from arm_node.workarounds.switch import switched_off
@@ -245,8 +245,7 @@ def run_node(
 
     @contextmanager
     def application(process: NodeProcess) -> Iterator[None]:
-        with prompt_discovery():
-            node = make_node(process)
+        node = first_node(lambda: make_node(process))
         process.executor.add_node(node)
         yield
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from arm_node.process import EXIT_FAILED, NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -38,8 +38,7 @@ def run_task(
     def application(process: NodeProcess) -> Iterator[None]:
         from rclpy.node import Node
 
-        with prompt_discovery():
-            node = Node(node_name)
+        node = first_node(lambda: Node(node_name))
         process.executor.add_node(node)
         worker = threading.Thread(
             target=_work, args=(task, node, process, user_errors), name=node_name, daemon=True

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from arm_description.errors import DescriptionError
 from arm_node.printable import printable
 from arm_node.process import NodeProcess, run_process
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 from arm_viewer.errors import ConfigError, ViewerError
 
 
@@ -20,8 +20,7 @@ def application(process: NodeProcess) -> Iterator[None]:
     from arm_viewer.ros.viewer import Viewer
     from arm_viewer.rviz_config import read_config_file
 
-    with prompt_discovery():
-        node = Viewer()
+    node = first_node(Viewer)
     config = None
     if node.display_config:
         try:

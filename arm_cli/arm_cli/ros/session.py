@@ -29,7 +29,7 @@ from arm_cli.errors import CommandUsageError, StoppedError
 from arm_cli.names import absolute_name
 from arm_cli.output import complain
 from arm_node.printable import first_line
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.private_files import made_private
 
 POLL_S = 0.02
@@ -174,8 +174,7 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
     except RuntimeError as error:
         raise CommandUsageError(f"cannot start ROS: {first_line(error)}") from error
     try:
-        with prompt_discovery():
-            node = _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
+        node = first_node(lambda: _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time))
         try:
             with SingleThreadedExecutor() as executor:
                 executor.add_node(node)

@@ -46,7 +46,7 @@ from arm_node.notify import notify
 from arm_node.parameter_values import read_non_negative
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.discovery import first_node
 
 if TYPE_CHECKING:
     from arm_gazebo.ros.simulation_server import SimulationServer
@@ -69,8 +69,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
     # destroying one while the executor uses it crashes the process.
     with ExitStack() as nodes, ExitStack() as ending:
         ending.callback(process.join_spinning)
-        with prompt_discovery():
-            node = Node(NODE_NAME)
+        node = first_node(lambda: Node(NODE_NAME))
         nodes.callback(node.destroy_node)
         process.executor.add_node(node)
         settings = read_settings(partial(declare, node))

@@ -7,26 +7,52 @@ around Fast DDS 2.14; no upstream issue is known.
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from operator import methodcaller
 from pathlib import Path
+from typing import Any, TypeVar
 
+from arm_node.workarounds.lost_ports import lost_ports
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
 from arm_node.workarounds.signs_of_life import shorten_liveness_pause
 from arm_node.workarounds.switch import is_on
+
+ATTEMPTS = 5
+"""How often the first node is made; beside a busy process one in ten attempts fails."""
+NodeT = TypeVar("NodeT")
+
+
+def first_node(
+    make: Callable[[], NodeT], destroy: Callable[[Any], object] = methodcaller("destroy_node")
+) -> NodeT:
+    """Return the first node of this process, which others discover immediately and can reach.
+
+    Args:
+        make: makes the node under `prompt_discovery`; called again if its ports are lost.
+        destroy: destroys it, so that its context has no node left.
+    """
+    for _ in range(ATTEMPTS - 1):
+        with prompt_discovery():
+            node = make()
+        if not lost_ports():
+            return node
+        destroy(node)
+    with prompt_discovery():
+        return make()
 
 
 @contextmanager
 def prompt_discovery() -> Iterator[None]:
     """Keep answers to the first announcement in the sockets until the participant listens.
 
-    Create the process's first node inside. Threads inherit their creator's scheduling, so Fast
-    DDS's receiving threads start on this thread's processor and cannot preempt it. They read the
-    sockets when this thread first waits, and by then the participant listens. SCHED_RR, if the
-    process may use it, also keeps other processes off the processor; SCHED_BATCH needs no
-    privilege. SCHED_FIFO would not work: one of Fast DDS's threads may wait for this one in a busy
-    loop and would never yield the processor. Afterwards all threads are scheduled as before, and
-    the process's liveness flag is refreshed often; see `signs_of_life`.
+    `first_node` creates the process's first node inside. Threads inherit their creator's
+    scheduling, so Fast DDS's receiving threads start on this thread's processor and cannot preempt
+    it. They read the sockets when this thread first waits, and by then the participant listens.
+    SCHED_RR, if the process may use it, also keeps other processes off the processor; SCHED_BATCH
+    needs no privilege. SCHED_FIFO would not work: one of Fast DDS's threads may wait for this one
+    in a busy loop and would never yield the processor. Afterwards all threads are scheduled as
+    before, and the process's liveness flag is refreshed often; see `signs_of_life`.
 
     Only this user can read what Fast DDS creates in shared memory; see `private_files`.
     """

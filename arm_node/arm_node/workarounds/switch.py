@@ -74,6 +74,7 @@ LIBRARIES: Mapping[str, Library] = {
     "discovery": RMW,
     "signs_of_life": RMW,
     "torn_ports": RMW,
+    "lost_ports": RMW,
     "private_files": RMW,
     "local_profile": RMW,
     "message_template": RCLPY,
