@@ -150,7 +150,8 @@ class HardwareComponent:
             # component off and goes on.
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
-        runs.add((period_s, self._now_s() - began_s))
+        runs.add_period(period_s)
+        runs.add_duration(self._now_s() - began_s)
         if outcome is HardwareReturn.DEACTIVATE and self.state is not LifecycleState.ACTIVE:
             # It is already inactive: a driver may repeat its request in every read.
             return HardwareReturn.OK

@@ -139,7 +139,8 @@ class Pacer:
     def end(self) -> None:
         """Note that the tick is done."""
         now_s = self._now_s()
-        self.runs.add((self._began_s - self._last_began_s, now_s - self._began_s))
+        self.runs.add_period(self._began_s - self._last_began_s)
+        self.runs.add_duration(now_s - self._began_s)
         self._last_began_s = self._began_s
         self._ticks += 1
         self._window_ticks += 1

@@ -40,42 +40,48 @@ class RunRecord:
     One thread adds runs; that takes a twentieth of a microsecond, in bounded memory. Any other
     thread may read the statistics at any time.
 
+    Two C functions add a run, because each call of a Python function in every tick counts. A pair
+    of numbers would be an object that Python's garbage collector visits.
+
     Attributes:
-        add: adds a run, a pair: the time in s since the start of the previous run, not positive or
-            NaN if unknown, and the wall time in s that the run took. A C function, because each
-            call of a Python function in every tick counts.
+        add_period: adds the time in s since the start of the previous run; not positive or NaN if
+            unknown.
+        add_duration: adds the wall time in s that the run took.
     """
 
-    __slots__ = ("_runs", "add")
+    __slots__ = ("_durations_s", "_periods_s", "add_duration", "add_period")
 
     def __init__(self, size: int) -> None:
         """Make a record of this many runs."""
-        self._runs: deque[tuple[float, float]] = deque(maxlen=size)
-        self.add: Callable[[tuple[float, float]], None] = self._runs.append
+        self._periods_s: deque[float] = deque(maxlen=size)
+        self._durations_s: deque[float] = deque(maxlen=size)
+        self.add_period: Callable[[float], None] = self._periods_s.append
+        self.add_duration: Callable[[float], None] = self._durations_s.append
 
     def clear(self) -> None:
         """Forget all runs. Only the thread that adds them."""
-        self._runs.clear()
+        self._periods_s.clear()
+        self._durations_s.clear()
 
     @property
     def latest_us(self) -> float:
         """Microseconds that the latest run took, NaN if there is none; any thread."""
-        runs = self._runs.copy()
-        return runs[-1][1] * _MICROSECONDS if runs else nan
+        durations_s = self._durations_s.copy()
+        return durations_s[-1] * _MICROSECONDS if durations_s else nan
 
     @property
     def latest_hz(self) -> float:
         """One over the latest period, NaN if that is unknown; any thread."""
-        runs = self._runs.copy()
-        return 1.0 / runs[-1][0] if runs and runs[-1][0] > 0.0 else nan
+        periods_s = self._periods_s.copy()
+        return 1.0 / periods_s[-1] if periods_s and periods_s[-1] > 0.0 else nan
 
     def statistics(self) -> RunStatistics | None:
         """Return the statistics of the runs so far, None if there are none; any thread."""
         # Copying a deque is atomic in CPython, so the other thread cannot change it half-way.
-        runs = self._runs.copy()
-        if not runs:
+        durations_s = np.array(self._durations_s.copy())
+        periods_s = np.array(self._periods_s.copy())
+        if not durations_s.size:
             return None
-        periods_s, durations_s = np.array(runs).T
         return RunStatistics(_rate(periods_s), _spread(durations_s * _MICROSECONDS))
 
 

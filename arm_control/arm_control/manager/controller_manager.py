@@ -147,7 +147,8 @@ class ControllerManager:
             self._emergency.hold()
         elif failed := [c for c in self._commanding if not c.run(time_s, period_s)]:
             self._replace_failed(failed)
-        self.updates.add((period_s, self._supervision.now_s() - began_s))
+        self.updates.add_period(period_s)
+        self.updates.add_duration(self._supervision.now_s() - began_s)
 
     def write(self, time_s: float, period_s: float) -> None:
         """Write the commands, clamped to their limits, to the hardware."""

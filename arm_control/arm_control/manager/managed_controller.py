@@ -170,7 +170,8 @@ class ManagedController:
             # deactivates it and goes on.
             self._on_exception(f"controller '{self.name}' raised in its update", error)
             return False
-        self.runs.add((due_s, self._now_s() - began_s))
+        self.runs.add_period(due_s)
+        self.runs.add_duration(self._now_s() - began_s)
         return outcome is ReturnType.OK
 
     def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:

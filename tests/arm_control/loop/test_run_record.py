@@ -14,7 +14,8 @@ from arm_control.loop.run_record import RunRecord
 def record_of(starts_s: list[float], duration_s: float = 0.001, size: int = 100) -> RunRecord:
     record = RunRecord(size)
     for last_s, start_s in pairwise([math.nan, *starts_s]):
-        record.add((start_s - last_s, duration_s))
+        record.add_period(start_s - last_s)
+        record.add_duration(duration_s)
     return record
 
 
@@ -50,7 +51,8 @@ def test_a_late_run_that_is_made_up_for_does_not_change_the_mean_rate() -> None:
 def test_old_runs_are_forgotten() -> None:
     record = record_of([0.0, 1.0, 2.0], duration_s=0.5, size=10)
     for _ in range(11):
-        record.add((0.1, 0.01))
+        record.add_period(0.1)
+        record.add_duration(0.01)
     statistics = record.statistics()
     assert statistics is not None
     assert statistics.execution_time_us.maximum == pytest.approx(10_000.0)
@@ -60,7 +62,8 @@ def test_what_is_cleared_is_forgotten() -> None:
     record = record_of([0.0, 60.0])
     record.clear()
     assert record.statistics() is None
-    record.add((0.01, 0.0))
+    record.add_period(0.01)
+    record.add_duration(0.0)
     statistics = record.statistics()
     assert statistics is not None
     assert statistics.periodicity_hz is not None
