@@ -27,45 +27,12 @@ from arm_node.workarounds.switch import LIBRARIES, OF_THE_BUILD, VARIABLE
 
 FOLDER = Path(__file__).parent
 INTERFACES = FOLDER.parents[1] / "arm_interfaces"
+LOSE_PORTS = FOLDER.parent / "arm_node" / "workarounds" / "lose_ports.py"
 RATE_HZ = 500
 SECONDS = 5.0
 WAY_POINTS = 100_000
 TORN_TIMEOUT_S = 10.0
 ANSWER_TIMEOUT_S = 3.0
-
-LOSE_PORTS_AND_LISTEN = """
-import os, re, subprocess, sys, time
-import rclpy
-from arm_node.workarounds.discovery import first_node
-from std_msgs.msg import String
-
-SAY = "import rclpy, time; from std_msgs.msg import String; rclpy.init(); "
-SAY += "p = rclpy.create_node('speaker').create_publisher(String, 'said', 1)\\n"
-SAY += "while True: p.publish(String(data='hello')); time.sleep(0.05)"
-
-def make():
-    made.append(rclpy.create_node("listener"))
-    if len(made) == 1:
-        for name in os.listdir("/proc/self/fd"):
-            try:
-                link = os.readlink(f"/proc/self/fd/{name}")
-            except OSError:
-                continue
-            if re.fullmatch(r"/dev/shm/fastrtps_port\\d+_el", link):
-                os.unlink(link.removesuffix("_el"))
-    return made[-1]
-
-rclpy.init()
-made, heard = [], []
-node = first_node(make)
-node.create_subscription(String, "said", heard.append, 1)
-speaker = subprocess.Popen([sys.executable, "-c", SAY])
-until_s = time.monotonic() + float(sys.argv[1])
-while not heard and time.monotonic() < until_s:
-    rclpy.spin_once(node, timeout_sec=0.1)
-speaker.kill()
-print(int(bool(heard)))
-"""
 MAKE_A_NODE = """
 from arm_node.environment import prepare_environment
 prepare_environment()
@@ -219,9 +186,9 @@ def torn_port_s() -> float:
 def heard_after_loss() -> float:
     """Return whether a node hears messages whose ports were removed while it was made, 1 or 0."""
     with harness.fresh_domain():
-        command = [sys.executable, "-c", LOSE_PORTS_AND_LISTEN, str(ANSWER_TIMEOUT_S)]
+        command = [sys.executable, str(LOSE_PORTS), "1", str(ANSWER_TIMEOUT_S)]
         said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        return float(said.split()[-1])
+        return float("heard True" in said)
 
 
 def readable_files() -> float:

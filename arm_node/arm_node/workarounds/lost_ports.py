@@ -12,17 +12,13 @@ every topic and hears nothing.
 """
 
 import os
-import re
 from contextlib import suppress
 
 from arm_node.workarounds.switch import is_on
-
-_OWN_PORT = re.compile(r"(/.*/fastrtps_port\d+)_el( \(deleted\))?")
-"""Fast DDS keeps this lock file open for every port that the process reads."""
-_DELETED = " (deleted)"
+from arm_node.workarounds.used_files import OWN_PROCESS, mapped_files, read_ports
 
 
-def lost_ports(process: str = "/proc/self") -> list[str]:
+def lost_ports(process: str = OWN_PROCESS) -> list[str]:
     """Return the paths of the lost ports.
 
     Call it after creating the process's first node; from any thread.
@@ -30,36 +26,13 @@ def lost_ports(process: str = "/proc/self") -> list[str]:
     Args:
         process: the process's folder in proc(5).
     """
-    own = _own_ports(process) if is_on("lost_ports") else {}
-    mapped = _mapped_ports(process) if own else {}
+    ports = read_ports(process) if is_on("lost_ports") else {}
+    mapped = mapped_files(process) if ports else {}
     return sorted(
         path
-        for path, lock_exists in own.items()
+        for path, lock_exists in ports.items()
         if not lock_exists or _inode(path) not in mapped.get(path, set())
     )
-
-
-def _own_ports(process: str) -> dict[str, bool]:
-    """Return the ports that the process reads, and whether their lock files still exist."""
-    ports: dict[str, bool] = {}
-    with suppress(OSError), os.scandir(f"{process}/fd") as entries:
-        for entry in entries:
-            with suppress(OSError):
-                match = _OWN_PORT.fullmatch(os.readlink(entry.path))
-                if match:
-                    ports[match[1]] = not match[2]
-    return ports
-
-
-def _mapped_ports(process: str) -> dict[str, set[int]]:
-    """Return the inodes of the mapped ports by path; see proc_pid_maps(5)."""
-    mapped: dict[str, set[int]] = {}
-    with suppress(OSError), open(f"{process}/maps", encoding="utf-8", errors="replace") as file:
-        for line in file:
-            if "/fastrtps_port" in line:
-                fields = line.rstrip("\n").split(maxsplit=5)
-                mapped.setdefault(fields[5].removesuffix(_DELETED), set()).add(int(fields[4]))
-    return mapped
 
 
 def _inode(path: str) -> int | None:

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 from arm_node.workarounds.switch import is_on
+from arm_node.workarounds.used_files import OWN_PROCESS, mapped_files, open_files
 
 UMASK = 0o077
 OWNER_ONLY = 0o600
@@ -30,7 +31,7 @@ def made_private() -> Iterator[None]:
         os.umask(before)
 
 
-def hide_shared_memory(process: str = "/proc/self") -> list[str]:
+def hide_shared_memory(process: str = OWN_PROCESS) -> list[str]:
     """Remove other users' permissions from this process's shared memory; return the paths.
 
     Call it after creating the process's first node; from any thread.
@@ -41,23 +42,12 @@ def hide_shared_memory(process: str = "/proc/self") -> list[str]:
     changed: list[str] = []
     if not is_on("private_files"):
         return changed
-    for path in sorted(_used(process)):
+    # Segments and semaphores are mapped, and locks are open.
+    used = {*mapped_files(process), *open_files(process)}
+    for path in sorted(filter(_SHARED_MEMORY.fullmatch, used)):
         with suppress(OSError):
             status = os.stat(path)
             if status.st_uid == os.geteuid() and status.st_mode & UMASK:
                 os.chmod(path, OWNER_ONLY)
                 changed.append(path)
     return changed
-
-
-def _used(process: str) -> set[str]:
-    """Return the mapped files (segments and semaphores) and the open ones (locks)."""
-    paths: set[str] = set()
-    with suppress(OSError), open(f"{process}/maps", encoding="utf-8", errors="replace") as file:
-        paths.update(_SHARED_MEMORY.findall(file.read()))
-    with suppress(OSError), os.scandir(f"{process}/fd") as entries:
-        for entry in entries:
-            with suppress(OSError):
-                if _SHARED_MEMORY.fullmatch(target := os.readlink(entry.path)):
-                    paths.add(target)
-    return paths

@@ -19,52 +19,40 @@ where Fast DDS stores the two numbers side by side. If they are not found, nothi
 """
 
 import os
-import re
 import struct
 from contextlib import suppress
 
 from arm_node.workarounds.switch import is_on
+from arm_node.workarounds.used_files import OWN_PROCESS, read_ports
 
 PAUSE_MS = 50
 """Longest delay of a sender; a reader without messages wakes at this interval."""
 
 _HEAD_BYTES = 4096
-_OWN_PORT = re.compile(r"(.*/fastrtps_port(\d+))_el")
-"""Fast DDS keeps this lock file open for every port that the process reads."""
 _PORT = struct.Struct("=I")
 _NUMBERS = struct.Struct("=IIII")
 """Port number, number of readers, timeout, interval between refreshes (a third of it)."""
 
 
-def shorten_liveness_pause(open_files: str = "/proc/self/fd") -> list[str]:
+def shorten_liveness_pause(process: str = OWN_PROCESS) -> list[str]:
     """Shorten the refresh interval in the ports that this process reads; return their paths.
 
     Call it after creating the process's first node; from any thread.
 
     Args:
-        open_files: folder with a link for every open file of the process.
+        process: the process's folder in proc(5).
     """
     changed: list[str] = []
     if not is_on("signs_of_life"):
         return changed
-    for path, number in _own_ports(open_files):
+    for path in (path for path, lock_exists in read_ports(process).items() if lock_exists):
+        number = int(path.rpartition("port")[2])
         with suppress(OSError), open(path, "r+b", buffering=0) as file:
             at = _find_pause(file.read(_HEAD_BYTES), number)
             if at is not None:
                 os.pwrite(file.fileno(), _PORT.pack(PAUSE_MS), at)
                 changed.append(path)
     return changed
-
-
-def _own_ports(open_files: str) -> list[tuple[str, int]]:
-    ports: list[tuple[str, int]] = []
-    with suppress(OSError), os.scandir(open_files) as entries:
-        for entry in entries:
-            with suppress(OSError):
-                match = _OWN_PORT.fullmatch(os.readlink(entry.path))
-                if match:
-                    ports.append((match.group(1), int(match.group(2))))
-    return ports
 
 
 def _find_pause(head: bytes, number: int) -> int | None:

@@ -35,21 +35,21 @@ def write(tmp_path):
 
 
 @pytest.fixture
-def links(tmp_path):
-    return str(tmp_path / "fd")
+def process(tmp_path):
+    return str(tmp_path)
 
 
-def test_the_pause_is_shortened_and_nothing_else(write, links):
+def test_the_pause_is_shortened_and_nothing_else(write, process):
     path = write(port(PORT, 1, 1000, 333, 512))
-    assert shorten_liveness_pause(links) == [path]
+    assert shorten_liveness_pause(process) == [path]
     with open(path, "rb") as file:
         assert file.read() == port(PORT, 1, 1000, PAUSE_MS, 512)
 
 
-def test_the_number_of_the_port_may_be_in_another_place(write, links):
+def test_the_number_of_the_port_may_be_in_another_place(write, process):
     before = bytes(30) + struct.pack("=I", PORT) + bytes(90)
     path = write(port(PORT, 1, 1000, 333, 512, before=before))
-    shorten_liveness_pause(links)
+    shorten_liveness_pause(process)
     with open(path, "rb") as file:
         assert file.read() == port(PORT, 1, 1000, PAUSE_MS, 512, before=before)
 
@@ -66,42 +66,41 @@ def test_the_number_of_the_port_may_be_in_another_place(write, links):
     ],
     ids=["empty", "short already", "shorter", "another layout", "another port", "cut"],
 )
-def test_what_is_not_as_expected_is_left_alone(write, links, content):
+def test_what_is_not_as_expected_is_left_alone(write, process, content):
     path = write(content)
-    assert shorten_liveness_pause(links) == []
+    assert shorten_liveness_pause(process) == []
     with open(path, "rb") as file:
         assert file.read() == content
 
 
-def test_ports_of_others_are_left_alone(write, links):
+def test_ports_of_others_are_left_alone(write, process):
     content = port(PORT, 1, 1000, 333, 512)
     path = write(content, lock="_sl")
-    assert shorten_liveness_pause(links) == []
+    assert shorten_liveness_pause(process) == []
     with open(path, "rb") as file:
         assert file.read() == content
 
 
-def test_a_missing_port_is_not_an_error(write, links, tmp_path):
+def test_a_missing_port_is_not_an_error(write, process, tmp_path):
     write(None)
-    assert shorten_liveness_pause(links) == []
+    assert shorten_liveness_pause(process) == []
     assert shorten_liveness_pause(str(tmp_path / "nowhere")) == []
 
 
 NUMBERS = """
-import glob, os, re, struct
+import os, struct
 from arm_node.workarounds.local_profile import use_local_profile
 use_local_profile(os.environ)
 import rclpy
 from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds.used_files import read_ports
 rclpy.init()
 with prompt_discovery():
     node = rclpy.create_node("alive")
-for link in glob.glob("/proc/self/fd/*"):
-    found = re.fullmatch(r"(.*/fastrtps_port(\\d+))_el", os.path.realpath(link))
-    if found:
-        head = open(found[1], "rb").read(4096)
-        at = head.find(struct.pack("=I", int(found[2])))
-        print(*struct.unpack_from("=4I", head, at)[2:])
+for port in read_ports():
+    head = open(port, "rb").read(4096)
+    at = head.find(struct.pack("=I", int(port.rpartition("port")[2])))
+    print(*struct.unpack_from("=4I", head, at)[2:])
 node.destroy_node()
 rclpy.shutdown()
 """
