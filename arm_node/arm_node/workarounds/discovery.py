@@ -6,6 +6,7 @@ the two do not find each other until the next periodic announcement, up to 3 s l
 around Fast DDS 2.14; no upstream issue is known.
 """
 
+import logging
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -28,18 +29,29 @@ def first_node(
 ) -> NodeT:
     """Return the first node of this process, which others discover immediately and can reach.
 
+    If the ports of all attempts are lost, the last node is returned, and a warning is logged.
+
     Args:
         make: makes the node under `prompt_discovery`; called again if its ports are lost.
         destroy: destroys it, so that its context has no node left.
     """
-    for _ in range(ATTEMPTS - 1):
+    attempts_left = ATTEMPTS
+    while True:
         with prompt_discovery():
             node = make()
-        if not lost_ports():
-            return node
+        attempts_left -= 1
+        lost = lost_ports()
+        if not (lost and attempts_left):
+            break
         destroy(node)
-    with prompt_discovery():
-        return make()
+    if lost:
+        logging.getLogger("arm_node").warning(
+            "this process hears nothing from others, because %s was removed while it was opened, "
+            "%d times in a row; start it again",
+            " and ".join(lost),
+            ATTEMPTS,
+        )
+    return node
 
 
 @contextmanager

@@ -7,7 +7,8 @@ import threading
 
 import pytest
 
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds import discovery
+from arm_node.workarounds.discovery import first_node, prompt_discovery
 
 pytestmark = pytest.mark.workaround("discovery")
 
@@ -63,7 +64,8 @@ def test_a_process_with_another_scheduler_is_not_changed(monkeypatch):
 
 BUSY_THREAD = """
 import hashlib, os, threading
-from arm_node.workarounds.discovery import prompt_discovery
+from arm_node.workarounds import discovery
+from arm_node.workarounds.discovery import first_node, prompt_discovery
 
 def work():
     # Minutes of it, without Python's lock.
@@ -81,3 +83,23 @@ def test_a_busy_thread_does_not_hold_up_its_maker():
         [sys.executable, "-c", BUSY_THREAD], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.stdout == "went on", done.stderr
+
+
+PORT = "/dev/shm/fastrtps_port7411"
+
+
+@pytest.mark.parametrize(
+    ("losses", "made", "warned"),
+    [([], 1, False), ([[PORT], []], 2, False), ([[PORT]] * 4, 5, False), ([[PORT]] * 9, 5, True)],
+)
+def test_a_process_whose_ports_are_always_lost_says_so(monkeypatch, caplog, losses, made, warned):
+    losses = iter(losses)
+    monkeypatch.setattr(discovery, "lost_ports", lambda: next(losses, []))
+    nodes, destroyed = iter(range(9)), []
+    assert first_node(lambda: next(nodes), destroyed.append) == made - 1
+    assert destroyed == list(range(made - 1))
+    warning = (
+        f"this process hears nothing from others, because {PORT} was removed while it was opened, "
+        "5 times in a row; start it again"
+    )
+    assert caplog.messages == [warning] * warned
