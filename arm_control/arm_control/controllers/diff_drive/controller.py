@@ -1,15 +1,12 @@
 """diff_drive_controller/DiffDriveController: drives a robot with two rows of wheels."""
 
-from collections import deque
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import isfinite
+from collections.abc import Mapping
+from math import inf, isfinite
 from typing import Any, Protocol
 
 import numpy as np
 
 from arm_control.controllers.controller import (
-    ChainableController,
     ControllerContext,
     InterfaceConfiguration,
     ReturnType,
@@ -17,10 +14,9 @@ from arm_control.controllers.controller import (
 from arm_control.controllers.diff_drive.odometry import Odometry, PlanarPose, PlanarTwist
 from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
 from arm_control.controllers.diff_drive.speed_limits import SpeedLimiter
-from arm_control.errors import ControllerError
+from arm_control.controllers.drive import DriveController
 from arm_control.loop.schedule import Schedule
 from arm_control.parameters import build_parameters
-from arm_control.run_inputs import run_input
 
 STANDSTILL = PlanarTwist()
 REFERENCES = ("linear/velocity", "angular/velocity")
@@ -38,15 +34,7 @@ class DriveSink(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Command:
-    """A commanded twist and its time."""
-
-    twist: PlanarTwist
-    stamp_s: float
-
-
-class DiffDriveController(ChainableController[DiffDriveParameters]):
+class DiffDriveController(DriveController[DiffDriveParameters, PlanarTwist]):
     """Turns the wheels so that the robot moves at its reference twist.
 
     The references are the linear velocity in m/s and the angular velocity in rad/s; while one is
@@ -59,13 +47,12 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
     parameters_type = DiffDriveParameters
     adapter = "arm_control.controllers.diff_drive.ros:DiffDriveAdapter"
     transient = ("_geometry",)
+    twist_type = PlanarTwist
+    timeout_parameter = "cmd_vel_timeout"
 
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
         self.sink: DriveSink | None = None
-        self._offered: deque[_Command] = deque(maxlen=1)
-        self._command = _Command(STANDSTILL, 0.0)
-        self._now_s: float | None = None
         self._odometry = Odometry()
         self._last_angles: np.ndarray | None = None
 
@@ -111,46 +98,11 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
         """Export the linear and the angular velocity."""
         return REFERENCES
 
-    @run_input
-    def offer(self, twist: PlanarTwist, stamp_s: float | None) -> str:
-        """Drive at this twist from the next cycle on, until the time-out; any thread.
-
-        Args:
-            twist: the commanded twist.
-            stamp_s: time of the command in the controller's time; None for now. A stamp in the
-                future counts as now, because it comes from another clock and would delay the
-                time-out.
-
-        Returns:
-            Why it was refused; empty if it was accepted.
-        """
-        now_s = self._now_s
-        if now_s is None:
-            return "the controller is not active"
-        if self.is_chained:
-            return "another controller commands this one"
-        if not all(map(isfinite, self._geometry.wheel_speeds(twist))):
-            return f"no wheel speed gives {twist.linear} m/s and {twist.angular} rad/s"
-        stamp_s = now_s if stamp_s is None else min(stamp_s, now_s)
-        timeout_s = self.parameters.cmd_vel_timeout
-        if timeout_s and now_s - stamp_s > timeout_s:
-            return (
-                f"its stamp is {now_s - stamp_s:.3f} s old, and cmd_vel_timeout is {timeout_s:g} s"
-            )
-        self._offered.append(_Command(twist, stamp_s))
-        return ""
-
-    def take_command(self, values: Sequence[float]) -> None:
-        """Take a forward velocity in m/s and a yaw rate in rad/s; see `offer`.
-
-        Raises:
-            ControllerError: the command is refused.
-        """
-        if len(values) != len(REFERENCES):
-            raise ControllerError(f"a command has {len(REFERENCES)} values, not {len(values)}")
-        reason = self.offer(PlanarTwist(*map(float, values)), None)
-        if reason:
-            raise ControllerError(f"a command was dropped: {reason}")
+    def reason_to_refuse(self, twist: PlanarTwist) -> str:
+        """Return why no speeds of the wheels give this twist; empty if some do."""
+        if all(map(isfinite, self._geometry.wheel_speeds(twist))):
+            return ""
+        return f"no wheel speed gives {twist.linear} m/s and {twist.angular} rad/s"
 
     def on_activate(self) -> None:
         """Start at rest, at the last pose."""
@@ -165,25 +117,13 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
         self._odometry.pose = PlanarPose()
         self.on_activate()
 
-    def on_set_chained_mode(self, is_chained: bool) -> None:
-        """Drop the pending command: it is from before the change."""
-        self._forget_commands()
-
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._now_s = None
-        self._forget_commands()
-        self.commands.write(0.0)
-
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
         """Take the latest command; one that is too old counts as zero."""
-        if self._offered:
-            self._command = self._offered.pop()
-        age_s = time_s - self._command.stamp_s
-        timeout_s = self.parameters.cmd_vel_timeout
+        command, timeout_s = self._latest_command(), self.parameters.cmd_vel_timeout
+        twist = STANDSTILL
         # An age below 0 means that the clock was set back.
-        is_valid = age_s >= 0 and (not timeout_s or age_s <= timeout_s)
-        twist = self._command.twist if is_valid else STANDSTILL
+        if command is not None and 0 <= time_s - command.stamp_s <= (timeout_s or inf):
+            twist = command.twist
         self.references[:] = twist.linear, twist.angular
         return ReturnType.OK
 
@@ -242,7 +182,3 @@ class DiffDriveController(ChainableController[DiffDriveParameters]):
             self.sink.publish_odometry(time_s, self._odometry.pose, self._odometry.twist)
         if self.parameters.publish_limited_velocity:
             self.sink.publish_command(time_s, self._limited)
-
-    def _forget_commands(self) -> None:
-        self._offered.clear()
-        self._command = _Command(STANDSTILL, 0.0)

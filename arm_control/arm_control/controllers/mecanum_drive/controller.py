@@ -1,7 +1,6 @@
 """mecanum_drive_controller/MecanumDriveController: drives a robot with four mecanum wheels."""
 
-from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
 from typing import Any, Protocol
@@ -9,11 +8,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from arm_control.controllers.controller import (
-    ChainableController,
     ControllerContext,
     InterfaceConfiguration,
     ReturnType,
 )
+from arm_control.controllers.drive import DriveController
 from arm_control.controllers.mecanum_drive.kinematics import (
     WHEELS,
     Array,
@@ -23,7 +22,6 @@ from arm_control.controllers.mecanum_drive.kinematics import (
 )
 from arm_control.errors import ControllerError
 from arm_control.parameters import build_parameters, check_values, parameter, specs_of
-from arm_control.run_inputs import run_input
 
 REFERENCES = ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 DIAGONAL = 6
@@ -151,13 +149,7 @@ class MecanumSink(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Reference:
-    twist: MecanumTwist
-    stamp_s: float
-
-
-class MecanumDriveController(ChainableController[MecanumDriveParameters]):
+class MecanumDriveController(DriveController[MecanumDriveParameters, MecanumTwist]):
     """Turns four mecanum wheels so that the robot moves at its reference twist.
 
     The references are the velocities along x and y in m/s and the yaw rate in rad/s; while one of
@@ -170,13 +162,12 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
     parameters_type = MecanumDriveParameters
     adapter = "arm_control.controllers.mecanum_drive.ros:MecanumDriveAdapter"
     transient = ("_geometry",)
+    twist_type = MecanumTwist
+    timeout_parameter = "reference_timeout"
 
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
         self.sink: MecanumSink | None = None
-        self._offered: deque[_Reference] = deque(maxlen=1)
-        self._reference: _Reference | None = None
-        self._now_s: float | None = None
         self._odometry = MecanumOdometry()
 
     @classmethod
@@ -218,50 +209,15 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
         """Export the three components of the twist."""
         return REFERENCES
 
-    @run_input
-    def offer(self, twist: MecanumTwist, stamp_s: float | None) -> str:
-        """Move at this twist from the next cycle on, until the timeout; any thread.
-
-        Args:
-            twist: of the base frame.
-            stamp_s: time of the reference in the controller's time; None or a later time counts as
-                now.
-
-        Returns:
-            Why the reference was refused; empty if it was taken.
-        """
-        now_s = self._now_s
-        if now_s is None:
-            return "the controller is not active"
-        if self.is_chained:
-            return "another controller commands this one"
-        if not np.isfinite(self._geometry.wheel_velocities(twist)).all():
-            return f"its velocities are x {twist.x}, y {twist.y} and yaw {twist.yaw}, not finite"
-        stamp_s = now_s if stamp_s is None else min(stamp_s, now_s)
-        timeout_s = self.parameters.reference_timeout
-        if timeout_s and now_s - stamp_s > timeout_s:
-            return (
-                f"its stamp is {now_s - stamp_s:.3f} s old, and reference_timeout is "
-                f"{timeout_s:g} s"
-            )
-        self._offered.append(_Reference(twist, stamp_s))
-        return ""
-
-    def take_command(self, values: Sequence[float]) -> None:
-        """Take velocities forward and left in m/s and a yaw rate in rad/s; see `offer`.
-
-        Raises:
-            ControllerError: the command is refused.
-        """
-        if len(values) != len(REFERENCES):
-            raise ControllerError(f"a command has {len(REFERENCES)} values, not {len(values)}")
-        reason = self.offer(MecanumTwist(*map(float, values)), None)
-        if reason:
-            raise ControllerError(f"a reference was dropped: {reason}")
+    def reason_to_refuse(self, twist: MecanumTwist) -> str:
+        """Return why no velocities of the wheels give this twist; empty if some do."""
+        if np.isfinite(self._geometry.wheel_velocities(twist)).all():
+            return ""
+        return f"its velocities are x {twist.x}, y {twist.y} and yaw {twist.yaw}, not finite"
 
     def on_activate(self) -> None:
         """Start at rest, at the last pose."""
-        self._forget_references()
+        self._forget_commands()
         self._odometry.twist = STANDSTILL
         self.references[:] = NO_REFERENCE
         self.commands.write(0.0)
@@ -271,21 +227,9 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
         self._odometry = MecanumOdometry()
         self.on_activate()
 
-    def on_set_chained_mode(self, is_chained: bool) -> None:
-        """Drop references from before the change."""
-        self._forget_references()
-
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._now_s = None
-        self._forget_references()
-        self.commands.write(0.0)
-
     def update_references(self, time_s: float, period_s: float) -> ReturnType:
-        """Take the last reference; one that is too old counts as zero."""
-        if self._offered:
-            self._reference = self._offered.pop()
-        reference, timeout_s = self._reference, self.parameters.reference_timeout
+        """Take the latest reference; one that is too old counts as zero."""
+        reference, timeout_s = self._latest_command(), self.parameters.reference_timeout
         twist: tuple[float, float, float] = NO_REFERENCE
         if reference is not None:
             # A negative age means that the clock was set back.
@@ -293,7 +237,7 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
             wanted = reference.twist if is_valid else STANDSTILL
             twist = wanted.x, wanted.y, wanted.yaw
             if not timeout_s or not is_valid:
-                self._reference = None
+                self._command = None
         self.references[:] = twist
         return ReturnType.OK
 
@@ -314,7 +258,3 @@ class MecanumDriveController(ChainableController[MecanumDriveParameters]):
         if self.sink is not None:
             self.sink.publish(time_s, self._odometry, wheels, reference)
         return ReturnType.OK
-
-    def _forget_references(self) -> None:
-        self._offered.clear()
-        self._reference = None

@@ -252,5 +252,5 @@ def test_a_program_s_command_is_the_twist(bench: Bench) -> None:
     assert bench.wheels == pytest.approx([2.0] * 4)
     with pytest.raises(ControllerError, match="a command has 3 values, not 2"):
         bench.drive.take_command([0.5, 0.5])
-    with pytest.raises(ControllerError, match="a reference was dropped: its velocities are"):
+    with pytest.raises(ControllerError, match="a command was dropped: its velocities are"):
         bench.drive.take_command([nan, 0.0, 0.0])
