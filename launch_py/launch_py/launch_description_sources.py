@@ -9,10 +9,9 @@ from types import ModuleType
 
 from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
 from launch_py.launch_description import LaunchDescription
-from launch_py.near_names import describe_missing_file
 from launch_py.ros_imports import MissingRosNameError, ros_imports
 from launch_py.substitution import LaunchScope, Text, describe_text, perform_text
-from launch_py.system.packages import launch_files
+from launch_py.system.packages import Packages, describe_missing_launch_file
 
 FRONTEND_ENDINGS = (".xml", ".launch", ".yaml", ".yml")
 """What XML and YAML launch files end with; .launch is XML."""
@@ -65,9 +64,7 @@ def read_launch_file(path: Path) -> LaunchDescription:
         LaunchFileError: the file is not Python, XML or YAML, or is invalid.
     """
     if not os.path.isfile(path):
-        siblings = launch_files(path.parent) if os.path.isdir(path.parent) else []
-        holds = f"{path.parent} holds"
-        raise NotFoundError(describe_missing_file("launch file", path, siblings, holds))
+        raise NotFoundError(describe_missing_launch_file(path, Packages(os.environ)))
     if path.suffix == ".py":
         return _read_python(path)
     if path.suffix in FRONTEND_ENDINGS:

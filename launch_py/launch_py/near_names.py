@@ -24,19 +24,30 @@ def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> s
     Returns:
         "did you mean 'a' or 'b'?" if a name is similar, else the list of names that exist.
     """
-    import difflib
-
     names = sorted(set(known))
-    near = difflib.get_close_matches(name, names, n=3, cutoff=MIN_SIMILARITY)
-    near = near or [n for n in names if sorted(n) == sorted(name)][:3]
-    near = near or [n for n in names if _holds(n, name) or _holds(name, n)][:3]
+    near = near_names(name, names)
     if near:
-        return f"did you mean {' or '.join(repr(n) for n in near)}?"
+        return did_you_mean(near)
     if not names:
         return f"{noun} none"
     if len(names) > MAX_LISTED:
         return f"none of the {len(names)} has a similar name"
     return f"{noun} {', '.join(names)}"
+
+
+def near_names(name: str, known: Iterable[str]) -> list[str]:
+    """Return at most three of the known names, those that are similar to a name."""
+    import difflib
+
+    names = sorted(set(known))
+    near = difflib.get_close_matches(name, names, n=3, cutoff=MIN_SIMILARITY)
+    near = near or [n for n in names if sorted(n) == sorted(name)][:3]
+    return near or [n for n in names if _holds(n, name) or _holds(name, n)][:3]
+
+
+def did_you_mean(names: Iterable[str]) -> str:
+    """Return the question whether the user meant one of these names."""
+    return f"did you mean {' or '.join(map(repr, names))}?"
 
 
 def describe_missing_file(
@@ -51,8 +62,13 @@ def describe_missing_file(
         noun: introduces them, as for `describe_known`.
     """
     if os.path.exists(path):
-        return f"{path} is not a regular file, so it is not a {what}"
+        return describe_irregular_file(what, path)
     return f"no {what} {path}; {describe_known(os.path.basename(path), siblings, noun)}"
+
+
+def describe_irregular_file(what: str, path: str | os.PathLike[str]) -> str:
+    """Return the error about a path that exists but is not a regular file."""
+    return f"{path} is not a regular file, so it is not a {what}"
 
 
 def _holds(name: str, part: str) -> bool:

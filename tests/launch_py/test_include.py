@@ -139,6 +139,12 @@ def test_a_missing_file_is_reported_with_similar_files(parent, write_launch_file
         expand_file(path)
 
 
+def test_a_script_is_not_offered_as_a_launch_file(tmp_path):
+    (tmp_path / "move.py").touch()
+    with pytest.raises(NotFoundError, match=rf"no launch file .*; {tmp_path} holds none$"):
+        read_launch_file(tmp_path / "zzz.launch.py")
+
+
 @pytest.mark.parametrize(
     ("body", "message"),
     [

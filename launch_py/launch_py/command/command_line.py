@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import signal
 import sys
 import time
@@ -19,12 +18,14 @@ from launch_py.command.interruption import Interruption
 from launch_py.errors import LaunchError, UsageError
 from launch_py.launch_description import LaunchDescription, expand_description, survey_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.near_names import describe_known, describe_missing_file
+from launch_py.near_names import describe_known
 from launch_py.printable import printable_message
 from launch_py.system.packages import (
+    LAUNCH_ENDING,
     LAUNCH_ENDINGS,
     Packages,
     ament_prefixes,
+    describe_missing_launch_file,
     launch_files,
 )
 from launch_py.typed_values import parse_boolean
@@ -42,7 +43,6 @@ DEFAULT_LOG_LIMIT_MIB = 50.0
 
 PackagedFile = tuple[str, str]
 """A package, and the name of one of its launch files."""
-LAUNCH_ENDING = re.compile(r"\.launch(\.\w+)?$")
 LONGEST_SHOWN = 200
 """How many characters of a word an error message shows."""
 
@@ -159,13 +159,11 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
         case [word] if word in short_names:
             return packages.launch_file(*short_names[word])
         case [word] if word.endswith(LAUNCH_ENDINGS) or os.sep in word:
-            path = Path(word)
             try:
-                names = launch_files(path.parent)
+                sentence = describe_missing_launch_file(word, packages)
             except ValueError as error:  # A file cannot have this name.
                 raise UsageError(f"no launch file {word[:LONGEST_SHOWN]!r}: {error}") from error
-            holds = f"{path.parent.resolve()} holds"
-            raise UsageError(describe_missing_file("launch file", word, names, holds))
+            raise UsageError(sentence)
         case [word]:
             share = packages.share_folder(word)
             names = launch_files(share / "launch")

@@ -15,7 +15,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from launch_py.errors import NotFoundError
-from launch_py.near_names import describe_known
+from launch_py.near_names import (
+    MAX_LISTED,
+    describe_irregular_file,
+    describe_known,
+    did_you_mean,
+    near_names,
+)
 from launch_py.system.stand_ins import NOTHING, SAME, StandIn, stand_ins
 
 MARKERS = "share/ament_index/resource_index/packages"
@@ -29,6 +35,7 @@ NODES = "launch_py.nodes"
 SHARE = re.compile(r"\$\(find-pkg-share (\w+)\)")
 LAUNCH_ENDINGS = (".py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
 """What the names of launch files end with."""
+LAUNCH_ENDING = re.compile(r"\.launch(\.\w+)?$")
 
 
 def launch_files(folder: Path | str) -> list[str]:
@@ -37,6 +44,47 @@ def launch_files(folder: Path | str) -> list[str]:
         return sorted(name for name in os.listdir(folder) if name.endswith(LAUNCH_ENDINGS))
     except OSError:
         return []
+
+
+def describe_missing_launch_file(path: Path | str, packages: Packages) -> str:
+    """Return the error about a path that is not a launch file.
+
+    It suggests similar launch files: those beside it, then, if the path is only a name, those of
+    the packages. Every Python file may be a launch file; only those that are named like one count.
+
+    Raises:
+        ValueError: no file can have this name.
+    """
+    if os.path.exists(path):
+        return describe_irregular_file("launch file", path)
+    folder, name = os.path.split(path)
+    beside = [each for each in launch_files(folder or os.curdir) if "launch" in each]
+    near = _near_launch_files(name, {each: [each] for each in beside})
+    if not near and not folder:
+        near = _near_launch_files(name, packages.launch_commands())
+    if near:
+        return f"no launch file {path}; {did_you_mean(near)}"
+    return f"no launch file {path}; {_describe_launch_files(folder, beside)}"
+
+
+def _describe_launch_files(folder: str, names: Sequence[str]) -> str:
+    if folder and not os.path.isdir(folder):
+        return f"there is no folder {folder}"
+    held = f"{os.path.realpath(folder)} holds {', '.join(names[:MAX_LISTED]) or 'none'}"
+    if len(names) > MAX_LISTED:
+        held += f" and {len(names) - MAX_LISTED} more"
+    return held if folder or names else f"{held}, and no package has one of a similar name"
+
+
+def _near_launch_files(name: str, known: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return what is known under similar names; the common end of all names does not count."""
+    if name in known:
+        return list(known[name])
+    stems: dict[str, list[str]] = {}
+    for each, values in known.items():
+        stems.setdefault(LAUNCH_ENDING.sub("", each), []).extend(values)
+    near = near_names(LAUNCH_ENDING.sub("", name), stems)
+    return [value for stem in near for value in stems[stem]][:3]
 
 
 def ament_prefixes(environ: Mapping[str, str]) -> list[str]:
@@ -131,6 +179,14 @@ class Packages:
                 return path
         known = describe_known(name, {path.name for path in found}, "it has")
         raise NotFoundError(f"package {package!r} has no launch file {name!r}; {known}")
+
+    def launch_commands(self) -> dict[str, list[str]]:
+        """Return "PACKAGE FILE" of all launch files, by the files' names."""
+        commands: dict[str, list[str]] = {}
+        for package in self.names():
+            for name in launch_files(self.share_folder(package) / "launch"):
+                commands.setdefault(name, []).append(f"{package} {name}")
+        return commands
 
     def executable(self, package: str, name: str) -> tuple[str, ...]:
         """Return the command line of a package's executable.

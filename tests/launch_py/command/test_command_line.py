@@ -59,6 +59,38 @@ def test_an_unknown_path(refused, demo):
     assert "did you mean 'demo.launch.py'?" in refused(str(demo.parent / "deom.launch.py"))
 
 
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """The current folder, which has a script and no launch file."""
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "move.py").touch()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def test_a_script_is_not_offered_as_a_launch_file(refused, demo, here):
+    line = refused("zzz.launch.py")
+    assert line == (
+        f"prog: no launch file zzz.launch.py; {here} holds none, and no package has one of a "
+        "similar name"
+    )
+    assert refused("./zzz.launch.py").endswith(f"no launch file ./zzz.launch.py; {here} holds none")
+    assert refused("nowhere/zzz.launch.py").endswith("; there is no folder nowhere")
+
+
+def test_the_launch_files_of_the_current_folder_are_offered(refused, demo, here):
+    (here / "two.launch.py").touch()
+    assert refused("zzz.launch.py").endswith(f"; {here} holds two.launch.py")
+    assert refused("tow.launch.py").endswith("; did you mean 'two.launch.py'?")
+
+
+@pytest.mark.parametrize("word", ["demo.launch.py", "dmo.launch.py"])
+def test_a_launch_file_of_a_package_is_offered_with_its_package(refused, demo, here, word):
+    (here / "other_robot.launch.py").touch()
+    assert refused(word).endswith(f"no launch file {word}; did you mean 'demo demo.launch.py'?")
+
+
 def test_an_unknown_argument(refused, demo):
     line = refused("demo", "demo.launch.py", "wrold:=objects")
     assert "demo.launch.py has no launch argument 'wrold'; did you mean 'world'?" in line
