@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, GazeboError
-from arm_gazebo.feed.channel import CameraEnd
 from arm_gazebo.feed.child_process import add_parent_arguments, follow_parent
+from arm_gazebo.feed.socket_pair import CameraEnd
 from arm_node.printable import printable_message
 from arm_node.process import EXIT_FAILED, EXIT_USAGE, NodeProcess, run_process
 from arm_node.workarounds.discovery import first_node

@@ -8,11 +8,11 @@ from typing import Any
 
 from arm_gazebo.faults.fault import Fault, FaultKind
 from arm_gazebo.faults.injector import FaultInjector
+from arm_sim.assembly import SimulationParts
 from arm_sim.cameras import Camera
 from arm_sim.controllers import ControllerHandle
 from arm_sim.fault_log import FaultLog
 from arm_sim.faulty_link import FaultyLink, LinkFault
-from arm_sim.parts import SimulationParts
 
 TOLERANCE_S = 1e-9
 """Rounding error of a time that is a sum of periods."""

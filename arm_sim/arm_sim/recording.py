@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from arm_gazebo.recording.session import RunParts, begin_recording, end_recording
-from arm_sim.parts import SimulationParts
+from arm_sim.assembly import SimulationParts
 
 ResultT = TypeVar("ResultT")
 

@@ -7,10 +7,10 @@ from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from arm_sim.assembly import SimulationParts, assemble
 from arm_sim.controllers import ControllerHandle
 from arm_sim.errors import CallError, GoalError
 from arm_sim.goals import Goal, ResultT
-from arm_sim.parts import SimulationParts, assemble
 from arm_sim.pose import AnyPose, Matrix
 from arm_sim.robots import AnyPath
 from arm_sim.snapshots import SavedState, Snapshots

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import StateError
+from arm_sim.assembly import SimulationParts
 from arm_sim.errors import CallError
 from arm_sim.goals import Goal
-from arm_sim.parts import SimulationParts
 from arm_sim.robots import AnyPath
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ import harness
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 from arm_sim import Simulation
-from arm_sim.parts import SimulationParts, assemble
+from arm_sim.assembly import SimulationParts, assemble
 
 START = """
 import json, time

@@ -10,7 +10,7 @@ import harness
 import numpy as np
 
 from arm_gazebo.state.complete_state import CompleteState
-from arm_sim.parts import SimulationParts, assemble
+from arm_sim.assembly import SimulationParts, assemble
 
 RESETS_CLIENT = Path(__file__).with_name("resets_client.py")
 REPEATS = 300

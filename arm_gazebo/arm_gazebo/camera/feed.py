@@ -8,8 +8,8 @@ import mujoco
 
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.camera.settings import CameraSettings
-from arm_gazebo.feed.channel import CameraProgress
 from arm_gazebo.feed.schedule import FrameDue, FrameSchedule
+from arm_gazebo.feed.socket_pair import CameraProgress
 from arm_gazebo.feed.state_feed import PreparedModel, StateFeed
 from arm_gazebo.feed.stream_count import StreamCount
 from arm_gazebo.rendering.backend_selection import backend_order

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from arm_gazebo.camera.drawing import FrameDrawing
 from arm_gazebo.camera.statistics import CameraStatistics
-from arm_gazebo.feed.channel import ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import ModelMessage
 from arm_gazebo.sensors.camera import CameraSensor
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 import threading
 from dataclasses import dataclass
 
-from arm_gazebo.feed.channel import CameraProgress
 from arm_gazebo.feed.schedule import FrameDue
+from arm_gazebo.feed.socket_pair import CameraProgress
 
 
 @dataclass(frozen=True, slots=True)

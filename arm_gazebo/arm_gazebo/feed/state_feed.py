@@ -10,9 +10,9 @@ import mujoco
 import numpy as np
 
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import CameraProgress, FeedEnd
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import CameraProgress, FeedEnd
 
 MODEL_FILE_NAME = "camera-model"
 FRAMING_BYTES = 4096

@@ -18,9 +18,9 @@ import mujoco
 
 from arm_description.view_fitting import View
 from arm_gazebo.errors import GazeboError, WindowError
-from arm_gazebo.feed.channel import CameraEnd, ModelMessage
 from arm_gazebo.feed.child_process import add_parent_arguments, follow_parent
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import CameraEnd, ModelMessage
 from arm_gazebo.rendering.scene import RenderScene, read_model
 from arm_gazebo.window.first_view import first_view
 from arm_gazebo.window.process import EXIT_CLOSED, EXIT_FAILED, EXIT_NEW_MODEL

@@ -8,7 +8,7 @@ from arm_gazebo.errors import RecordingError
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.run_file import Record, RecordedInput, RunFileWriter, StateBlock
 from arm_gazebo.recording.session import first_inputs, header_of
-from arm_sim.parts import SimulationParts
+from arm_sim.assembly import SimulationParts
 from arm_sim.recording import run_parts
 
 

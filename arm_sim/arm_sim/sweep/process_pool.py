@@ -11,8 +11,8 @@ from pathlib import Path
 
 from arm_sim.sweep.journal import Outcome
 from arm_sim.sweep.pool import WorkerLostError
-from arm_sim.sweep.run_maker import make_run
 from arm_sim.sweep.study import Study, StudyError, Values, find_task
+from arm_sim.sweep.task_run import run_once
 
 
 class ProcessPool:
@@ -123,4 +123,4 @@ def _work(connection: Connection, task: str, study_seed: int, folder: Path) -> N
         connection.send(os.getpid())
         while True:
             number, values = connection.recv()
-            connection.send(make_run(function, number, values, study_seed, folder))
+            connection.send(run_once(function, number, values, study_seed, folder))

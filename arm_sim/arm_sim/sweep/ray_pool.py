@@ -20,8 +20,8 @@ from arm_sim.errors import MissingPackageError
 from arm_sim.sweep.journal import Outcome
 from arm_sim.sweep.pool import WorkerLostError
 from arm_sim.sweep.ray_head import HeadWatch, check_address
-from arm_sim.sweep.run_maker import make_run, recording_path, replay_command
 from arm_sim.sweep.study import Study, StudyError, Values, find_task
+from arm_sim.sweep.task_run import recording_path, replay_command, run_once
 
 try:
     import ray
@@ -265,7 +265,7 @@ class _Maker:
     def make(self, number: int, values: Values) -> tuple[Outcome, bytes]:
         """Make a run; return what came of it, and its recording; b"" if there is none."""
         with TemporaryDirectory() as name:
-            outcome = make_run(self._task, number, values, self._study_seed, Path(name))
+            outcome = run_once(self._task, number, values, self._study_seed, Path(name))
             return outcome, recording_path(
                 Path(name), number
             ).read_bytes() if outcome.replay else b""

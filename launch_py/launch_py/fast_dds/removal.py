@@ -38,8 +38,9 @@ def remove_unused(stems: Iterable[str], folder: str) -> list[str]:
     """Remove the files of those segments and ports that have no living owner; return their names.
 
     A port stays while any process has it mapped: one that has sent to the dead participant sends to
-    the next participant of the same number there. A port's mutex stays while any participant lives,
-    because a process that waits to open it goes on with the old one.
+    the next participant of the same number there. A port's mutex stays while any participant lives:
+    a process that waits to open it would open the removed mutex, and the next process would make
+    another.
     """
     with _turn(folder):
         return [

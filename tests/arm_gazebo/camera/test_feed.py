@@ -12,8 +12,8 @@ from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.camera.settings import CameraSettings
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import CameraEnd, CameraProgress, ModelMessage
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import CameraEnd, CameraProgress, ModelMessage
 from arm_gazebo.sensors.camera import CameraSensor
 
 MJCF = """

@@ -10,9 +10,9 @@ from arm_description.urdf.document import UrdfDocument
 from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.camera.on_demand import OnDemandCameras
 from arm_gazebo.camera.pipeline import CameraPipeline
-from arm_gazebo.feed.channel import ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import ModelMessage
 from arm_gazebo.feed.state_feed import compiled_model
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation

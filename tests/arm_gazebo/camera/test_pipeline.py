@@ -8,9 +8,9 @@ import pytest
 
 from arm_gazebo.camera.pipeline import BACKLOG, CameraPipeline
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import ModelMessage
 from arm_gazebo.sensors.camera import CameraSensor
 
 MJCF = """

@@ -8,7 +8,7 @@ import pytest
 from arm_control.controllers.diff_drive.odometry import PlanarTwist
 from arm_control.controllers.gripper import GripperRequest
 from arm_control.controllers.mecanum_drive.kinematics import MecanumTwist
-from arm_sim.parts import SimulationParts, assemble
+from arm_sim.assembly import SimulationParts, assemble
 
 DEMOS = "package://gz_ros2_control_demos"
 ROSMASTER = "package://yahboom_rosmaster"

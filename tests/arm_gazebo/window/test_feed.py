@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import mujoco
 import pytest
 
-from arm_gazebo.feed.channel import CameraEnd, ModelMessage
+from arm_gazebo.feed.socket_pair import CameraEnd, ModelMessage
 from arm_gazebo.window.feed import WindowFeed
 from arm_gazebo.window.process import EXIT_CLOSED, EXIT_FAILED, EXIT_NEW_MODEL, WindowProcess
 

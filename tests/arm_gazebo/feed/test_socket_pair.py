@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.channel import CameraEnd, CameraProgress, FeedEnd, ModelMessage
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_gazebo.feed.socket_pair import CameraEnd, CameraProgress, FeedEnd, ModelMessage
 
 
 def snapshot(time_s: float = 0.0, positions: int = 4) -> CameraSnapshot:

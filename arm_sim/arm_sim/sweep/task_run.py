@@ -1,4 +1,4 @@
-"""Makes a run of a study: the same on every kind of worker."""
+"""Runs the task of a study once, in the same way on every kind of worker."""
 
 import math
 import time
@@ -26,10 +26,10 @@ def replay_command(recording: Path) -> str:
     return f"arm sim replay {quote(str(recording))}" if recording.exists() else ""
 
 
-def make_run(
+def run_once(
     task: TaskFunction, number: int, values: Values, study_seed: int, folder: Path
 ) -> Outcome:
-    """Make a run; return what came of it, whatever the task does.
+    """Run the task once; return what came of it, whatever the task does.
 
     Args:
         task: the study's task.
