@@ -101,18 +101,13 @@ class Suite:
 
     def __init__(self, *arguments: str) -> None:
         self.started_s = time.monotonic()
-        environment = {
-            k: v
-            for k, v in os.environ.items()
-            if k not in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE")
-        }
         self.process = subprocess.Popen(
             [sys.executable, "-m", "arm_cli", "launch", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
             text=True,
-            env=environment,
+            env=client_environment(),
         )
         self.lines: list[str] = []
         self.ready = threading.Event()

@@ -15,6 +15,7 @@ from typing import Any
 
 import psutil
 import pytest
+import yaml
 
 START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
@@ -131,6 +132,28 @@ def _launcher(folder: Path) -> Iterator[Callable[..., Launched]]:
     yield start
     for launched in started:
         launched.close()
+
+
+@pytest.fixture(scope="module")
+def simulate(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[dict], None]]:
+    """Run the simulation alone with these parameters by node; it ends with the file's last test."""
+    started: list[subprocess.Popen[bytes]] = []
+
+    def start(parameters: dict[str, dict]) -> None:
+        path = tmp_path_factory.mktemp("simulation") / "parameters.yaml"
+        nodes = {node: {"ros__parameters": values} for node, values in parameters.items()}
+        path.write_text(yaml.safe_dump(nodes))
+        command = [sys.executable, "-m", "arm_gazebo.arm_gazebo_node"]
+        started.append(subprocess.Popen([*command, "--ros-args", "--params-file", str(path)]))
+
+    yield start
+    for process in started:
+        process.send_signal(signal.SIGINT)
+    try:
+        assert [process.wait(WAIT_TIMEOUT_S) for process in started] == [0] * len(started)
+    finally:
+        for process in started:
+            process.kill()
 
 
 class Collector:

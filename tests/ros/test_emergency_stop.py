@@ -1,13 +1,10 @@
 """Two robots in one world, in another process, are stopped by a service, a topic and a verb."""
 
-import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 pytestmark = pytest.mark.ros
 
@@ -16,7 +13,7 @@ LEFT, RIGHT = ([f"{name}_j{number}" for number in range(4)] for name in ("left",
 
 
 @pytest.fixture(scope="module")
-def robots(tmp_path_factory: pytest.TempPathFactory):
+def robots(simulate):
     """Run two arms: `left` follows trajectories, `right` follows positions."""
     from arm_description.resources import resolve_uri
     from arm_description.xacro.expansion import expand_xacro
@@ -45,22 +42,7 @@ def robots(tmp_path_factory: pytest.TempPathFactory):
             "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
             "mover": {"type": type_},
         }
-    path: Path = tmp_path_factory.mktemp("robots") / "parameters.yaml"
-    path.write_text(
-        yaml.safe_dump({node: {"ros__parameters": values} for node, values in parameters.items()})
-    )
-    process = subprocess.Popen(
-        [
-            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node", "--ros-args"),
-            *("--params-file", str(path)),
-        ]
-    )
-    yield
-    process.send_signal(signal.SIGINT)
-    try:
-        assert process.wait(60.0) == 0
-    finally:
-        process.kill()
+    simulate(parameters)
 
 
 class Arms:

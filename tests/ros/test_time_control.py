@@ -1,12 +1,6 @@
 """The pace of a simulation changes while it runs, and steps are answered when all is published."""
 
-import signal
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
-import yaml
 
 pytestmark = pytest.mark.ros
 
@@ -29,7 +23,7 @@ def ticks(messages: list) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory):
+def simulation(simulate):
     """Run the simulation of the arm with its camera, paused."""
     from arm_description.resources import resolve_uri
     from arm_description.xacro.expansion import expand_xacro
@@ -44,33 +38,16 @@ def simulation(tmp_path_factory: pytest.TempPathFactory):
         "real_time_factor": 4,
     }
     broadcaster = {"type": "joint_state_broadcaster/JointStateBroadcaster"}
-    path: Path = tmp_path_factory.mktemp("time") / "parameters.yaml"
-    path.write_text(
-        yaml.safe_dump(
-            {
-                "arm_gazebo": {"ros__parameters": settings},
-                "controller_manager": {
-                    "ros__parameters": {
-                        "joint_state_broadcaster": broadcaster,
-                        "turner": {"type": "velocity_controllers/JointGroupVelocityController"},
-                    }
-                },
-                "turner": {"ros__parameters": {"joints": ["j0"], "command_timeout": 0.5}},
-            }
-        )
+    simulate(
+        {
+            "arm_gazebo": settings,
+            "controller_manager": {
+                "joint_state_broadcaster": broadcaster,
+                "turner": {"type": "velocity_controllers/JointGroupVelocityController"},
+            },
+            "turner": {"joints": ["j0"], "command_timeout": 0.5},
+        }
     )
-    process = subprocess.Popen(
-        [
-            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node", "--ros-args"),
-            *("--params-file", str(path)),
-        ]
-    )
-    yield
-    process.send_signal(signal.SIGINT)
-    try:
-        assert process.wait(60.0) == 0
-    finally:
-        process.kill()
 
 
 class Simulator:

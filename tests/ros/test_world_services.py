@@ -1,14 +1,10 @@
 """Entities are spawned, moved and deleted in a running simulation without affecting the arm."""
 
-import signal
-import subprocess
-import sys
 import threading
 from typing import Any
 
 import numpy as np
 import pytest
-import yaml
 
 pytestmark = pytest.mark.ros
 
@@ -23,12 +19,10 @@ FIRST_ANSWER_S = 2.0
 SPAWNED = "joint_state_broadcaster,position_controller"
 CONTROLLERS = {
     "controller_manager": {
-        "ros__parameters": {
-            "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
-            "position_controller": {"type": "position_controllers/JointGroupPositionController"},
-        }
+        "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
+        "position_controller": {"type": "position_controllers/JointGroupPositionController"},
     },
-    "position_controller": {"ros__parameters": {"joints": ["j0", "j1", "j2", "j3"]}},
+    "position_controller": {"joints": ["j0", "j1", "j2", "j3"]},
 }
 START_TIMEOUT_S = 120.0
 OK = 1
@@ -126,31 +120,15 @@ class Simulator:
 
 
 @pytest.fixture(scope="module")
-def arm(tmp_path_factory):
+def arm(simulate):
     """Run the simulation of the arm with its camera, its forearm held up."""
     from arm_description.resources import resolve_uri
     from arm_description.xacro.expansion import expand_xacro
 
-    folder = tmp_path_factory.mktemp("arm")
     xacro = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     pose = {"j1_pos": "0.5", "j2_pos": "0.5"}
     settings = {"robot_description": expand_xacro(xacro, pose), "spawn": SPAWNED}
-    parameters = folder / "parameters.yaml"
-    parameters.write_text(
-        yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}, **CONTROLLERS})
-    )
-    process = subprocess.Popen(
-        [
-            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node", "--ros-args"),
-            *("--params-file", str(parameters)),
-        ]
-    )
-    yield
-    process.send_signal(signal.SIGINT)
-    try:
-        assert process.wait(60.0) == 0
-    finally:
-        process.kill()
+    simulate({"arm_gazebo": settings, **CONTROLLERS})
 
 
 @pytest.fixture
