@@ -28,7 +28,7 @@ EXIT_UNUSABLE = 1
 
 
 def main() -> None:
-    """Check the file that the first argument names, as JSON; print the answer as JSON."""
+    """Read the options of the check from the first argument, as JSON; print the answer as JSON."""
     # The output of xacro must not mix with the answer.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())

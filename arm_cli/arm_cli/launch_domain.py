@@ -16,8 +16,8 @@ MAX_DOMAIN = 232
 def launch_domain(words: Sequence[str]) -> Iterator[list[str]]:
     """Take `domain:=auto` or `domain:=NUMBER` out of a launch's words, and enter that domain.
 
-    Another value is left to the launch file, which may have an argument of that name. A domain
-    that was found by `auto` is nobody else's until the `with` block ends.
+    Another value is left to the launch file, which may have an argument of that name. No
+    other launch takes a domain that `auto` has found until the `with` block ends.
 
     Yields:
         The other words.

@@ -9,7 +9,7 @@ def absolute_name(name: str) -> str:
 
 
 def is_hidden(name: str) -> bool:
-    """Return whether a name is hidden, so whether a part of it begins with an underscore."""
+    """Return whether a name is hidden: whether a part of it begins with an underscore."""
     return any(part.startswith("_") for part in name.split("/"))
 
 

@@ -34,8 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="DIR",
-        help="folder of the results; a study that was interrupted goes on there "
-        "(default: STUDY without its suffix, and -results)",
+        help="folder of the results; an interrupted study continues there "
+        "(default: NAME-results beside STUDY, where NAME is its name without suffix)",
     )
 
 
@@ -75,9 +75,9 @@ def _make_runs(study: "Study", journal: "Journal", options: argparse.Namespace) 
     pool = _pool(study, journal.folder, options)
     total, before = len(study.runs()), len(journal.outcomes)
     if before:
-        say(f"{before} of {total} runs were made before; the others follow")
+        say(f"{before} of {total} runs are already done; the others follow")
     columns = (TextColumn("{task.description}"), MofNCompleteColumn(), TimeRemainingColumn())
-    # Not rich's shared console, which keeps the output that it had when it was made.
+    # rich's shared console writes to the stdout that it found first, which may be another one.
     with Progress(*columns, console=Console()) as progress:
         bar = progress.add_task("runs", total=total, completed=before)
 

@@ -176,7 +176,7 @@ SIM = VerbFamily(
         Verb("restore", "go back to a saved state", "arm_cli.sim.snapshots:RESTORE"),
         Verb("list", "list the saved states", "arm_cli.sim.snapshots:LIST"),
         Verb("remove", "remove a saved state", "arm_cli.sim.snapshots:REMOVE"),
-        Verb("record", "record a run, to run it again", "arm_cli.sim.recordings:RECORD"),
+        Verb("record", "record a run, to replay it later", "arm_cli.sim.recordings:RECORD"),
         Verb("replay", "run a recorded run again and compare it", "arm_cli.sim.recordings:REPLAY"),
         Verb("diff", "compare two recorded runs", "arm_cli.sim.recordings:DIFF"),
     ),
@@ -222,7 +222,7 @@ BAG = VerbFamily(
 
 DATASET = VerbFamily(
     "dataset",
-    "demonstrations for learning, in LeRobot's format",
+    "record demonstrations for learning, in LeRobot's format",
     (
         Verb("record", "record demonstrations, and write a dataset", "arm_cli.dataset.record"),
         Verb("convert", "write bags as a dataset", "arm_cli.dataset.convert:CONVERT"),

@@ -28,7 +28,7 @@ def test_a_study_prints_its_tables_and_goes_on_later(folder, capsys):
     assert "s-results/runs.csv\ns-results/runs.parquet\n" in capsys.readouterr().out
     assert "0,1,2,," in (folder / "s-results" / "runs.csv").read_text()
     assert main(["sweep", "s.yaml"]) == 0
-    assert "2 of 2 runs were made before" in capsys.readouterr().out
+    assert "2 of 2 runs are already done" in capsys.readouterr().out
 
 
 def test_a_failed_run_is_told_and_the_exit_code_is_1(folder, capsys):

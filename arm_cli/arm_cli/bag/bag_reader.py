@@ -10,6 +10,7 @@ from arm_cli.bag.bag_metadata import FILE_NAME, STORAGE, BagMetadata, read_metad
 from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag.mcap_file_reader import McapFileReader
 from arm_cli.errors import BagError
+from arm_cli.output import complain
 from arm_node.user_file import read_text
 
 
@@ -88,15 +89,13 @@ class BagReader:
         self.close()
 
 
-def describe_unfinished(reader: BagReader) -> str | None:
-    """Return a warning about unfinished files, None if there are none."""
-    if not reader.unfinished:
-        return None
-    names = ", ".join(reader.unfinished)
-    return (
-        f"{names} was not finished: it is being recorded, or its recorder was killed. "
-        "Everything up to its last complete chunk is readable."
-    )
+def warn_if_unfinished(reader: BagReader, program: str) -> None:
+    """Print a warning if the bag has unfinished files."""
+    if reader.unfinished:
+        complain(
+            f"{program}: {', '.join(reader.unfinished)} was not finished: it is being recorded, or "
+            "its recorder was killed. Everything up to its last complete chunk is readable."
+        )
 
 
 def _parts(path: Path, by_metadata: bool) -> tuple[list[Path], str]:

@@ -13,7 +13,7 @@ from arm_cli.errors import BagError
 
 @dataclass(frozen=True, slots=True)
 class BagSettings:
-    """Options of writing a bag.
+    """Options for writing a bag.
 
     Attributes:
         compression: the compression of the chunks: none, lz4 or zstd.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from arm_cli.bag.info import existing_path
 from arm_cli.errors import BagError
-from arm_cli.output import complain, say
+from arm_cli.output import say
 from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
@@ -74,16 +74,14 @@ def convert(options: argparse.Namespace) -> None:
     Raises:
         BagError: a bag or the options file cannot be read, or a bag cannot be written.
     """
-    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
 
     outputs = read_outputs(Path(options.output_options))
     with ExitStack() as opened:
         readers: list[BagReader] = []
         for path in (_input_path(words) for words in options.input):
             readers.append(opened.enter_context(BagReader(path)))
-            unfinished = describe_unfinished(readers[-1])
-            if unfinished is not None:
-                complain(f"arm bag convert: {unfinished}")
+            warn_if_unfinished(readers[-1], "arm bag convert")
         for output in outputs:
             count = _write(output, readers)
             say(f"wrote {output.folder}: {count} messages")
@@ -229,13 +227,11 @@ def reindex(options: argparse.Namespace) -> None:
     Raises:
         BagError: there are no files, the files cannot be read, or metadata.yaml cannot be written.
     """
-    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
     from arm_cli.bag.bag_writer import write_metadata
 
     with BagReader(options.bag_path, by_metadata=False) as reader:
-        unfinished = describe_unfinished(reader)
-        if unfinished is not None:
-            complain(f"arm bag reindex: {unfinished}")
+        warn_if_unfinished(reader, "arm bag reindex")
         path = write_metadata(options.bag_path, reader.metadata)
     say(f"wrote {path}: {reader.metadata.message_count} messages")
 

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.output import add_json_argument, complain, print_json, say, say_document
+from arm_cli.output import add_json_argument, print_json, say, say_document
 from arm_cli.verb import VerbFunctions
 from arm_node.printable import printable
 
@@ -55,12 +55,10 @@ def info(options: argparse.Namespace) -> None:
     Raises:
         BagError: the bag cannot be read.
     """
-    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
 
     with BagReader(options.bag_path) as reader:
-        unfinished = describe_unfinished(reader)
-        if unfinished is not None:
-            complain(f"arm bag info: {unfinished}")
+        warn_if_unfinished(reader, "arm bag info")
         if options.json:
             print_json(bag_to_plain(reader))
         elif options.topic_name:

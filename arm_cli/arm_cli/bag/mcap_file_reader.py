@@ -23,7 +23,7 @@ from arm_node.user_file import open_file
 
 
 class _RecoveringReader(SeekingReader):
-    """Reads a file without a summary by a reconstructed one."""
+    """Reads a file that has no summary, with a reconstructed one."""
 
     def __init__(self, stream: BinaryIO) -> None:
         super().__init__(stream, validate_crcs=True)

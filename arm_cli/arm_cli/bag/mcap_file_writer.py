@@ -1,6 +1,6 @@
 """Writes one MCAP file.
 
-After every flush the file is complete: after its last chunk comes the end of a file without an
+After every flush the file is complete. Its last chunk is followed by the end of a file without an
 index, which the next chunk overwrites. So any reader can read a file whose writer was killed.
 """
 

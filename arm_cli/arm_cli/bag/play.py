@@ -109,15 +109,13 @@ def run(options: argparse.Namespace) -> None:
         BagError: the bag or the overrides cannot be read, or there is nothing to play.
         CommandUsageError: a remapping is not of the form OLD:=NEW.
     """
-    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
     from arm_cli.bag.offered_qos import read_qos_overrides
 
     names = _remapped_names(options.remap)
     overrides = read_qos_overrides(options.qos_profile_overrides_path)
     with BagReader(options.bag_path) as reader:
-        unfinished = describe_unfinished(reader)
-        if unfinished is not None:
-            complain(f"arm bag play: {unfinished}")
+        warn_if_unfinished(reader, "arm bag play")
         topics = _topics(reader, options)
         extent_ns = _extent(reader, options)
         with connect(NODE_NAME) as session:

@@ -133,7 +133,7 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
         "--compression-mode",
         choices=("none", "file", "message"),
         default="none",
-        help="accepted for rosbag2's sake; always compresses chunks, so that files stay readable",
+        help="accepted as in rosbag2; chunks are always compressed, so that files stay readable",
     )
     group.add_argument(
         "--storage-preset-profile",

@@ -3,7 +3,7 @@
 The writing thread polls every 50 ms, so that receiving a message costs one append and wakes no
 thread. If the disk is too slow for so long that the cache is full, messages are dropped and
 counted. Without a cache the receiving thread writes each message itself, as in rosbag2. Messages
-that the disk is too slow for then wait in the subscription's queue.
+that arrive faster than the disk can write then wait in the subscription's queue.
 """
 
 import threading

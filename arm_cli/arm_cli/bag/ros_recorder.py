@@ -74,11 +74,11 @@ class BagRecorder:
         self._drops_reported = 0
 
     def run(self, discover: bool = True, ended: Callable[[], bool] = lambda: False) -> None:
-        """Record until the recording fails or is to end.
+        """Record until the recording fails or `ended` returns true.
 
         Args:
             discover: whether to record topics that appear after the graph has settled.
-            ended: whether the recording is to end; asked between two messages.
+            ended: returns whether to stop; called between two messages.
 
         Raises:
             StoppedError: a signal arrived.

@@ -14,7 +14,7 @@ from arm_cli.dataset.selection import (
     dataset_options,
 )
 from arm_cli.errors import ArmCliError, BagError
-from arm_cli.output import complain, say
+from arm_cli.output import say
 from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
@@ -75,14 +75,12 @@ def write_dataset(
 
 def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: DatasetOptions) -> int:
     """Add a bag as an episode; return its rows per second."""
-    from arm_cli.bag.bag_reader import BagReader, describe_unfinished
+    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
     from arm_cli.dataset.ros_streams import EpisodeReader
     from arm_sim.dataset import align
 
     with BagReader(bag) as reader:
-        unfinished = describe_unfinished(reader)
-        if unfinished is not None:
-            complain(f"arm dataset: {unfinished}")
+        warn_if_unfinished(reader, "arm dataset")
         chosen = choose_topics(wanted, dict(reader.metadata.topics))
         episode = EpisodeReader(reader, chosen, wanted)
         streams, reference = episode.streams()
@@ -108,7 +106,7 @@ def _check(options: argparse.Namespace) -> int:
         faults = check_dataset(options.folder)
     except ArmSimError as error:
         raise BagError(str(error)) from error
-    say(*(faults or [f"{options.folder} keeps LeRobot's format v3.0"]))
+    say(*(faults or [f"{options.folder} is valid in LeRobot's format v3.0"]))
     return 1 if faults else 0
 
 

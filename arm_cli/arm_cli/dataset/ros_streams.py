@@ -176,7 +176,7 @@ def _decode(message: Any, topic: str) -> NDArray[np.uint8]:
     if channels is None:
         raise BagError(
             f"images of {topic} are {message.encoding}; those of a dataset are "
-            f"{', '.join(CHANNELS)}; choose others by --cameras"
+            f"{', '.join(CHANNELS)}; choose others with --cameras"
         )
     height, width = message.height, message.width
     count = 4 if message.encoding.endswith("a8") else 3

@@ -25,7 +25,7 @@ INTERFACES_SHOWN = 6
 LEAST_SHARE = 0.9
 MISMATCHES_SHOWN = 3
 PAGE = "/arm_viewer"
-"""It also listens where nobody publishes, in case that somebody begins."""
+"""The page also subscribes to topics that have no publisher yet."""
 SINGLE = ("joint_states", "clock")
 
 
@@ -113,7 +113,7 @@ def check_joint_states(observation: GraphObservation) -> Diagnosis:
 
 
 def _unmeasured(observation: GraphObservation) -> str:
-    """Return a sentence about joint states that are wrongly not numbers, "" if there are none.
+    """Return a sentence about joint states that should be numbers and are NaN, "" if none are.
 
     The broadcaster writes NaN for an interface that a joint lacks. So a NaN is a fault only if the
     hardware has that interface, or if it is a position of a joint that no hardware has.
@@ -146,7 +146,8 @@ def _silence(topic: StateTopic) -> str:
         return (
             f"{topic.name} is published by {' and '.join(topic.publishers)}, but no message arrives"
         )
-    return f"nobody publishes {topic.name}, to which {' and '.join(topic.listeners)} listens"
+    verb = "subscribes" if len(topic.listeners) == 1 else "subscribe"
+    return f"nobody publishes {topic.name}, to which {' and '.join(topic.listeners)} {verb}"
 
 
 def check_real_time_factor(observation: GraphObservation) -> Diagnosis:

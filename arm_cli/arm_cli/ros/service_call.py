@@ -21,7 +21,7 @@ def call_service(
 ) -> Any:
     """Call a service and return its answer.
 
-    An answer time-out of None waits as long as the service has a server.
+    An answer timeout of None waits as long as the service has a server.
 
     Raises:
         UnansweredError: the service has no server, or the server does not answer.

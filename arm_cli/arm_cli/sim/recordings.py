@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.command_parser import positive_number
-from arm_cli.errors import ArmCliError, SimulationRefusedError, StoppedError
+from arm_cli.errors import ArmCliError, StoppedError
 from arm_cli.output import complain, say
 from arm_cli.ros.connection import connect
-from arm_cli.sim.simulation import SimulationClient, add_namespace_argument, ask_simulation
+from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
 from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ PARAMETER = "record_run"
 MAX_ARGUMENTS = 120
 """Characters of an input's arguments that are printed."""
 BLOBS = ("model", "saved")
-"""Arguments that mean nothing to people."""
+"""Arguments in a binary form, which are not printed."""
 _REFUSED = " (refused)"
 
 
@@ -50,24 +50,15 @@ def record(options: argparse.Namespace) -> None:
     # A relative path is relative to this process, not to the simulation's working folder.
     path = options.file.absolute()
     with ask_simulation(options) as simulation:
-        _set(simulation, str(path))
+        simulation.set_parameter(PARAMETER, str(path))
         say(f"recording to {path}; Ctrl-C ends it")
         try:
             simulation.session.spin_for(options.duration)
         except StoppedError:
             simulation.session.clear_stop()
-        _set(simulation, "")
+        simulation.set_parameter(PARAMETER, "")
     with _sentences():
         _say_recorded(path)
-
-
-def _set(simulation: SimulationClient, path: str) -> None:
-    from rcl_interfaces.msg import ParameterType, ParameterValue
-
-    value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=path)
-    result = simulation.parameters().set({PARAMETER: value})[0]
-    if not result.successful:
-        raise SimulationRefusedError(result.reason)
 
 
 def _say_recorded(path: Path) -> None:
@@ -91,9 +82,7 @@ def add_replay_arguments(parser: argparse.ArgumentParser) -> None:
         type=positive_number,
         help="stop at this simulation time in seconds, and print where the joints are",
     )
-    parser.add_argument(
-        "--inputs", action="store_true", help="print each input with the time at which it came"
-    )
+    parser.add_argument("--inputs", action="store_true", help="print each input and its time")
     parser.add_argument(
         "--publish",
         action="store_true",
@@ -187,7 +176,7 @@ def _say_result(path: Path, result: "ReplayResult", wall_s: float) -> None:
             f"(replayed in {wall_s:.2f} s)"
         )
     if result.is_cut_off:
-        say("the recording has no end: the process that wrote it was killed, or still writes")
+        say("the recording has no end: the process that wrote it was killed, or is still writing")
     if result.end_reason:
         say(f"the recording ended because {result.end_reason}")
 
@@ -228,7 +217,7 @@ def diff(options: argparse.Namespace) -> int:
     say(f"{result.periods} control periods are equal")
     if result.longer:
         which, count = ("second", result.longer) if result.longer > 0 else ("first", -result.longer)
-        say(f"the {which} recording has {count} control periods more")
+        say(f"the {which} recording has {count} more control periods")
     return 0 if result.is_equal and result.periods else 1
 
 

@@ -18,8 +18,8 @@ NODE = "arm_gazebo"
 SERVING_NODE = "simulation"
 """The node that serves its figures."""
 RESULT_OK = 1
-STOPPED, PLAYING, PAUSED, QUITTING, NO_WORLD, LOADING_WORLD = range(6)
-"""The states of SimulationState."""
+PLAYING, PAUSED = 1, 2
+"""States of SimulationState."""
 STATE_NAMES = ("stopped", "playing", "paused", "quitting", "no world", "loading a world")
 
 
@@ -101,6 +101,22 @@ class SimulationClient:
             status.name: {pair.key: pair.value for pair in status.values}
             for status in answer.status
         }
+
+    def set_parameter(self, name: str, content: float | str) -> None:
+        """Set a parameter of the simulation's node.
+
+        Raises:
+            SimulationRefusedError: the simulation refuses the value.
+        """
+        from rcl_interfaces.msg import ParameterValue
+
+        from arm_cli.parameter_values import set_value
+
+        value = ParameterValue()
+        set_value(value, content)
+        result = self.parameters().set({name: value})[0]
+        if not result.successful:
+            raise SimulationRefusedError(result.reason)
 
     def parameters(self) -> "NodeParameters":
         """Return the parameters of the simulation's node."""

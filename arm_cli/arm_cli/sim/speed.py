@@ -2,13 +2,9 @@
 
 import argparse
 import math
-from typing import TYPE_CHECKING, Any
 
 from arm_cli.output import say
 from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
-
-if TYPE_CHECKING:
-    from arm_cli.ros.parameters import NodeParameters
 
 PARAMETER = "real_time_factor"
 
@@ -42,21 +38,9 @@ def run(options: argparse.Namespace) -> None:
         SimulationRefusedError: it refuses the factor.
     """
     with ask_simulation(options) as simulation:
-        parameters = simulation.parameters()
         if options.factor is None:
             from arm_cli.parameter_values import content_of
 
-            say(f"{content_of(parameters.value(PARAMETER)):g}")
+            say(f"{content_of(simulation.parameters().value(PARAMETER)):g}")
         else:
-            _set(parameters, options.factor)
-
-
-def _set(parameters: "NodeParameters", factor: float) -> None:
-    from rcl_interfaces.msg import ParameterType, ParameterValue
-
-    from arm_cli.errors import SimulationRefusedError
-
-    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=factor)
-    result: Any = parameters.set({PARAMETER: value})[0]
-    if not result.successful:
-        raise SimulationRefusedError(result.reason)
+            simulation.set_parameter(PARAMETER, options.factor)

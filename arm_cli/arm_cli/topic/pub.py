@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_pace_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add when it publishes, how often, and what it waits for."""
+    """Add the options that say when and how often to publish, and what to wait for."""
     parser.add_argument(
         "-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"
     )

@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Collection
 
 
 class RateWindow:
@@ -34,15 +35,9 @@ class RateWindow:
         intervals = self._intervals_ns
         if not intervals:
             return None
-        count = len(intervals)
-        mean = sum(intervals) / count
-        deviation = math.sqrt(sum((x - mean) ** 2 for x in intervals) / count)
+        mean = sum(intervals) / len(intervals)
         rate = 1e9 / mean if mean > 0 else 0.0
-        return (
-            f"average rate: {rate:.3f}\n"
-            f"\tmin: {min(intervals) * 1e-9:.3f}s max: {max(intervals) * 1e-9:.3f}s "
-            f"std dev: {deviation * 1e-9:.5f}s window: {count}"
-        )
+        return f"average rate: {rate:.3f}\n{_spread(intervals)}"
 
 
 class BandwidthWindow:
@@ -101,11 +96,15 @@ class DelayWindow:
         delays = self._delays_ns
         if not delays:
             return None
-        count = len(delays)
-        mean = sum(delays) / count
-        deviation = math.sqrt(sum((x - mean) ** 2 for x in delays) / count)
-        return (
-            f"average delay: {mean * 1e-9:.3f}\n"
-            f"\tmin: {min(delays) * 1e-9:.3f}s max: {max(delays) * 1e-9:.3f}s "
-            f"std dev: {deviation * 1e-9:.5f}s window: {count}"
-        )
+        return f"average delay: {sum(delays) / len(delays) * 1e-9:.3f}\n{_spread(delays)}"
+
+
+def _spread(durations_ns: Collection[int]) -> str:
+    """Return the second line that ros2 prints for rates and delays."""
+    count = len(durations_ns)
+    mean = sum(durations_ns) / count
+    deviation = math.sqrt(sum((x - mean) ** 2 for x in durations_ns) / count)
+    return (
+        f"\tmin: {min(durations_ns) * 1e-9:.3f}s max: {max(durations_ns) * 1e-9:.3f}s "
+        f"std dev: {deviation * 1e-9:.5f}s window: {count}"
+    )

@@ -1,13 +1,13 @@
-"""Removes segments and ports that no process uses, without disturbing one that begins to use them.
+"""Removes segments and ports that no process uses, and disturbs none that is opening them.
 
 The name of a segment is used once. The number of a port is used again by the next participant, in
 any domain, and Fast DDS opens a port in steps: it takes the port's mutex, maps the segment, locks
-the lock file, and gives the mutex back. Removed between two of the steps, the port would be a file
+the lock file, and releases the mutex. Removed between two of the steps, the port would be a file
 without a name: its reader discovers every topic and hears nothing.
 
-So the kernel is asked for a write lease on each file; see fcntl(2). It grants one only if no
-process has the file open or mapped, in whatever container. A process that opens the file later
-waits until the lease is given back. A port's mutex comes first, which Fast DDS opens before all.
+So this module takes a write lease on each file; see fcntl(2). The kernel grants one only if no
+process has the file open or mapped, in any container. A process that opens the file later waits
+until the lease is released. The mutex of a port is leased first, because Fast DDS opens it first.
 """
 
 from __future__ import annotations
@@ -71,16 +71,16 @@ def _remove_port(stem: str, folder: str) -> list[str]:
         if leased is None or mutex not in leased:
             return []
         removed = _unlink(files, folder)
-        # A process that was killed while it held the mutex has left it taken for ever.
+        # A process that was killed while it held the mutex has never released it.
         os.pwrite(leased[mutex], _free_semaphore(), 0)
         return removed if locked_segments(folder) else removed + _unlink([mutex], folder)
 
 
 @contextmanager
 def _turn(folder: str) -> Iterator[None]:
-    """Wait until no other process cleans up the folder: two of them keep each other from leases.
+    """Wait until no other process cleans up the folder: two of them would deny each other leases.
 
-    A process that has been stopped while it cleans up is not waited for.
+    After a second it goes on, because the other process may have been stopped.
     """
     with ExitStack() as opened:
         with suppress(OSError):

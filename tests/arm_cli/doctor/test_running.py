@@ -147,13 +147,13 @@ COMING = StateTopic("/left/joint_states", ("/left/jsb",), (), 3)
     ("topics", "severity", "sentence"),
     [
         ((), "error", "nobody publishes /joint_states: the arm is displayed at rest"),
-        ((LISTENED_TO,), "error", "/joint_states, to which /robot_state_publisher listens"),
+        ((LISTENED_TO,), "error", "/joint_states, to which /robot_state_publisher subscribes"),
         ((SILENT,), "error", "/joint_states is published by /jsb, but no message arrives"),
         ((SILENT, COMING), "warning", "/joint_states is published by /jsb, but no message arrives"),
         ((LISTENED_TO, COMING), "warning", "nobody publishes /joint_states, to which"),
         ((COMING,), "ok", "they arrive on /left/joint_states"),
         ((WATCHED, COMING), "ok", "they arrive on /left/joint_states"),
-        ((WATCHED,), "error", "nobody publishes /joint_states, to which /arm_viewer listens"),
+        ((WATCHED,), "error", "nobody publishes /joint_states, to which /arm_viewer subscribes"),
     ],
 )
 def test_joint_states(topics, severity, sentence):

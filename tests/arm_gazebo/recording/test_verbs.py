@@ -116,4 +116,4 @@ def test_the_first_difference_of_two_recordings_is_named(swung, capsys):
     printed = capsys.readouterr().out
     assert "control period 10, at 0.110 s, differs:" in printed
     assert "inputs: pos offer instead of pos offer" in printed
-    assert "the second recording has 5 control periods more" in printed
+    assert "the second recording has 5 more control periods" in printed

@@ -243,7 +243,7 @@ def test_after_ctrl_c_the_study_goes_on(start, tmp_path):
     process = start()
     output, errors = process.communicate()
     assert (process.returncode, errors) == (0, ""), output
-    assert "3 of 6 runs were made before" in output
+    assert "3 of 6 runs are already done" in output
     assert [outcome["number"] for outcome in journal(tmp_path)] == list(range(6))
     assert begun(tmp_path) == Counter([*range(6), 3])
 

@@ -31,5 +31,5 @@ def test_a_running_robot_is_recorded_as_a_dataset(start, run, tmp_path: Path):
     # The messages themselves stay, and can be converted again.
     again = run("arm dataset convert wave_bags/episode_000001 -o again --task 'Lean.' --fps 10")
     assert "wrote again: 1 episodes" in again
-    assert run("arm dataset check again") == "again keeps LeRobot's format v3.0\n"
+    assert run("arm dataset check again") == "again is valid in LeRobot's format v3.0\n"
     run("arm dataset record wave --task 'Lean left.'", code=1)
