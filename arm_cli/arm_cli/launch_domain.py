@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from arm_cli.output import say
+from launch_py.fast_dds.participants import domain_of
 
 WORD = "domain:="
 AUTO = "auto"
 VARIABLE = "ROS_DOMAIN_ID"
-MAX_DOMAIN = 232
 
 
 @contextmanager
@@ -41,4 +41,4 @@ def launch_domain(words: Sequence[str]) -> Iterator[list[str]]:
 
 
 def _is_domain(text: str) -> bool:
-    return text.isascii() and text.isdigit() and int(text) <= MAX_DOMAIN
+    return text != "" and domain_of(text) is not None

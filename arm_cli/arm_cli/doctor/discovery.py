@@ -6,14 +6,13 @@ import socket
 from collections.abc import Mapping
 
 from arm_cli.doctor.diagnosis import Diagnosis
+from launch_py.fast_dds.participants import FIRST_PORT, LAST_DOMAIN, PORTS_OF_DOMAIN, domain_of
 
-LARGEST_DOMAIN, LAST_SAFE_DOMAIN = 232, 101
+LAST_SAFE_DOMAIN = 101
 RANGES = ("SUBNET", "LOCALHOST", "OFF", "SYSTEM_DEFAULT")
 MIDDLEWARE = "rmw_fastrtps_cpp"
 DOMAIN, RANGE = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE"
 LOOPBACK, MULTICAST_GROUP = "127.0.0.1", "239.255.0.1"
-FIRST_PORT, PORTS_OF_DOMAIN = 7400, 250
-"""The first port of domain 0, and the number of ports per domain."""
 RECEIVE_TIMEOUT_S = 1.0
 
 
@@ -32,11 +31,12 @@ def _domain_fault(environ: Mapping[str, str]) -> Diagnosis | None:
     unset = f"export {DOMAIN}=0, the same number in every terminal"
     if not text:
         return None
-    if not (text.isascii() and text.isdigit()) or int(text) > LARGEST_DOMAIN:
+    domain = domain_of(text)
+    if domain is None:
         return Diagnosis.error(
-            "discovery", f"{DOMAIN} is {text!r}, not a number from 0 to {LARGEST_DOMAIN}", unset
+            "discovery", f"{DOMAIN} is {text!r}, not a number from 0 to {LAST_DOMAIN}", unset
         )
-    if int(text) > LAST_SAFE_DOMAIN:
+    if domain > LAST_SAFE_DOMAIN:
         return Diagnosis.warning(
             "discovery",
             f"{DOMAIN} is {text}: Linux may give its ports to other programs; 0 to "
@@ -111,7 +111,9 @@ def _check_announcements(environ: Mapping[str, str], group: str, port: int) -> D
 
 
 def _describe_taken(environ: Mapping[str, str], port: int, reach: str) -> Diagnosis:
-    sentence = f"UDP port {port}, for announcements in domain {domain_number(environ)}, is taken"
+    sentence = (
+        f"UDP port {port}, for announcements in domain {domain_of(environ.get(DOMAIN))}, is taken"
+    )
     fix = f"ss -ulpn 'sport = :{port}' shows the program; or choose another {DOMAIN}"
     if reach == "LOCALHOST":
         return Diagnosis.ok("ports", f"{sentence}; on this machine it is not needed")
@@ -121,19 +123,12 @@ def _describe_taken(environ: Mapping[str, str], port: int, reach: str) -> Diagno
     return Diagnosis.warning("ports", sentence, fix)
 
 
-def domain_number(environ: Mapping[str, str]) -> int | None:
-    """Return the number of the domain, or None if ROS_DOMAIN_ID is not valid."""
-    text = environ.get(DOMAIN) or "0"
-    known = text.isascii() and text.isdigit() and int(text) <= LARGEST_DOMAIN
-    return int(text) if known else None
-
-
 def domain_port(environ: Mapping[str, str]) -> int | None:
     """Return the first UDP port of the domain, by the RTPS specification 9.6.2.1.
 
     Return None if ROS_DOMAIN_ID is not valid.
     """
-    domain = domain_number(environ)
+    domain = domain_of(environ.get(DOMAIN))
     return None if domain is None else FIRST_PORT + PORTS_OF_DOMAIN * domain
 
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arm_cli.doctor.diagnosis import Diagnosis
-from arm_cli.doctor.discovery import FIRST_PORT, PORTS_OF_DOMAIN, RANGE, domain_number
+from arm_cli.doctor.discovery import RANGE, domain_port
+from launch_py.fast_dds.participants import FIRST_PORT, PORTS_OF_DOMAIN
 
 PROC = Path("/proc")
 TCP_LISTEN = "0A"
@@ -98,7 +99,7 @@ def _listener(folder: Path, ports: range) -> Iterator[_Listener]:
 
 def _ports(environ: Mapping[str, str]) -> range:
     """Return the ports of the domain, or those of domain 0 if the variable is not valid."""
-    first = FIRST_PORT + PORTS_OF_DOMAIN * (domain_number(environ) or 0)
+    first = domain_port(environ) or FIRST_PORT
     return range(first, first + PORTS_OF_DOMAIN)
 
 

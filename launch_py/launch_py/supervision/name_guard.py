@@ -162,7 +162,7 @@ class NameGuard:
         return bool(self._looking) or (self._replacement is not None and self._replacement.busy)
 
     def look(self, steps: Sequence[ProcessStep], refuse: Callable[[str], None]) -> None:
-        """Look up the node names of these steps, unless the name of a running node is unlikely.
+        """Look up the node names of these steps, unless hardly any running node can have one.
 
         Args:
             steps: the steps that are about to start.

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 from arm_cli.doctor.diagnosis import Severity
-from arm_cli.doctor.discovery import LARGEST_DOMAIN, check_discovery, check_ports
+from arm_cli.doctor.discovery import check_discovery, check_ports
 from arm_cli.doctor.listening import check_listening
 from arm_cli.doctor.resources import check_page_port
+from launch_py.fast_dds.participants import LAST_DOMAIN
 
 
 @pytest.mark.parametrize(
@@ -43,7 +44,7 @@ def test_discovery(variables, severity, sentence):
 def taken_domain():
     """Return a domain whose port for announcements another program holds exclusively."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
-        for domain in range(LARGEST_DOMAIN, 101, -1):
+        for domain in range(LAST_DOMAIN, 101, -1):
             with contextlib.suppress(OSError):
                 stranger.bind(("", 7400 + 250 * domain))
                 yield str(domain)
@@ -71,10 +72,10 @@ def test_a_port_taken_by_another_program(taken_domain, reach, severity, sentence
 def test_ports_shared_as_by_fast_dds_are_ok():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as participant:
         participant.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        participant.bind(("", 7400 + 250 * LARGEST_DOMAIN))
-        finding = check_ports({"ROS_DOMAIN_ID": str(LARGEST_DOMAIN)})
+        participant.bind(("", 7400 + 250 * LAST_DOMAIN))
+        finding = check_ports({"ROS_DOMAIN_ID": str(LAST_DOMAIN)})
     assert finding.severity is Severity.OK, finding
-    assert str(7400 + 250 * LARGEST_DOMAIN) in finding.sentence
+    assert str(7400 + 250 * LAST_DOMAIN) in finding.sentence
 
 
 def test_an_invalid_domain_has_no_port():
@@ -92,7 +93,7 @@ def test_an_invalid_domain_has_no_port():
     ],
 )
 def test_a_network_that_drops_datagrams(addresses, severity, sentence):
-    variables = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_DOMAIN_ID": str(LARGEST_DOMAIN)}
+    variables = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_DOMAIN_ID": str(LAST_DOMAIN)}
     finding = check_ports(variables, **addresses)
     assert finding.severity is severity
     assert sentence in finding.sentence
