@@ -50,7 +50,7 @@ setup(
     description="The arm command.",
     license="Apache-2.0",
     entry_points={
-        "console_scripts": ["arm = arm_cli.main:main"],
+        "console_scripts": ["arm = arm_cli.main:run"],
         "launch_py.programs": ["gz = arm_cli.main:gz", "ign = arm_cli.main:gz"],
     },
 )

@@ -1,8 +1,6 @@
 """`python -m arm_cli` is the `arm` command."""
 
-import sys
-
-from arm_cli.main import main
+from arm_cli.main import run
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run()

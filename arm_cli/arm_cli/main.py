@@ -4,9 +4,18 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 DISTRIBUTION = "arm-suite"
 EXIT_BROKEN_PIPE = 128 + signal.SIGPIPE
+
+
+def run() -> NoReturn:
+    """Run the command line of this process and end the process."""
+    code = main()
+    from arm_node.workarounds.exit_pause import end_process
+
+    end_process(code)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

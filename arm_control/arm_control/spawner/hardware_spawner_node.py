@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.manager.node_arguments import split_ros_arguments
 from arm_control.spawner.command_line import parse_hardware_spawner_options
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from arm_node.process import NodeProcess
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run a hardware spawner; return 0, 1 without a manager, or 2 for an invalid command line."""
+def main(argv: Sequence[str] | None = None) -> NoReturn:
+    """Run a hardware spawner and exit with 0, 1 without a manager, or 2 for bad arguments."""
     program, *arguments = sys.argv if argv is None else argv
     own, ros = split_ros_arguments(arguments)
     options = parse_hardware_spawner_options(own)
@@ -25,8 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         return spawn_hardware(node, process, options)
 
-    return run_manager_task("hardware_spawner", task, [program, *ros])
+    run_manager_task("hardware_spawner", task, [program, *ros])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

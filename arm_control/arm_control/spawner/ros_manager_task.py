@@ -1,19 +1,20 @@
 """Runs spawner, unspawner or hardware_spawner as a process with a node."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.errors import ArmControlError, WaitInterruptedError
 from arm_node.names import as_node_name
 from arm_node.process import EXIT_OK, NodeProcess
 from arm_node.task import Task, run_task
+from arm_node.workarounds.exit_pause import end_process
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 
-def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> int:
-    """Run a client of a controller manager; return its exit code, 0 if a signal ends it.
+def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> NoReturn:
+    """Run a client of a controller manager and end this process, with 0 if a signal ends the client.
 
     Args:
         node_name: name of the client's node; characters that ROS does not allow become underscores.
@@ -28,4 +29,4 @@ def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> int:
             return EXIT_OK
 
     name = as_node_name(node_name)
-    return run_task(name, until_interrupted, argv, user_errors=(ArmControlError,))
+    end_process(run_task(name, until_interrupted, argv, user_errors=(ArmControlError,)))

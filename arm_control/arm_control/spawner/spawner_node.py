@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.manager.node_arguments import parameter_files, split_ros_arguments
 from arm_control.spawner.ros_manager_task import run_manager_task
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from arm_node.process import NodeProcess
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run a spawner; return 0, 1 if a step failed, or 2 for an invalid command line."""
+def main(argv: Sequence[str] | None = None) -> NoReturn:
+    """Run a spawner and exit with 0, 1 if a step failed, or 2 for an invalid command line."""
     program, *arguments = sys.argv if argv is None else argv
     own, ros = split_ros_arguments(arguments)
     options = parse_spawner_options(own, parameter_files(ros))
@@ -25,8 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         return spawn(node, process, options)
 
-    return run_manager_task(f"spawner_{options.controllers[0].name}", task, [program, *ros])
+    run_manager_task(f"spawner_{options.controllers[0].name}", task, [program, *ros])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.manager.node_arguments import split_ros_arguments
 from arm_control.spawner.command_line import parse_unspawner_options
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from arm_node.process import NodeProcess
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run an unspawner; return 0, 1 if a controller was not unloaded, or 2 for bad arguments."""
+def main(argv: Sequence[str] | None = None) -> NoReturn:
+    """Run an unspawner and exit with 0, 1 if a controller stayed, or 2 for bad arguments."""
     program, *arguments = sys.argv if argv is None else argv
     own, ros = split_ros_arguments(arguments)
     options = parse_unspawner_options(own)
@@ -25,8 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         return unspawn(node, process, options)
 
-    return run_manager_task(f"unspawner_{options.names[0]}", task, [program, *ros])
+    run_manager_task(f"unspawner_{options.names[0]}", task, [program, *ros])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -10,6 +10,7 @@ them; see `switch`.
 | signs_of_life        | a late sender sleeps for up to 333 ms       | rmw_fastrtps 8.4 | [6535]   |
 | torn_ports           | a killed process's port hangs the next one  | rmw_fastrtps 8.4 | [1144]   |
 | lost_ports           | a new process's port is removed by a sender | rmw_fastrtps 8.4 |          |
+| exit_pause           | a process sleeps for 0.1 s before it ends   | rmw_fastrtps 8.4 |          |
 | private_files        | all users can read Fast DDS's shared memory | rmw_fastrtps 8.4 |          |
 | local_profile        | LOCALHOST doubles a profile's transports    | rmw_fastrtps 8.4 | [653]    |
 | message_template     | rclpy serialises whole messages each cycle  | rclpy 7.1        | [836]    |

@@ -75,6 +75,7 @@ LIBRARIES: Mapping[str, Library] = {
     "signs_of_life": RMW,
     "torn_ports": RMW,
     "lost_ports": RMW,
+    "exit_pause": RMW,
     "private_files": RMW,
     "local_profile": RMW,
     "message_template": RCLPY,
