@@ -7,6 +7,7 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 from arm_description.errors import DescriptionError
+from arm_node.graph_names import telling_names
 from arm_node.process import NodeProcess, run_process
 from arm_node.workarounds.discovery import first_node
 
@@ -27,7 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Other words are ignored, as by ROS 2's program.
         known, _ = _parser().parse_known_args(remove_ros_args(arguments)[1:])
         nodes = first_node(lambda: _nodes(known.namespaces), _destroy)
-        with spinning(*nodes):
+        with spinning(*nodes), telling_names(nodes[0]):
             yield
 
     return run_process(application, arguments, user_errors=(DescriptionError,))

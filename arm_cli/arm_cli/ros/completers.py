@@ -1,8 +1,16 @@
-"""Completers of names on the running graph, for the Tab key."""
+"""Completers of names on the running graph, for the Tab key.
+
+Names come from a running robot's process if there is one, which takes no time; see
+`arm_node.graph_names`. Otherwise they are discovered, which takes half a second.
+"""
 
 import argparse
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
+
+from arm_cli.names import absolute_name, is_hidden
+from arm_node.graph_names import GraphNames, ask_for_names
 
 if TYPE_CHECKING:
     from arm_cli.ros.graph import Graph
@@ -17,22 +25,24 @@ SERVER_TIMEOUT_S = 1.0
 
 def topics(**_: Any) -> list[str]:
     """Return the topics."""
-    return _look(lambda graph: list(graph.topics()))
+    return _names(lambda known: known.topics, lambda graph: list(graph.topics()))
 
 
 def nodes(**_: Any) -> list[str]:
     """Return the nodes."""
-    return _look(lambda graph: [node.full_name for node in graph.nodes()])
+    return _names(
+        lambda known: known.nodes, lambda graph: [node.full_name for node in graph.nodes()]
+    )
 
 
 def services(**_: Any) -> list[str]:
     """Return the services."""
-    return _look(lambda graph: list(graph.services()))
+    return _names(lambda known: known.services, lambda graph: list(graph.services()))
 
 
 def actions(**_: Any) -> list[str]:
     """Return the actions."""
-    return _look(lambda graph: list(graph.actions()))
+    return _names(lambda known: known.actions, lambda graph: list(graph.actions()))
 
 
 def parameters(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
@@ -58,6 +68,9 @@ def parameter_values(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
 def _ask_node(
     parsed_args: argparse.Namespace, ask: Callable[["NodeParameters"], list[str]]
 ) -> list[str]:
+    known = ask_for_names(os.environ)
+    if known is not None and absolute_name(parsed_args.node_name) not in known.nodes:
+        return []
     from arm_cli.ros.connection import connect
 
     with connect() as session:
@@ -69,7 +82,16 @@ def _ask_node(
         return ask(NodeParameters(session, node, ANSWER_TIMEOUT_S, SERVER_TIMEOUT_S))
 
 
-def _look(take: Callable[["Graph"], list[str]]) -> list[str]:
+def _names(
+    told: Callable[[GraphNames], list[str]], discovered: Callable[["Graph"], list[str]]
+) -> list[str]:
+    known = ask_for_names(os.environ)
+    if known is not None:
+        return [name for name in told(known) if not is_hidden(name)]
+    return _discover(discovered)
+
+
+def _discover(take: Callable[["Graph"], list[str]]) -> list[str]:
     from arm_cli.ros.connection import connect
 
     with connect() as session:

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from arm_cli.ros import completers, connection, graph, parameters
+from arm_node.graph_names import GraphNames
 
 
 class FakeNode:
@@ -57,6 +58,7 @@ def session(monkeypatch):
         yield session
 
     monkeypatch.setattr(connection, "connect", connect)
+    monkeypatch.setattr(completers, "ask_for_names", lambda _environ: None)
     monkeypatch.setattr(graph.time, "monotonic", lambda: session.now_s)
     return session
 
@@ -85,3 +87,18 @@ def test_tab_asks_for_parameters_before_it_knows_the_name_of_their_node(session,
     assert completers.parameters(argparse.Namespace(node_name="driver")) == ["flag", "size"]
     assert calls[-1][0] == "/driver/list_parameters"
     assert session.now_s == 0.0
+
+
+def test_tab_needs_no_node_beside_a_robot(monkeypatch):
+    told = GraphNames(
+        topics=["/chatter", "/turn/_action/feedback"],
+        services=["/turn/_action/send_goal", "/talker/get_parameters"],
+        nodes=["/_arm_cli_7", "/talker"],
+    )
+    monkeypatch.setattr(completers, "ask_for_names", lambda _environ: told)
+    monkeypatch.setattr(connection, "connect", None)
+    assert completers.topics() == ["/chatter"]
+    assert completers.services() == ["/talker/get_parameters"]
+    assert completers.nodes() == ["/talker"]
+    assert completers.actions() == ["/turn"]
+    assert completers.parameters(argparse.Namespace(node_name="walker")) == []
