@@ -191,6 +191,18 @@ def heard_after_loss() -> float:
         return float("heard True" in said)
 
 
+def command_s() -> float:
+    """Return how long `arm topic echo --once` takes beside a simulation, the median of 5."""
+    command = [sys.executable, "-m", "arm_cli", "topic", "echo", "--once", "/joint_states"]
+    times_s = []
+    with harness.suite("camera:=none"):
+        for _ in range(5):
+            started_s = time.monotonic()
+            subprocess.run(command, env=harness.client_environment(), capture_output=True, check=True)
+            times_s.append(time.monotonic() - started_s)
+    return statistics.median(times_s)
+
+
 def readable_files() -> float:
     """Return how many files of the suite in shared memory every user of the machine may read."""
     before = set(os.listdir("/dev/shm"))
@@ -264,6 +276,9 @@ FIGURES = {
         "",
         heard_after_loss,
         ("lost_ports",),
+    ),
+    "command": Figure(
+        "`arm topic echo --once /joint_states`, median of 5", "s", command_s, ("exit_pause",)
     ),
     "sockets": Figure(
         "UDP sockets of the simulation that other hosts reach", "", open_sockets, ("local_profile",)
