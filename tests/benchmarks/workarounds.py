@@ -198,7 +198,9 @@ def command_s() -> float:
     with harness.suite("camera:=none"):
         for _ in range(5):
             started_s = time.monotonic()
-            subprocess.run(command, env=harness.client_environment(), capture_output=True, check=True)
+            subprocess.run(
+                command, env=harness.client_environment(), capture_output=True, check=True
+            )
             times_s.append(time.monotonic() - started_s)
     return statistics.median(times_s)
 

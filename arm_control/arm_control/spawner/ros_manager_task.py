@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> NoReturn:
-    """Run a client of a controller manager and end this process, with 0 if a signal ends the client.
+    """Run a client of a controller manager and end this process, with 0 after a signal.
 
     Args:
         node_name: name of the client's node; characters that ROS does not allow become underscores.
