@@ -41,7 +41,7 @@ class Approach:
         return now_s - self._started_s
 
     def is_late(self, now_s: float) -> bool:
-        """Return whether the time-out has passed."""
+        """Return whether the timeout has passed."""
         return self.elapsed_s(now_s) >= self._timeout_s
 
     def is_reached(self, positions: Mapping[str, float]) -> bool:
@@ -52,14 +52,14 @@ class Approach:
         )
 
     def forecast(self) -> str | None:
-        """Return a sentence if the joints are too slow to reach the pose within the time-out."""
+        """Return a sentence if the joints are too slow to reach the pose within the timeout."""
         name, needed_s = self._limits.shortest_move_s(self._start, self.pose)
         if needed_s <= self._timeout_s:
             return None
         joint = self._limits.range_of(name)
         return (
             f"joint '{name}' needs at least {needed_s:.1f} s at its velocity limit of "
-            f"{joint.velocity:g} {joint.unit}/s, and the time-out is {self._timeout_s:g} s "
+            f"{joint.velocity:g} {joint.unit}/s, and the timeout is {self._timeout_s:g} s "
             "(parameter timeout)"
         )
 

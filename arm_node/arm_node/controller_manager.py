@@ -86,7 +86,7 @@ def switch_request(
 
 
 class ControllerManagerClient:
-    """Calls one manager; the `ServiceTransport` determines threads, time-outs and errors."""
+    """Calls one manager; the `ServiceTransport` determines threads, timeouts and errors."""
 
     def __init__(self, caller: ServiceTransport) -> None:
         self._caller = caller

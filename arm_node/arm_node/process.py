@@ -76,7 +76,7 @@ class NodeProcess:
         self._stop.set()
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Block until shutdown is requested; return whether it was within the time-out."""
+        """Block until shutdown is requested; return whether it was within the timeout."""
         if timeout_s is not None:
             return self._stop.wait(timeout_s)
         while not self._stop.wait(SIGNAL_INTERVAL_S):

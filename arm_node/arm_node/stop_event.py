@@ -36,7 +36,7 @@ class StopEvent:
             os.write(self._writable, b"\0")
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Block until `set` is called; return whether it was, within the time-out in s."""
+        """Block until `set` is called; return whether it was, within the timeout in s."""
         poll = select.poll()
         poll.register(self._readable, select.POLLIN)
         return bool(poll.poll(None if timeout_s is None else timeout_s * MS_PER_S))

@@ -1,6 +1,6 @@
 """A robot that is no more than its topics, and the executables beside it in processes of their own.
 
-Every wait is on a condition, with a generous time-out.
+Every wait is on a condition, with a generous timeout.
 """
 
 import os

@@ -58,7 +58,7 @@ def test_no_forecast_where_the_time_suffices():
 def test_forecasts_the_joint_that_is_too_slow():
     assert approach(limits(velocity=0.1)).forecast() == (
         "joint 'j0' needs at least 10.0 s at its velocity limit of 0.1 rad/s, "
-        "and the time-out is 5 s (parameter timeout)"
+        "and the timeout is 5 s (parameter timeout)"
     )
 
 

@@ -1,7 +1,7 @@
 """Two processes of one ROS domain, and the record of what each type must be.
 
 The test process holds a client and spins it itself; the other end is a program from `peers/`.
-Nothing sleeps: every wait is on a condition, with a generous time-out.
+Nothing sleeps: every wait is on a condition, with a generous timeout.
 """
 
 import importlib

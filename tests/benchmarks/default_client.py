@@ -32,7 +32,7 @@ def spin_until(node: Node, condition: Callable[[], bool], timeout_s: float = 60.
     deadline = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > deadline:
-            raise SystemExit("time-out")
+            raise SystemExit("timeout")
         rclpy.spin_once(node, timeout_sec=0.05)
 
 
@@ -108,7 +108,7 @@ def wait_until(condition: Callable[[], bool], poll_s: float = 0.05) -> None:
     deadline = time.monotonic() + 60.0
     while not condition():
         if time.monotonic() > deadline:
-            raise SystemExit("time-out")
+            raise SystemExit("timeout")
         time.sleep(poll_s)
 
 

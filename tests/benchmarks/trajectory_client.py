@@ -64,7 +64,7 @@ class Client:
         deadline = time.monotonic() + timeout_s
         while not condition():
             if time.monotonic() > deadline:
-                raise SystemExit("time-out")
+                raise SystemExit("timeout")
             rclpy.spin_once(self.node, timeout_sec=0.05)
 
     def spin_for(self, seconds: float) -> None:

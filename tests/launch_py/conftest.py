@@ -1,6 +1,6 @@
 """Launches launch files in processes of their own, and expands them in this one.
 
-Nothing here sleeps: every wait is on a condition, with a generous time-out.
+Nothing here sleeps: every wait is on a condition, with a generous timeout.
 """
 
 import os

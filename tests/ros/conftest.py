@@ -1,6 +1,6 @@
 """A black-box view of the suite: the real launcher in processes of its own, and a client beside it.
 
-Nothing here sleeps: every wait is on a condition, with a generous time-out.
+Nothing here sleeps: every wait is on a condition, with a generous timeout.
 """
 
 import os

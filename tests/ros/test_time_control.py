@@ -201,5 +201,5 @@ def test_a_joint_stops_when_its_commands_cease(simulator, client):
     states.wait_until(lambda m: abs(m[-1].velocity[0]) < 0.001, "j0 at rest")
     simulator.go_to(PAUSED)
     turning = [stamp_s(message) for message in states.messages if message.velocity[0] > 0.25]
-    # From the command to the time-out, in simulation time.
+    # From the command to the timeout, in simulation time.
     assert 0.4 < turning[-1] - turning[0] < 0.7

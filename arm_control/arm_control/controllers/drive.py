@@ -16,6 +16,19 @@ from arm_control.run_inputs import run_input
 
 TwistT = TypeVar("TwistT")
 
+NO_COVARIANCE = (0.0,) * 6
+"""Default of the parameters `pose_covariance_diagonal` and `twist_covariance_diagonal`."""
+
+
+def check_covariances(pose: Sequence[float], twist: Sequence[float]) -> None:
+    """Raise `ControllerError` if one of the two diagonals does not have six numbers."""
+    for name, diagonal in (("pose", pose), ("twist", twist)):
+        if len(diagonal) != len(NO_COVARIANCE):
+            raise ControllerError(
+                f"parameter '{name}_covariance_diagonal' takes {len(NO_COVARIANCE)} numbers, "
+                f"not {len(diagonal)}"
+            )
+
 
 @dataclass(frozen=True, slots=True)
 class StampedTwist(Generic[TwistT]):

@@ -218,46 +218,55 @@ def _parse_parts(
     where: str,
     mimics: Mapping[str, Mimic] | None = None,
 ) -> tuple[JointInfo, ...]:
-    parts: dict[str, JointInfo] = {}
-    for child in element.iterchildren(tag):
-        name = _required_name(child, f"<{tag}> of {where}")
-        if name in parts:
-            raise HardwareInfoError(
-                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
-            )
+    parts: list[JointInfo] = []
+    for name, child in _named_children(element, tag, where):
         here = f"<{tag} name='{name}'> of {where}"
-        parts[name] = JointInfo(
-            name=name,
-            command_interfaces=_parse_interfaces(child, "command_interface", here),
-            state_interfaces=_parse_interfaces(child, "state_interface", here),
-            parameters=_parse_parameters(child, here),
-            mimic=(mimics or {}).get(name) if _is_on(child, "mimic") else None,
-            is_limited=_is_limited(child),
+        parts.append(
+            JointInfo(
+                name=name,
+                command_interfaces=_parse_interfaces(child, "command_interface", here),
+                state_interfaces=_parse_interfaces(child, "state_interface", here),
+                parameters=_parse_parameters(child, here),
+                mimic=(mimics or {}).get(name) if _is_on(child, "mimic") else None,
+                is_limited=_is_limited(child),
+            )
         )
-    return tuple(parts.values())
+    return tuple(parts)
 
 
 def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[InterfaceInfo, ...]:
-    interfaces: dict[str, InterfaceInfo] = {}
-    for child in element.iterchildren(tag):
-        name = _required_name(child, f"<{tag}> of {where}")
-        if name in interfaces:
-            raise HardwareInfoError(
-                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
-            )
+    interfaces: list[InterfaceInfo] = []
+    for name, child in _named_children(element, tag, where):
         here = f"<{tag} name='{name}'> of {where}"
         parameters = _parse_parameters(child, here)
         data_type = child.get("data_type", "double")
-        interfaces[name] = InterfaceInfo(
-            name=name,
-            initial_value=_parse_initial_value(parameters, data_type, child.sourceline, here),
-            minimum=_parse_limit(parameters, "min"),
-            maximum=_parse_limit(parameters, "max"),
-            parameters=parameters,
-            is_limited=_is_limited(child),
-            data_type=data_type,
+        interfaces.append(
+            InterfaceInfo(
+                name=name,
+                initial_value=_parse_initial_value(parameters, data_type, child.sourceline, here),
+                minimum=_parse_limit(parameters, "min"),
+                maximum=_parse_limit(parameters, "max"),
+                parameters=parameters,
+                is_limited=_is_limited(child),
+                data_type=data_type,
+            )
         )
-    return tuple(interfaces.values())
+    return tuple(interfaces)
+
+
+def _named_children(
+    element: "etree._Element", tag: str, where: str
+) -> Iterator[tuple[str, "etree._Element"]]:
+    """Yield the children with a tag and their names, which must be there and differ."""
+    names: set[str] = set()
+    for child in element.iterchildren(tag):
+        name = _required_name(child, f"<{tag}> of {where}")
+        if name in names:
+            raise HardwareInfoError(
+                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
+            )
+        names.add(name)
+        yield name, child
 
 
 def _is_limited(element: "etree._Element") -> bool:

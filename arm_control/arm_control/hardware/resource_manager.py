@@ -298,7 +298,7 @@ class ResourceManager:
                 if name in owners:
                     raise ControllerManagerError(
                         f"{kind} interface '{name}' already belongs to hardware component "
-                        f"'{owners[name].name}'; '{component.name}' has it, too"
+                        f"'{owners[name].name}'; '{component.name}' also has it"
                     )
                 owners[name] = component
 

@@ -32,21 +32,21 @@ def add_controller_manager(parser: argparse.ArgumentParser) -> None:
 
 
 def add_controller_manager_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the time-out for the controller manager."""
+    """Add the timeout for the controller manager."""
     _add_timeout(
         parser, "--controller-manager-timeout", 0.0, "for the controller manager; 0 waits for ever"
     )
 
 
 def add_switch_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the time-out of a switch."""
+    """Add the timeout of a switch."""
     _add_timeout(
         parser, "--switch-timeout", 5.0, "for a switch, as in a paused simulation; 0 means 1 s"
     )
 
 
 def add_service_call_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the time-out of a service call."""
+    """Add the timeout of a service call."""
     _add_timeout(
         parser, "--service-call-timeout", 10.0, "for an answer before asking again", positive=True
     )
@@ -70,7 +70,7 @@ def _add_timeout(
 
 
 def _seconds(text: str) -> float:
-    """Convert a time-out that may be 0."""
+    """Convert a timeout that may be 0."""
     try:
         seconds = float(text)
     except ValueError:
@@ -81,7 +81,7 @@ def _seconds(text: str) -> float:
 
 
 def _positive_seconds(text: str) -> float:
-    """Convert a time-out that must not be 0."""
+    """Convert a timeout that must not be 0."""
     seconds = _seconds(text)
     if seconds == 0.0:
         raise argparse.ArgumentTypeError("must be positive, not 0")

@@ -69,7 +69,7 @@ class RetryingCaller:
             ) from error
 
     def wait_for(self, service: str, timeout_s: float) -> None:
-        """Wait until a service is available; a time-out of 0 waits for ever."""
+        """Wait until a service is available; a timeout of 0 waits for ever."""
         self._wait_for_client(self._clients[service], timeout_s)
 
     def change(self, service: str, request: Any, is_done: Callable[[], bool]) -> Any:

@@ -39,7 +39,7 @@ def spawner_lock(
     Args:
         path: the file; it is created with its folder if it is missing.
         wait: waits for a number of seconds; returns True early if the process must end.
-        clock: clock for the time-outs.
+        clock: clock for the timeouts.
 
     Raises:
         SpawnError: another process has held it during all attempts.

@@ -106,7 +106,7 @@ class PublisherDefined(Node):
             return
         waited_s = self._commands.unchanged_s
         if self._now_s() == 0.0:
-            # With use_sim_time the clock is 0 until /clock arrives, so no time-out would pass.
+            # With use_sim_time the clock is 0 until /clock arrives, so no timeout would pass.
             if waited_s >= self._match_timeout_s:
                 self._give_up("use_sim_time is true and /clock is silent: does a simulation run?")
             return

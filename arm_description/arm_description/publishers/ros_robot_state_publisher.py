@@ -260,7 +260,7 @@ class RobotStatePublisher(Node):
 
 
 MAX_WAIT_S = 1.0
-"""Without a time-out, spin_once of this executor polls the clock while it holds the GIL."""
+"""Without a timeout, spin_once of this executor polls the clock while it holds the GIL."""
 
 
 @contextmanager

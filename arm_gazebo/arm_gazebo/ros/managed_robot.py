@@ -93,7 +93,7 @@ class ManagedRobot:
 
 
 LONGEST_WAIT_S = 1.0
-"""Without a time-out, spin_once of the event-driven executor polls the clock and holds the GIL."""
+"""Without a timeout, spin_once of the event-driven executor polls the clock and holds the GIL."""
 
 
 def executor_of_robots(

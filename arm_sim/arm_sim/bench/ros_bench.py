@@ -201,7 +201,7 @@ class RosBench:
         return program
 
     def run_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
-        """Wait until a condition holds or the time-out passes; return whether it holds.
+        """Wait until a condition holds or the timeout passes; return whether it holds.
 
         Args:
             condition: called whenever there are new joint states.

@@ -9,7 +9,7 @@ from servo_arm.serial_line import SerialLine, SerialLineError
 class SerialServo(SystemInterface):
     """Reads position and velocity of each joint, and writes its effort.
 
-    `<param>`s of `<hardware>`: `device`, the port, and `timeout`, the time-out of an answer [s].
+    `<param>`s of `<hardware>`: `device`, the port, and `timeout`, how long an answer may take [s].
     """
 
     def __init__(self, info: HardwareInfo) -> None:

@@ -4,10 +4,9 @@ from dataclasses import dataclass, field
 
 from arm_control.controllers.diff_drive.odometry import WheelGeometry
 from arm_control.controllers.diff_drive.speed_limits import SpeedLimits
+from arm_control.controllers.drive import NO_COVARIANCE, check_covariances
 from arm_control.errors import ControllerError
 from arm_control.parameters import check_values, parameter, specs_of
-
-DIAGONAL = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +60,10 @@ class DiffDriveParameters:
     )
     base_frame_id: str = parameter("base_link", "Frame of the robot", at_configuration=True)
     pose_covariance_diagonal: tuple[float, ...] = parameter(
-        (0.0,) * DIAGONAL, "Variances of x y z roll pitch yaw", at_configuration=True
+        NO_COVARIANCE, "Variances of x y z roll pitch yaw", at_configuration=True
     )
     twist_covariance_diagonal: tuple[float, ...] = parameter(
-        (0.0,) * DIAGONAL, "Variances of the twist: along, then about x y z", at_configuration=True
+        NO_COVARIANCE, "Variances of the twist: along, then about x y z", at_configuration=True
     )
     open_loop: bool = parameter(
         False, "Compute the odometry from the commands alone", at_configuration=True
@@ -133,8 +132,4 @@ class DiffDriveParameters:
                 f"parameter 'wheels_per_side' is {self.wheels_per_side}, but {len(left)} wheels "
                 "are named on each side"
             )
-        for name in ("pose_covariance_diagonal", "twist_covariance_diagonal"):
-            if len(getattr(self, name)) != DIAGONAL:
-                raise ControllerError(
-                    f"parameter '{name}' takes {DIAGONAL} numbers, not {len(getattr(self, name))}"
-                )
+        check_covariances(self.pose_covariance_diagonal, self.twist_covariance_diagonal)

@@ -222,7 +222,7 @@ class Execution:
         plan: the plan.
         tolerances: the tolerances to check.
         serves_goal: whether a goal ends with it.
-        is_stop: whether it only brings the joints to rest: in real time, without a time-out.
+        is_stop: whether it only brings the joints to rest: in real time, without a timeout.
         lead_s: time from the plan's start to the start of its trajectory; negative if the
             trajectory should have started earlier.
         elapsed_s: the plan's time.

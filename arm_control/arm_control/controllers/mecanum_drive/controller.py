@@ -12,7 +12,7 @@ from arm_control.controllers.controller import (
     InterfaceConfiguration,
     ReturnType,
 )
-from arm_control.controllers.drive import DriveController
+from arm_control.controllers.drive import NO_COVARIANCE, DriveController, check_covariances
 from arm_control.controllers.mecanum_drive.kinematics import (
     WHEELS,
     Array,
@@ -24,7 +24,6 @@ from arm_control.errors import ControllerError
 from arm_control.parameters import build_parameters, check_values, parameter, specs_of
 
 REFERENCES = ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
-DIAGONAL = 6
 STANDSTILL = MecanumTwist()
 NO_REFERENCE = (nan, nan, nan)
 
@@ -80,11 +79,11 @@ class MecanumDriveParameters:
         True, "Publish the transform from odom_frame_id to base_frame_id", at_configuration=True
     )
     pose_covariance_diagonal: tuple[float, ...] = parameter(
-        (0.0,) * DIAGONAL, "Covariances of x y z roll pitch yaw", at_configuration=True
+        NO_COVARIANCE, "Variances of x y z roll pitch yaw", at_configuration=True
     )
     twist_covariance_diagonal: tuple[float, ...] = parameter(
-        (0.0,) * DIAGONAL,
-        "Covariances of the velocities along and about x y z",
+        NO_COVARIANCE,
+        "Variances of the velocities along and about x y z",
         at_configuration=True,
     )
 
@@ -125,11 +124,7 @@ class MecanumDriveParameters:
             raise ControllerError(
                 f"the four wheels need four joints, but they are {', '.join(self.command_joints)}"
             )
-        for name in ("pose_covariance_diagonal", "twist_covariance_diagonal"):
-            if len(getattr(self, name)) != DIAGONAL:
-                raise ControllerError(
-                    f"parameter '{name}' takes {DIAGONAL} numbers, not {len(getattr(self, name))}"
-                )
+        check_covariances(self.pose_covariance_diagonal, self.twist_covariance_diagonal)
 
 
 class MecanumSink(Protocol):

@@ -17,7 +17,7 @@ JOINTS = ("j0", "j1")
 
 @pytest.fixture
 def follow(bench, make):
-    """Return a maker of an active position controller with a time-out."""
+    """Return a maker of an active position controller with a timeout."""
 
     def active(timeout_s: float) -> JointGroupPositionController:
         parameters = PositionGroupParameters(joints=JOINTS, command_timeout=timeout_s)
