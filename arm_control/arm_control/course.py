@@ -17,6 +17,12 @@ COURSE_ARGUMENT: Mapping[str, Any] = {
     "choices": [NO_COURSE, *COURSES],
 }
 """How launch files declare the argument `course`."""
+INTERFACE_ARGUMENT: Mapping[str, Any] = {
+    "default_value": "ros2",
+    "description": "one controller for all joints, or as in ROS 1 one for each under /arm",
+    "choices": ["ros2", "ros1"],
+}
+"""How launch files declare the argument `interface`."""
 HARDWARE_INTERFACES = ("PositionJointInterface", "hardware_interface/PositionJointInterface")
 HARDWARE_INTERFACE_ARGUMENT: Mapping[str, Any] = {
     "default_value": HARDWARE_INTERFACES[0],

@@ -9,6 +9,7 @@ from typing import Any
 from arm_control.course import (
     COURSE_ARGUMENT,
     HARDWARE_INTERFACE_ARGUMENT,
+    INTERFACE_ARGUMENT,
     launch_arguments,
     take_course,
 )
@@ -76,12 +77,7 @@ def arguments() -> list[Action]:
     return [
         DeclareLaunchArgument("course", **COURSE_ARGUMENT),
         OpaqueFunction(function=take_course),
-        DeclareLaunchArgument(
-            "interface",
-            default_value="ros2",
-            choices=["ros2", "ros1"],
-            description="one controller for all joints, or as in ROS 1 one for each, under /arm",
-        ),
+        DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
         DeclareLaunchArgument(
             "robot_name",
             default_value="arm",

@@ -1,6 +1,6 @@
 """Starts the controller node with a pose from a file: config/params.yaml or another."""
 
-from arm_control.course import COURSE_ARGUMENT, take_course
+from arm_control.course import COURSE_ARGUMENT, INTERFACE_ARGUMENT, take_course
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified
 from launch_py.actions import OpaqueFunction
 from launch_py.ros import FindPackageShare, Node
@@ -21,12 +21,7 @@ def generate_launch_description() -> LaunchDescription:
         [
             DeclareLaunchArgument("course", **COURSE_ARGUMENT),
             OpaqueFunction(function=take_course),
-            DeclareLaunchArgument(
-                "interface",
-                default_value="ros2",
-                choices=["ros2", "ros1"],
-                description="one controller for all joints, or as in ROS 1 one each, under /arm",
-            ),
+            DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
             DeclareLaunchArgument(
                 "params_file",
                 default_value=parameters,

@@ -4,7 +4,7 @@ The simulation itself starts the controllers, which saves a process and its disc
 arm_control.launch.py starts them from outside, with the spawner.
 """
 
-from arm_control.course import COURSE_ARGUMENT, take_course
+from arm_control.course import COURSE_ARGUMENT, INTERFACE_ARGUMENT, take_course
 from launch_py import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
@@ -109,12 +109,7 @@ def generate_launch_description() -> LaunchDescription:
         [
             DeclareLaunchArgument("course", **COURSE_ARGUMENT),
             OpaqueFunction(function=take_course),
-            DeclareLaunchArgument(
-                "interface",
-                default_value="ros2",
-                choices=["ros2", "ros1"],
-                description="one controller of all joints, or as in ROS 1 one for each under /arm",
-            ),
+            DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
             DeclareLaunchArgument(
                 "robot_name",
                 default_value="arm",

@@ -8,7 +8,12 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from arm_control.course import COURSE_ARGUMENT, HARDWARE_INTERFACE_ARGUMENT, take_course
+from arm_control.course import (
+    COURSE_ARGUMENT,
+    HARDWARE_INTERFACE_ARGUMENT,
+    INTERFACE_ARGUMENT,
+    take_course,
+)
 from launch_py import Action, DeclareLaunchArgument, IncludeLaunchDescription, LaunchDescription
 from launch_py.actions import OpaqueFunction
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
@@ -116,12 +121,7 @@ def arguments() -> list[Action]:
         DeclareLaunchArgument("course", **COURSE_ARGUMENT),
         OpaqueFunction(function=take_course),
         DeclareLaunchArgument("model", default_value=model, description="URDF or xacro file"),
-        DeclareLaunchArgument(
-            "interface",
-            default_value="ros2",
-            choices=["ros2", "ros1"],
-            description="one controller of all joints, or as in ROS 1 one for each under /arm",
-        ),
+        DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
         DeclareLaunchArgument(
             "robot_name",
             default_value="arm",
@@ -130,7 +130,7 @@ def arguments() -> list[Action]:
         DeclareLaunchArgument(
             "namespace",
             default_value=IfElseSubstitution(is_ros1, if_value=LaunchConfiguration("robot_name")),
-            description="of all nodes of the robot",
+            description="namespace of all nodes of the robot",
         ),
         DeclareLaunchArgument(
             "controllers",
@@ -140,7 +140,7 @@ def arguments() -> list[Action]:
         DeclareLaunchArgument(
             "spawn",
             default_value="",
-            description="controllers to start with the simulation, with commas",
+            description="controllers to start with the simulation, separated by commas",
         ),
         DeclareLaunchArgument(
             "hold_joints",

@@ -20,7 +20,7 @@ ARGUMENTS = {
 
 
 def show(context: LaunchContext) -> list[Action]:
-    """Return RViz or the page, or nothing if neither is requested."""
+    """Return RViz, or the page if RViz is not installed; nothing if RViz is not requested."""
     words = context.launch_configurations
     if words["use_rviz"] != "true":
         return []
@@ -37,14 +37,14 @@ def show(context: LaunchContext) -> list[Action]:
 def page(context: LaunchContext) -> list[Action]:
     """Return the page unless another launch file opens it, and warn that it replaces RViz."""
     context.warnings.append(
-        "RViz (rviz2) is not installed, it comes with a ROS 2 installation: the page in the "
+        "RViz (rviz2), which comes with a ROS 2 installation, is not installed: the page in the "
         "browser shows the robot"
     )
     if context.launch_configurations["page_is_open"] == "true":
         return []
     file = PathJoinSubstitution([ThisLaunchFileDir(), "viewer.launch.py"])
     config = context.launch_configurations["rviz_config_file"]
-    # That of the 4-DOF arm is the default of all robots; the page fits its first view to each.
+    # All robots have the 4-DOF arm's file by default; without it the page fits its first view.
     shown = "" if config.endswith(OF_THE_ARM) else config
     return [
         IncludeLaunchDescription(

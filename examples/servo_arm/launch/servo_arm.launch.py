@@ -13,7 +13,7 @@ from launch_py.substitutions import Call, LaunchConfiguration, PathJoinSubstitut
 
 
 def describe(model: str, device: str, timeout: str) -> str:
-    """Return the URDF with the servos' port and the timeout of an answer."""
+    """Return the URDF with the servos' port and their timeout."""
     from arm_description import expand_xacro
 
     return expand_xacro(model, {"device": device, "timeout": timeout})
@@ -46,7 +46,7 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "timeout",
                 default_value="0.2",
-                description="timeout of an answer of the servos, in seconds",
+                description="how long an answer of the servos may take, in seconds",
             ),
             SetLaunchConfiguration(
                 "robot_description",

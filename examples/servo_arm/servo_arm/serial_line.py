@@ -19,7 +19,7 @@ class SerialLine:
 
         Args:
             device: path of the device, such as /dev/ttyUSB0.
-            timeout_s: timeout of an answer.
+            timeout_s: how long an answer may take, in s.
 
         Raises:
             SerialLineError: it cannot be opened, or is not a serial port.
