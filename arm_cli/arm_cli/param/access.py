@@ -15,6 +15,8 @@ from arm_cli.verb import VerbFunctions
 from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
+    from rcl_interfaces.msg import SetParametersResult
+
     from arm_cli.ros.parameters import NodeParameters
 
 
@@ -215,15 +217,8 @@ def set_parameter(options: argparse.Namespace) -> int:
 
         value = ParameterValue()
         write_value(value, options.value)
-        (result,) = parameters.set({options.parameter_name: value})
-        if not result.successful:
-            parameters.check_known(options.parameter_name)
-    reason = f": {result.reason}" if result.reason else ""
-    if result.successful:
-        say(f"Set parameter successful{reason}")
-        return 0
-    complain(f"Setting parameter failed{reason}")
-    return 1
+        result = _change(parameters, options.parameter_name, value)
+    return _report(result, "Set parameter successful", "Setting parameter failed")
 
 
 def add_delete_arguments(parser: argparse.ArgumentParser) -> None:
@@ -242,14 +237,24 @@ def delete(options: argparse.Namespace) -> int:
     with open_parameters(options.node_name) as parameters:
         from rcl_interfaces.msg import ParameterValue
 
-        (result,) = parameters.set({options.parameter_name: ParameterValue()})
-        if not result.successful:
-            parameters.check_known(options.parameter_name)
+        result = _change(parameters, options.parameter_name, ParameterValue())
+    return _report(result, "Deleted parameter successfully", "Deleting parameter failed")
+
+
+def _change(parameters: "NodeParameters", name: str, value: Any) -> "SetParametersResult":
+    (result,) = parameters.set({name: value})
+    if not result.successful:
+        parameters.check_known(name)
+    return result
+
+
+def _report(result: "SetParametersResult", success: str, failure: str) -> int:
+    """Print the node's answer; return the exit code."""
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:
-        say(f"Deleted parameter successfully{reason}")
+        say(f"{success}{reason}")
         return 0
-    complain(f"Deleting parameter failed{reason}")
+    complain(f"{failure}{reason}")
     return 1
 
 

@@ -18,16 +18,20 @@ BROADCASTER = "default_authority"
 """The name that tf2 gives to every broadcaster on ROS 2."""
 
 
-def add_print_tree_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
+def _add_wait_time_argument(parser: argparse.ArgumentParser, default_s: float) -> None:
     parser.add_argument(
         "-t",
         "--wait-time",
         type=positive_number,
-        default=TREE_LISTEN_S,
+        default=default_s,
         metavar="SECONDS",
-        help=f"how long to listen (default {TREE_LISTEN_S:g})",
+        help=f"how long to listen (default {default_s:g})",
     )
+
+
+def add_print_tree_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    _add_wait_time_argument(parser, TREE_LISTEN_S)
     add_json_argument(parser)
 
 
@@ -54,14 +58,7 @@ def print_tree(options: argparse.Namespace) -> None:
 
 def add_view_frames_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    parser.add_argument(
-        "-t",
-        "--wait-time",
-        type=positive_number,
-        default=VIEW_LISTEN_S,
-        metavar="SECONDS",
-        help=f"how long to listen (default {VIEW_LISTEN_S:g})",
-    )
+    _add_wait_time_argument(parser, VIEW_LISTEN_S)
     parser.add_argument(
         "-o", "--output", metavar="STEM", help="file name without suffix (default frames_DATE)"
     )

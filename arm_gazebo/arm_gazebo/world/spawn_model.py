@@ -34,11 +34,11 @@ from arm_gazebo.spec.report import BuildReport, Finding
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import MjcfTrial
+from arm_gazebo.world.trial_steps import can_be_simulated
 from arm_node.names import listing
 from arm_node.user_file import UnusableFileError, read_text
 
 FORMATS = ("urdf", "sdf", "mjcf")
-TRIAL_STEPS = 5
 MAX_CHARACTERS = 20_000_000
 FILE_MISSING = "opening file"
 """Part of MuJoCo's message about an unreadable file that an MJCF names."""
@@ -217,12 +217,7 @@ def _checked(source: str, read: Callable[[], SpawnModel]) -> SpawnModel:
 
 def _try(source: str, model: mujoco.MjModel) -> None:
     """Refuse a model that compiles but cannot be simulated: NaN, infinite or absurd numbers."""
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data, TRIAL_STEPS)
-    numbers = (model.body_mass, model.body_inertia, model.geom_rbound, data.xpos, data.geom_xpos)
-    # MuJoCo resets itself when a number is no longer finite.
-    was_reset = data.time < (TRIAL_STEPS - 0.5) * model.opt.timestep
-    if was_reset or not all(np.isfinite(values).all() for values in numbers):
+    if not can_be_simulated(model):
         raise RequestError(Refusal.UNREADABLE, f"{source}: its numbers cannot be simulated")
 
 

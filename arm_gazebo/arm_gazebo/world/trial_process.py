@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, cast
 
 import mujoco
-import numpy as np
+
+from arm_gazebo.world.trial_steps import can_be_simulated
 
 NICENESS = 5
 """The control loop has precedence on the processor."""
-TRIAL_STEPS = 5
 MAX_PROBLEM_LENGTH = 2000
 
 
@@ -63,15 +63,7 @@ def _trial(request: dict[str, Any]) -> dict[str, object]:
 def _problem(text: str, path: str | None) -> str:
     """Return why a model that MuJoCo compiles cannot be simulated."""
     spec = mujoco.MjSpec.from_string(text) if path is None else mujoco.MjSpec.from_file(path)
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data, TRIAL_STEPS)
-    numbers = (model.body_mass, model.body_inertia, model.geom_rbound, data.xpos, data.geom_xpos)
-    # MuJoCo resets itself when a number is no longer finite.
-    was_reset = data.time < (TRIAL_STEPS - 0.5) * model.opt.timestep
-    if was_reset or not all(np.isfinite(values).all() for values in numbers):
-        return "its numbers cannot be simulated"
-    return ""
+    return "" if can_be_simulated(spec.compile()) else "its numbers cannot be simulated"
 
 
 def _data_bytes() -> int:
