@@ -1,4 +1,4 @@
-"""Goes through poses one after the other: publish, wait until it is reached, continue."""
+"""Goes through poses: publishes one, waits until it is reached, and goes on with the next."""
 
 from collections.abc import Mapping, Sequence
 from math import isfinite

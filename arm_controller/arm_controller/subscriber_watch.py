@@ -16,7 +16,7 @@ OTHERS_WAIT_S = 5.0
 
 
 class Subscribers(Enum):
-    """Who subscribes to the commands, in increasing order."""
+    """Who subscribes to the commands, the best last."""
 
     NONE = "none"
     OTHERS = "others"
@@ -65,7 +65,8 @@ class SubscriberWatch:
         if self._subscribers is Subscribers.CONTROLLER:
             return f"{self._controller} listens"
         if self._subscribers is Subscribers.OTHERS:
-            return f"only {', '.join(sorted(self._names))} listens, not {self._controller}"
+            verb = "listens" if len(self._names) == 1 else "listen"
+            return f"only {', '.join(sorted(self._names))} {verb}, not {self._controller}"
         return "nobody listens"
 
     def _kind_of(self, names: frozenset[str]) -> Subscribers:

@@ -1,4 +1,4 @@
-"""Write values as JSON and read them back: numbers, text, arrays, collections, dataclasses, enums.
+"""Writes values as JSON and reads them: numbers, text, arrays, collections, dataclasses, enums.
 
 Numbers keep their bits. A dataclass or an enum is named by its module and its name. Reading never
 imports a module outside of the suite, so that a file from a stranger cannot run code.

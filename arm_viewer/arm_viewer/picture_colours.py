@@ -56,11 +56,14 @@ def _pixels(picture: Picture) -> NDArray[Any]:
     row = picture.width * channels * kind.itemsize
     if not 0 < row <= picture.step or not picture.height:
         raise PictureError(
-            f"an image of {picture.width}x{picture.height} pixels of {picture.encoding} with "
-            f"rows of {picture.step} bytes"
+            f"an image of {picture.width}x{picture.height} pixels of {picture.encoding} cannot "
+            f"have rows of {picture.step} bytes"
         )
     if picture.data.size < picture.height * picture.step:
-        raise PictureError(f"{picture.data.size} bytes for {picture.height} rows of {picture.step}")
+        raise PictureError(
+            f"an image with {picture.height} rows of {picture.step} bytes has only "
+            f"{picture.data.size} bytes"
+        )
     rows = picture.data[: picture.height * picture.step].reshape(picture.height, picture.step)
     values = np.ascontiguousarray(rows[:, :row]).view(kind)
     return values.reshape(picture.height, picture.width, channels)

@@ -53,5 +53,5 @@ def test_says_who_subscribes():
     assert watch_of().describe() == "nobody listens"
     assert watch_of((0.0, {CONTROLLER})).describe() == "/position_controller listens"
     assert (
-        watch_of((0.0, {"/b", "/a"})).describe() == "only /a, /b listens, not /position_controller"
+        watch_of((0.0, {"/b", "/a"})).describe() == "only /a, /b listen, not /position_controller"
     )

@@ -87,7 +87,7 @@ class CommandPublisher:
 
     It declares the node's parameter `command_topic`. One thread calls `observe` and `publish`; the
     description arrives in the executor's thread. With several topics, the properties describe the
-    one with the fewest subscribers.
+    one that is least ready.
 
     Args:
         node: the node that publishes.

@@ -51,8 +51,8 @@ class JointStateInput:
             self._silence.hear(now_s)
         elif self._silence.notices(now_s):
             logger.warning(
-                "/%s has been silent for %g s: is the joint_state_broadcaster active, "
-                "the simulation paused?",
+                "/%s has been silent for %g s: is the joint_state_broadcaster inactive, "
+                "or the simulation paused?",
                 TOPIC,
                 PATIENCE_S,
             )

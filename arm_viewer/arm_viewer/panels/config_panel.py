@@ -35,7 +35,9 @@ class ConfigPanel:
     def build(self, gui: GuiApi) -> None:
         """Create the buttons."""
         with gui.add_folder("Configuration"):
-            save = gui.add_button("Save Config As", color="gray", hint="a file for RViz, too")
+            save = gui.add_button(
+                "Save Config As", color="gray", hint="a file that RViz also opens"
+            )
             load = gui.add_upload_button(
                 "Open Config", color="gray", hint="an RViz configuration: displays and view"
             )
