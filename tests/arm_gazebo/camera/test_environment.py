@@ -69,5 +69,5 @@ def test_the_profiles_say_what_makes_discovery_quick(name):
     text = (Path(sys.prefix) / "share/arm_gazebo/config" / f"{name}.xml").read_bytes()
     values = {e.tag.rpartition("}")[2]: e.text for e in etree.fromstring(text).iter()}
     assert values["count"] == "40"
-    assert values["maxInitialPeersRange"] == "64"
+    assert values["maxInitialPeersRange"] == "63"
     assert values["useBuiltinTransports"] == "false"

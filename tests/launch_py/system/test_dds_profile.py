@@ -76,7 +76,15 @@ def test_a_profile_makes_discovery_fast_and_wide(name):
     tree = etree.parse(profile_path(name))
     assert tree.findtext(".//d:initialAnnouncements/d:count", namespaces=NAMESPACE) == "40"
     ranges = [e.text for e in tree.iterfind(".//d:maxInitialPeersRange", NAMESPACE)]
-    assert ranges == ["64"]
+    assert ranges == ["63"]
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_all_peers_have_ports_in_the_last_domain(name):
+    tree = etree.parse(profile_path(name))
+    peers = tree.findtext(".//d:maxInitialPeersRange", namespaces=NAMESPACE)
+    # The last participant's port for user data: DDSI-RTPS 2.5, 9.6.2.3.
+    assert 7400 + 250 * 232 + 11 + 2 * (int(peers) - 1) <= 65535
 
 
 def test_launched_processes_may_stall_for_a_while():
