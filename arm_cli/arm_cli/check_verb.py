@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace) -> int:
         name: getattr(options, name)
         for name in ("file", "arguments", "package_path", "strict", "json", "urdf", "memory_limit")
     }
+    os.getcwd()  # Where it is gone, the process of the check could not say so.
     try:
         done = subprocess.run(
             [sys.executable, "-P", "-m", MODULE, json.dumps(words)],

@@ -1,5 +1,6 @@
 """Entry point of the `arm` command: finds the verb and runs it."""
 
+import errno
 import os
 import signal
 import sys
@@ -25,7 +26,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return int(signal.SIGINT)
     except BrokenPipeError:
-        return _leave_broken_pipe()
+        _discard_stdout()
+        return EXIT_BROKEN_PIPE
+    except OSError as error:
+        sentence = _describe_surroundings(error)
+        if not sentence:
+            raise
+        _discard_stdout()
+        sys.stderr.write(f"arm: {sentence}\n")
+        return 1
 
 
 def gz() -> int:
@@ -51,8 +60,11 @@ def _run(words: list[str]) -> int:
         say(_version())
         return 0
     try:
-        # The reader of a pipe sees each line as soon as it is printed.
-        sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
+        # The reader of a pipe sees each line as soon as it is printed. Names may have characters
+        # that the terminal's encoding lacks.
+        sys.stdout.reconfigure(  # pyright: ignore[reportAttributeAccessIssue]
+            line_buffering=True, errors="backslashreplace"
+        )
         code = ARM.run("arm", words)
         sys.stdout.flush()
         return code
@@ -60,11 +72,22 @@ def _run(words: list[str]) -> int:
         return stopped.exit_code
 
 
-def _leave_broken_pipe() -> int:
-    # The reader, for example `head`, has closed the pipe. Without this, Python's last flush of
-    # stdout would fail at exit.
+def _discard_stdout() -> None:
+    # The reader, for example `head`, has closed the pipe, or the disk is full. Without this,
+    # Python's last flush of stdout would fail at exit.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return EXIT_BROKEN_PIPE
+
+
+def _describe_surroundings(error: OSError) -> str | None:
+    """Return a sentence if the machine, and no input of the command, causes this error."""
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        where = f" {error.filename}" if error.filename else ""
+        return f"cannot write{where}: {os.strerror(error.errno)}"
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return "the current folder no longer exists; change to another one"
+    return None
 
 
 def _version() -> str:

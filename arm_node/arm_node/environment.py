@@ -4,7 +4,7 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import MutableMapping
+from collections.abc import MutableMapping, Sequence
 from pathlib import Path
 
 from arm_node.workarounds.torn_ports import remove_torn_ports
@@ -17,7 +17,9 @@ INTERFACE_PACKAGES = (
 )
 """Interface packages that the rclpy wheels lack and the distribution arm-interfaces provides."""
 
-
+MIDDLEWARE = "rmw_fastrtps_cpp"
+PACKAGES = Path("share", "ament_index", "resource_index", "packages")
+"""Where a prefix has a file for each of its packages."""
 LAST_DOMAIN = 232
 """Higher DDS domains would need port numbers that do not exist."""
 
@@ -28,6 +30,10 @@ class UnusableEnvironmentError(Exception):
 
 class MissingInterfacesError(UnusableEnvironmentError):
     """An interface package that the nodes need is not installed."""
+
+
+class MissingMiddlewareError(UnusableEnvironmentError):
+    """RMW_IMPLEMENTATION names a middleware that is not installed."""
 
 
 class InvalidDomainError(UnusableEnvironmentError):
@@ -44,11 +50,14 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
     Raises:
         MissingInterfacesError: an interface package of arm-interfaces is not installed.
         InvalidDomainError: ROS_DOMAIN_ID is not a number from 0 to 232.
+        MissingMiddlewareError: the package that RMW_IMPLEMENTATION names is not installed.
     """
     _check_domain(environ.get("ROS_DOMAIN_ID", ""))
     prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     if sys.prefix not in prefixes:
-        environ["AMENT_PREFIX_PATH"] = os.pathsep.join([*prefixes, sys.prefix])
+        prefixes.append(sys.prefix)
+        environ["AMENT_PREFIX_PATH"] = os.pathsep.join(prefixes)
+    _check_middleware(environ.get("RMW_IMPLEMENTATION", ""), prefixes)
     if "HOME" not in environ and "ROS_LOG_DIR" not in environ and "ROS_HOME" not in environ:
         environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir()) / f"ros-log-{os.getuid()}")
     missing = [name for name in INTERFACE_PACKAGES if importlib.util.find_spec(name) is None]
@@ -68,4 +77,13 @@ def _check_domain(text: str) -> None:
     if word and not (word.isascii() and word.isdigit() and int(word) <= LAST_DOMAIN):
         raise InvalidDomainError(
             f"ROS_DOMAIN_ID is {text!r}; it must be a whole number from 0 to {LAST_DOMAIN}"
+        )
+
+
+def _check_middleware(name: str, prefixes: Sequence[str]) -> None:
+    # rcl would end the process with exit code 102.
+    if name and not any((Path(prefix) / PACKAGES / name).exists() for prefix in prefixes):
+        raise MissingMiddlewareError(
+            f"RMW_IMPLEMENTATION is {name!r}, which is not installed; the ROS wheels have "
+            f"{MIDDLEWARE} only: unset RMW_IMPLEMENTATION"
         )

@@ -17,13 +17,14 @@ _UNSAFE = (
 )
 _ANY = re.compile(f"[\n{_UNSAFE}]")
 _ANY_BUT_INDENTED_LINES = re.compile(f"\n(?!  )|[{_UNSAFE}]")
+_POSITION = re.compile(r",? at /\S+\.cp?p?:\d+$")
 _ANY_BUT_LINES = re.compile(f"[{_UNSAFE}]")
 
 
 def first_line(error: BaseException) -> str:
-    """Return the first line of an error's message; rcl appends C source positions to it."""
+    """Return the first line of an error's message, without the C source position of rcl."""
     text = str(error).strip()
-    return text.splitlines()[0] if text else type(error).__name__
+    return _POSITION.sub("", text.splitlines()[0]) if text else type(error).__name__
 
 
 def printable(text: str) -> str:

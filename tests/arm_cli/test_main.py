@@ -1,5 +1,6 @@
 """The `arm` command: its help, its verbs and its errors."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -114,3 +115,40 @@ def test_an_error_without_an_interrupt_stays_an_error():
 
     with pytest.raises(ImportError, match="no module"):
         run_reporting_errors("arm check", check)
+
+
+def run_arm(script: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    command = f"{sys.executable} -m arm_cli"
+    return subprocess.run(
+        ["sh", "-c", script.replace("arm ", f"{command} ", 1)],
+        env={**os.environ, **variables},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_a_terminal_without_utf_8_gets_escapes(tmp_path):
+    file = tmp_path / "robot.urdf"
+    file.write_text("<robot name='humano\u00efde'><link name='base'/></robot>")
+    done = run_arm(f"arm check {file}", PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(r"robot 'humano\xefde'")
+
+
+@pytest.mark.parametrize("words", ["--help", "interface show std_msgs/msg/String", "check {file}"])
+def test_a_full_disk_is_one_sentence(tmp_path, words):
+    file = tmp_path / "robot.urdf"
+    file.write_text("<robot name='r'><link name='base'/></robot>")
+    done = run_arm(f"arm {words.format(file=file)} > /dev/full")
+    assert (done.returncode, done.stderr) == (1, "arm: cannot write: No space left on device\n")
+
+
+@pytest.mark.parametrize("words", ["check r.urdf", "launch x.launch.py", "pkg create foo"])
+def test_a_current_folder_that_was_removed_is_one_sentence(tmp_path, words):
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    done = run_arm(f"cd {folder} && rmdir {folder} && arm {words}")
+    assert done.returncode == 1
+    assert done.stderr == "arm: the current folder no longer exists; change to another one\n"

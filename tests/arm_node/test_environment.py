@@ -8,6 +8,7 @@ import pytest
 from arm_node.environment import (
     InvalidDomainError,
     MissingInterfacesError,
+    MissingMiddlewareError,
     prepare_environment,
 )
 
@@ -53,3 +54,26 @@ def test_what_ros_takes_for_a_domain_is_left_as_it_is(text):
     environment = {"HOME": "/home/me", "ROS_DOMAIN_ID": text}
     prepare_environment(environment)
     assert environment["ROS_DOMAIN_ID"] == text
+
+
+def test_a_middleware_that_is_not_installed_is_refused():
+    with pytest.raises(MissingMiddlewareError, match="'rmw_made_up_cpp', which is not installed"):
+        prepare_environment({"HOME": "/home/me", "RMW_IMPLEMENTATION": "rmw_made_up_cpp"})
+
+
+def test_a_middleware_of_a_sourced_ros_is_left_as_it_is(tmp_path):
+    index = tmp_path / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "rmw_made_up_cpp").touch()
+    prepare_environment(
+        {
+            "HOME": "/home/me",
+            "AMENT_PREFIX_PATH": str(tmp_path),
+            "RMW_IMPLEMENTATION": "rmw_made_up_cpp",
+        }
+    )
+
+
+@pytest.mark.parametrize("name", ["", "rmw_fastrtps_cpp"])
+def test_the_middleware_of_the_wheels_is_accepted(name):
+    prepare_environment({"HOME": "/home/me", "RMW_IMPLEMENTATION": name})

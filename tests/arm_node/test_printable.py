@@ -8,9 +8,20 @@ import pytest
 import launch_py.printable
 from arm_node import log_bridge
 from arm_node.log_bridge import RosLogHandler
-from arm_node.printable import printable, printable_document, printable_message
+from arm_node.printable import first_line, printable, printable_document, printable_message
 
 CLEAR = "\x1b[2J"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cannot make the folder: 13, at /project/src/rcl_logging_spdlog.cpp:154",
+        "cannot make the folder: 13\n, at /project/src/participant.cpp:234, at /src/rcl/node.c:252",
+    ],
+)
+def test_the_source_position_of_rcl_is_left_out(text):
+    assert first_line(RuntimeError(text)) == "cannot make the folder: 13"
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ from arm_cli.doctor.simulation import (
     check_qos,
     check_real_time_factor,
 )
-from arm_cli.errors import ArmCliError
+from arm_cli.errors import ArmCliError, CommandUsageError
 from arm_cli.names import this_domain
 from arm_cli.output import add_json_argument, colour, print_json, say, say_coloured
 from arm_cli.ros.connection import connect
@@ -138,8 +138,18 @@ def _examine_running() -> list[Diagnosis]:
             from arm_cli.doctor.ros_observer import observe
 
             return examine_running(observe(session))
+    except CommandUsageError as error:
+        return [Diagnosis.error(SIMULATION, str(error), _how_ros_starts(str(error)))]
     except ArmCliError as error:
         return [Diagnosis.error(SIMULATION, str(error), "start the simulation again")]
+
+
+def _how_ros_starts(reason: str) -> str:
+    if "log directory" in reason:
+        return "set ROS_LOG_DIR to a folder that can be written to"
+    if "peer" in reason:
+        return "correct or unset ROS_STATIC_PEERS"
+    return "correct the environment of this terminal, then run arm doctor again"
 
 
 def _line(finding: Diagnosis) -> str:

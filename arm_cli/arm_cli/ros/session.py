@@ -174,7 +174,7 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
     except RuntimeError as error:
         raise CommandUsageError(f"cannot start ROS: {first_line(error)}") from error
     try:
-        node = first_node(lambda: _make_node(name or f"_arm_cli_{os.getpid()}", use_sim_time))
+        node = _first_node(name or f"_arm_cli_{os.getpid()}", use_sim_time)
         try:
             with SingleThreadedExecutor() as executor:
                 executor.add_node(node)
@@ -188,6 +188,14 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
         raise CommandUsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error
     finally:
         try_shutdown()
+
+
+def _first_node(name: str, use_sim_time: bool) -> Node:
+    try:
+        return first_node(lambda: _make_node(name, use_sim_time))
+    except RuntimeError as error:
+        # For example a host in ROS_STATIC_PEERS that does not exist.
+        raise CommandUsageError(f"cannot start ROS: {first_line(error)}") from error
 
 
 def _make_node(name: str, use_sim_time: bool) -> Node:

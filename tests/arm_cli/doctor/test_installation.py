@@ -237,3 +237,25 @@ def test_the_command_prints_findings_fixes_and_an_exit_code(environ):
     assert "-> export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST" in done.stdout
     assert "simulation: not checked" in done.stdout
     assert done.stdout.splitlines()[-1].startswith("1 error, ")
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize(
+    ("variable", "value", "fix"),
+    [
+        ("ROS_LOG_DIR", "/dev/null/logs", "set ROS_LOG_DIR to a folder that can be written to"),
+        ("ROS_STATIC_PEERS", "no such host", "correct or unset ROS_STATIC_PEERS"),
+    ],
+)
+def test_what_keeps_ros_from_starting_has_a_fix(environ, variable, value, fix):
+    done = subprocess.run(
+        [sys.executable, "-m", "arm_cli", "doctor"],
+        env={**environ, variable: value},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 1, done.stderr
+    assert "error    simulation: cannot start ROS: " in done.stdout
+    assert f"-> {fix}\n" in done.stdout

@@ -68,3 +68,12 @@ def test_a_relative_name_becomes_absolute():
     with open_session() as session:
         assert session.full_name("_hidden/joint_states") == "/_hidden/joint_states"
         assert session.full_name("/tf") == "/tf"
+
+
+def test_a_host_that_does_not_exist_is_reported(monkeypatch):
+    monkeypatch.setenv("ROS_STATIC_PEERS", "no such host")
+    with (
+        pytest.raises(CommandUsageError, match=r"^cannot start ROS: .*peer no such host$"),
+        open_session(),
+    ):
+        pass
