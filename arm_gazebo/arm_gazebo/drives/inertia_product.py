@@ -30,6 +30,11 @@ class InertiaProduct:
             (row, entry, dof) for row, entry, dof in _terms(model) if dof in sources
         )
 
+    def terms(self) -> tuple[tuple[int, int, int, float], ...]:
+        """Return the terms in their order: row, index in `M`, input of `spread`, its factor."""
+        sources = {dof: (column, factor) for dof, column, factor in self._motions}
+        return tuple((row, entry, *sources[dof]) for row, entry, dof in self._terms)
+
     def __call__(self, inertia: Array, gains: Array) -> Array:
         """Return the products, shape (states, nv).
 

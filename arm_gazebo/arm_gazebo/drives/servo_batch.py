@@ -12,16 +12,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.drives.drive_constants import drive_constants
 from arm_gazebo.drives.driven_joint import LANDING_SPEED, SERVOED, DriveMode
 from arm_gazebo.drives.inertia_product import InertiaProduct
-from arm_gazebo.drives.servo import (
-    CHECK_EVERY_S,
-    SETTLE_S,
-    USABLE_EFFORT,
-    WAKE_DISTANCE,
-    Servo,
-)
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, TIME_CONSTANT_S, resistance
+from arm_gazebo.drives.servo import USABLE_EFFORT, WAKE_DISTANCE, Servo
+from arm_gazebo.drives.servo_tuning import EFFORT_SHARE
 from arm_gazebo.drives.setpoint_batch import CommandStreams, approach, held_back
 from arm_node.index_slice import as_slice
 
@@ -43,35 +38,25 @@ class ServoBatch:
     """
 
     def __init__(self, model: mujoco.MjModel, servo: Servo, copies: int) -> None:
-        joints, tuning, timing = servo.joints, servo.tuning, servo.timing
-        count = len(joints)
-        self._modes = tuple(servo.mode(index) for index in range(count))
-        self._copies = copies
-        self._period_s = timing.period_s
-        self._rate_per_s = servo.proportional_gain / timing.period_s
-        self._lead_s = TIME_CONSTANT_S - timing.step_s
-        self._effort = np.array([joint.effort for joint in joints])
-        self._speed = np.array([joint.velocity for joint in joints])
-        self._velocity_limit = np.array([joint.velocity_limit for joint in joints])
-        self._lower = np.array([joint.lower for joint in joints])
-        self._upper = np.array([joint.upper for joint in joints])
-        bounds = [tuning.bounds(index) for index in range(count)]
-        self._braking = np.array([bound.braking for bound in bounds])
-        self._jerkless = np.array([bound.jerkless for bound in bounds])
-        self._slack = np.array([bound.slack for bound in bounds])
-        friction, drag = resistance(model, tuning.coupling)
-        self._friction, self._drag = np.array(friction), np.array(drag)
-        self._compliance = 1.0 / tuning.stiffness
-        self._followers_inertia = tuning.followers
-        self._followers = tuning.follower_ratios()
-        self._product = InertiaProduct(model, tuning.coupling / timing.period_s)
-        dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
-        self._dofs = as_slice(dofs)
-        self._addresses = as_slice(np.array([j.qpos_address for j in joints], dtype=np.intp))
-        self._diagonal = as_slice(model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1)
-        self._find_columns(self._modes)
-        self._settle_ticks = math.ceil(SETTLE_S / timing.period_s)
-        self._check_ticks = max(1, round(CHECK_EVERY_S / timing.period_s))
+        constants = drive_constants(model, servo)
+        self._copies, count = copies, len(servo.joints)
+        self._period_s, self._rate_per_s = constants.period_s, constants.rate_per_s
+        self._lead_s = constants.lead_s
+        self._effort, self._speed = constants.effort, constants.speed
+        self._velocity_limit = constants.velocity_limit
+        self._lower, self._upper = constants.lower, constants.upper
+        self._braking, self._jerkless = constants.braking, constants.jerkless
+        self._slack = constants.slack
+        self._friction, self._drag = constants.friction, constants.drag
+        self._compliance = constants.compliance
+        self._followers_inertia = constants.followers_inertia
+        self._followers = constants.followers
+        self._product = InertiaProduct(model, servo.tuning.coupling / constants.period_s)
+        self._dofs, self._addresses = as_slice(constants.dofs), as_slice(constants.addresses)
+        self._diagonal = as_slice(constants.diagonal)
+        self._find_columns(constants.modes)
+        self._settle_ticks = constants.settle_ticks
+        self._check_ticks = constants.check_ticks
         shape = (copies, count)
         self._ticks = np.zeros((copies, 1), dtype=np.int64)
         self._awake_ticks = np.full(copies, self._settle_ticks)
