@@ -11,6 +11,7 @@ GazeboError
 │   └── MeshError   a mesh file cannot be used
 ├── TimingError     invalid control rate or physics step
 ├── BatchError      copies of a simulation cannot be made, or not commanded this way
+│   └── MissingWarpError  copies on a GPU need MuJoCo Warp, which is not installed
 ├── RecordingError  a recording cannot be written, read or run again
 ├── FaultError      a requested fault is not possible here
 ├── SimSettingsError   invalid parameter of the simulation node
@@ -64,6 +65,10 @@ class SimSettingsError(GazeboError):
 
 class BatchError(GazeboError):
     """Copies of a simulation cannot be made, or not commanded this way; the message says why."""
+
+
+class MissingWarpError(BatchError, ImportError):
+    """MuJoCo Warp is not installed; the message tells how to install it."""
 
 
 class RecordingError(GazeboError):

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
+from arm_gazebo.errors import MissingWarpError
 from arm_node.environment import prepare_environment
 from arm_sim.errors import MissingPackageError
 
@@ -38,7 +39,7 @@ def import_all(packages: Iterable[str]) -> None:
             if not module.name.endswith((".__main__", ".pytest_plugin")):
                 try:
                     importlib.import_module(module.name)
-                except MissingPackageError:
+                except (MissingPackageError, MissingWarpError):
                     # A part that needs an extra says so.
                     continue
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from arm_gazebo.batch.copies import CommandBounds, Copies
+from arm_gazebo.batch.gpu_device import check_device
 from arm_gazebo.batch.physics_batch import PhysicsBatch
 from arm_gazebo.batch.serial_batch import SerialBatch
-from arm_gazebo.batch.warp_batch import WarpBatch
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.physics.simulation import Simulation
 
@@ -29,13 +29,18 @@ def make_copies(
         hardware: its hardware components, whose claimed interfaces bound the commands.
         copies: number of copies.
         threads: number of threads that step many copies; 0 for one on each core.
-        device: "host", or "cuda" for MuJoCo Warp on a GPU.
+        device: "host", or "cuda" for MuJoCo Warp on a GPU; "cuda:1" for a certain one.
 
     Raises:
-        BatchError: there are no copies, no such device, or no MuJoCo Warp.
+        BatchError: there are no copies, no such device or no MuJoCo Warp, or MuJoCo Warp cannot
+            simulate them.
     """
     bounds = CommandBounds(simulation, hardware)
     if device != HOST:
+        check_device(device)
+        # It imports Warp, which only the extra `gpu` installs.
+        from arm_gazebo.batch.gpu.warp_batch import WarpBatch
+
         return WarpBatch(simulation, bounds, copies, device)
     if copies <= SERIAL_COPIES:
         return SerialBatch(simulation, bounds, copies)

@@ -41,8 +41,9 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         restart: see `ArmEnv`.
         max_episode_steps: actions after which an episode is truncated; None for never.
         threads: number of threads; 0 for one on each core. A few copies run in the caller's thread.
-        device: "host", or "cuda" for MuJoCo Warp on a GPU: many more copies, whose numbers are
-            close to those of single environments, but not equal. Needs the extra `gpu`.
+        device: "host", or "cuda" for MuJoCo Warp on a GPU ("cuda:1" for a certain one): many more
+            copies, whose numbers are close to those of single environments, but not equal. Needs
+            the extra `gpu`.
         simulation: see `ArmEnv`.
     """
 
@@ -66,6 +67,7 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
 
         Raises:
             CallError, DescriptionError, GazeboError, ArmControlError: see `ArmEnv`.
+            BatchError: there is no such device, or MuJoCo Warp cannot simulate the copies.
         """
         self.metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}
         self.num_envs = num_envs

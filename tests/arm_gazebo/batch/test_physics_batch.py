@@ -1,9 +1,7 @@
 """Copies of a simulation: each to the bit like the simulation alone."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -193,19 +191,4 @@ def test_the_kind_of_batch_follows_from_the_number_of_copies(tmp_path: Path):
     physics, hardware = sim.parts.physics, sim.parts.robot.hardware
     assert isinstance(make_copies(physics, hardware, SERIAL_COPIES), SerialBatch)
     assert isinstance(make_copies(physics, hardware, SERIAL_COPIES + 1), PhysicsBatch)
-    sim.close()
-
-
-def test_a_gpu_that_is_not_there_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    sim = simulation(tmp_path, "arm", ARM, "position")
-    physics, hardware = sim.parts.physics, sim.parts.robot.hardware
-    for module in ("warp", "mujoco_warp"):
-        monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(BatchError, match=r"MuJoCo Warp; pip install 'arm-suite\[gpu\]'"):
-        make_copies(physics, hardware, 2, device="cuda")
-    without = SimpleNamespace(get_cuda_device_count=lambda: 0)
-    for module in ("warp", "mujoco_warp"):
-        monkeypatch.setitem(sys.modules, module, without)
-    with pytest.raises(BatchError, match="a GPU that CUDA finds, and there is none"):
-        make_copies(physics, hardware, 2, device="cuda")
     sim.close()
