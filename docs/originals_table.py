@@ -85,13 +85,13 @@ class Part:
     rows: tuple[Row, ...]
 
 
-def read_parts(file: Path = FILE) -> tuple[Part, ...]:
+def read_parts() -> tuple[Part, ...]:
     """Return the table.
 
     Raises:
         ValueError: a row has what no row can have.
     """
-    parts: dict[str, dict[str, Any]] = yaml.safe_load(file.read_text())
+    parts: dict[str, dict[str, Any]] = yaml.safe_load(FILE.read_text())
     return tuple(
         Part(title, tuple(_row(name, content) for name, content in rows.items()))
         for title, rows in parts.items()

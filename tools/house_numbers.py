@@ -93,11 +93,11 @@ def product(packages: Iterable[Path]) -> dict[str, Module]:
     return modules
 
 
-def installed_packages(root: Path = ROOT) -> list[Path]:
+def installed_packages() -> list[Path]:
     """Return the folders of Python packages that the wheel of the suite installs."""
-    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     wheel = project["tool"]["hatch"]["build"]["targets"]["wheel"]
-    return [root / path for path in wheel["packages"]]
+    return [ROOT / path for path in wheel["packages"]]
 
 
 def numbers(modules: Mapping[str, Module]) -> dict[str, Sequence[str] | int]:

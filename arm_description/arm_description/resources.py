@@ -46,22 +46,16 @@ class ResourceFinder:
         self._used: dict[str, dict[Path, PackagePlace]] = {}
 
     @classmethod
-    def of_description(
-        cls,
-        urdf: str,
-        package_path: Sequence[Path] = (),
-        environ: Mapping[str, str] = os.environ,
-    ) -> "ResourceFinder":
+    def of_description(cls, urdf: str, package_path: Sequence[Path] = ()) -> "ResourceFinder":
         """Return the finder of a description, which may contain its own path.
 
         Args:
             urdf: the description's text.
             package_path: folders to search before those that the description names.
-            environ: the environment variables.
         """
         source = source_of(urdf)
         given = dict.fromkeys((*package_path, *source.package_path))
-        return cls(source.file, tuple(given), environ)
+        return cls(source.file, tuple(given))
 
     @property
     def used(self) -> Mapping[str, tuple[PackagePlace, ...]]:

@@ -48,7 +48,7 @@ class GoalSender:
         """Return whether the action has a server."""
         return self._client.server_is_ready()
 
-    def wait_until_known(self, timeout_s: float = KNOWN_TIMEOUT_S) -> None:
+    def wait_until_known(self) -> None:
         """Wait until the server has discovered this client.
 
         An answer that a server sends earlier is lost, and a goal must not be sent twice. A server
@@ -56,7 +56,7 @@ class GoalSender:
         """
         check = DiscoveryCheck.with_server(self._session.node, f"{self.name}/_action/send_goal")
         try:
-            self._session.wait_until(lambda: check.complete, timeout_s=timeout_s)
+            self._session.wait_until(lambda: check.complete, timeout_s=KNOWN_TIMEOUT_S)
         finally:
             check.close()
 

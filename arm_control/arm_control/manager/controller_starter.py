@@ -29,17 +29,16 @@ ROOT = "/"
 logger = logging.getLogger(__name__)
 
 
-def manager_settings(parameters: ParametersByNode, namespace: str = ROOT) -> ManagerSettings:
-    """Return the settings of the controller manager.
+def manager_settings(parameters: ParametersByNode) -> ManagerSettings:
+    """Return the settings of a controller manager in the root namespace.
 
     Args:
         parameters: a parameter file's content.
-        namespace: the manager's namespace, with the leading slash.
 
     Raises:
         ParameterError: a parameter has the wrong type or value.
     """
-    given = parameters.given(MANAGER, namespace)
+    given = parameters.given(MANAGER, ROOT)
     return build_parameters(ManagerSettings, given_values(specs_of(ManagerSettings), given))
 
 

@@ -62,17 +62,16 @@ class MeshData:
         return bool(np.cross(sides[:, 0], sides[:, 1]).any())
 
 
-def merged(vertices: NDArray[np.float32], rgba: Color | None = None) -> MeshData:
+def merged(vertices: NDArray[np.float32]) -> MeshData:
     """Return a mesh from separate triangles, with equal corners merged into one vertex.
 
     Args:
         vertices: shape (3 f, 3), three rows for each triangle.
-        rgba: colour of the mesh.
     """
     with np.errstate(invalid="ignore"):  # `check` reports NaN.
         rows = np.ascontiguousarray(vertices + np.float32(0))  # -0 and 0 are the same.
     first, index = _unique(rows)
-    return MeshData(rows[first].astype(np.float64), index.reshape(-1, 3).astype(np.int32), rgba)
+    return MeshData(rows[first].astype(np.float64), index.reshape(-1, 3).astype(np.int32))
 
 
 def _unique(rows: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

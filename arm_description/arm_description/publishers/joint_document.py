@@ -17,6 +17,8 @@ from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Joint, JointLimit
 from arm_description.urdf.xml_document import parse_xml
 
+TOPIC = "robot_description"
+"""The name of the document in messages."""
 COLLADA_VERSION = (1, 5)
 """The first version of COLLADA with joints."""
 NON_SCALAR_TYPES = ("gearbox", "revolute2", "ball", "screw", "universal", "fixed")
@@ -25,20 +27,20 @@ NON_SCALAR_TYPES = ("gearbox", "revolute2", "ball", "screw", "universal", "fixed
 _logger = logging.getLogger(__name__)
 
 
-def read_joints(text: str, source: str = "robot_description") -> tuple[Joint, ...]:
+def read_joints(text: str) -> tuple[Joint, ...]:
     """Return the joints in document order; those of SDF and COLLADA have no frames.
 
     Raises:
         XmlError: the text is not XML.
         UrdfError: the document does not describe a robot, or a joint lacks a limit.
     """
-    root = parse_xml(text, source)
+    root = parse_xml(text, TOPIC)
     readers = {"sdf": _sdf_joints, "COLLADA": _collada_joints}
     read = readers.get(str(root.tag), _urdf_joints)
     try:
         return tuple(read(root))
     except UrdfError as error:
-        raise UrdfError(f"{source}, {error}") from error
+        raise UrdfError(f"{TOPIC}, {error}") from error
 
 
 def _urdf_joints(root: etree._Element) -> Iterator[Joint]:

@@ -161,11 +161,11 @@ class SdfElement:
         child = self.child(tag)
         return default if child is None else child._text()
 
-    def flag(self, tag: str, default: bool = False) -> bool:
-        """Return a child's text as a boolean, or a default."""
+    def flag(self, tag: str) -> bool:
+        """Return a child's text as a boolean; False if there is no such child."""
         child = self.child(tag)
         if child is None:
-            return default
+            return False
         if child._text().lower() not in _BOOLEANS:
             raise child.error(f"has '{child._text()}', which is neither true nor false")
         return _BOOLEANS[child._text().lower()]

@@ -39,9 +39,7 @@ FORMATS = (
 CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
 
 
-def parse_cameras(
-    description: Description, source: str = "robot_description"
-) -> tuple[CameraSensor, ...]:
+def parse_cameras(description: Description) -> tuple[CameraSensor, ...]:
     """Return the cameras of a URDF, in document order.
 
     A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
@@ -51,7 +49,7 @@ def parse_cameras(
         SensorError: a value is invalid; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
-    root = as_document(description, source).root
+    root = as_document(description).root
     links = [str(link.get("name")) for link in root.findall("link")]
     cameras: list[CameraSensor] = []
     taken: dict[str, CameraSensor] = {}

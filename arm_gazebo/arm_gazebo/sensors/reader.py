@@ -33,22 +33,19 @@ def sensor_type(element: Any) -> str | None:
     return TYPES.get(str(element.get("type", "")).strip())
 
 
-def parse_link_sensors(
-    description: Description, robot: Robot, source: str = "robot_description"
-) -> tuple[LinkSensor, ...]:
+def parse_link_sensors(description: Description, robot: Robot) -> tuple[LinkSensor, ...]:
     """Return the sensors of a description except cameras, in document order.
 
     Args:
         description: the robot description.
         robot: the robot parsed from it.
-        source: name of the description in messages.
 
     Raises:
         SensorError: a value is invalid; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
     sensors: list[LinkSensor] = []
-    for reference, element in sensor_elements(as_document(description, source).root):
+    for reference, element in sensor_elements(as_document(description).root):
         kind = sensor_type(element) or ""
         sensor_class = SENSORS.get(kind)
         if sensor_class is None:

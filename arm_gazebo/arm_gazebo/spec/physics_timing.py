@@ -30,17 +30,12 @@ class PhysicsTiming:
         return self.period_s / self.steps
 
 
-def physics_timing(
-    update_rate_hz: float,
-    fixed_step_s: float | None = None,
-    largest_step_s: float = MAX_STEP_S,
-) -> PhysicsTiming:
-    """Return the largest physics step that divides the control period.
+def physics_timing(update_rate_hz: float, fixed_step_s: float | None = None) -> PhysicsTiming:
+    """Return the largest physics step up to `MAX_STEP_S` that divides the control period.
 
     Args:
         update_rate_hz: control rate.
         fixed_step_s: the step that the user fixed; it must divide the period. None to choose one.
-        largest_step_s: upper bound on a chosen step.
 
     Raises:
         TimingError: the rate is not above 0, the fixed step does not divide the period, or a step
@@ -59,7 +54,7 @@ def physics_timing(
         )
     if fixed_step_s is None:
         # The margin keeps 500 Hz at one step of 2 ms despite rounding.
-        return PhysicsTiming(period_s, math.ceil(period_s / largest_step_s * (1 - DIVIDES_WITHIN)))
+        return PhysicsTiming(period_s, math.ceil(period_s / MAX_STEP_S * (1 - DIVIDES_WITHIN)))
     steps = max(1, round(period_s / fixed_step_s))
     if abs(steps * fixed_step_s - period_s) > DIVIDES_WITHIN * period_s:
         raise TimingError(
