@@ -9,11 +9,10 @@ from typing import IO
 import lxml.etree as etree
 
 from arm_description.errors import MeshFileError
+from arm_description.mesh.collada import MAX_TEXT
 from arm_description.mesh.scene_graph import SceneNode, check_scene
 
 MODEL = "3d/3dmodel.model"
-MAX_TEXT = 10_000_000
-"""Bytes that libxml2 accepts in one element, unless told to accept any size."""
 EXTERNAL = SceneNode(1, ())
 BROKEN = (
     *(zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError),
