@@ -109,8 +109,16 @@ def _as_text(check: "DescriptionCheck | WorldCheck", summary: object) -> str:
     for finding in check.findings:
         indented = printable_message(str(finding)).replace("\n", f"\n{'':{width + 4}}")
         lines.append(f"  {finding.outcome.value:<{width}}  {indented}")
-    total = ", ".join(f"{count} {word}" for word, count in counts.items()) or "no findings"
+    total = ", ".join(_counted(count, word) for word, count in counts.items()) or "no findings"
     return "\n".join([*lines, f"{'usable' if check.is_usable else 'not usable'}: {total}"])
+
+
+def _counted(count: int, word: str) -> str:
+    return (
+        f"{count} {word}s"
+        if count > 1 and word in ("note", "warning", "error")
+        else f"{count} {word}"
+    )
 
 
 def _as_json(check: "DescriptionCheck | WorldCheck", kind: str, summary: Any) -> str:

@@ -3,7 +3,7 @@
 import argparse
 import re
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from arm_node.printable import printable
 
@@ -11,6 +11,10 @@ EXIT_USAGE = 2
 LEAST_NUMBER, LARGEST_NUMBER = 1e-9, 2e9
 """Limits of times in seconds and of rates: ROS counts nanoseconds, and seconds in 32 bits."""
 LARGEST_WHOLE_NUMBER = 2**63 - 1
+
+
+_OF_ANY_LENGTH = (argparse.ZERO_OR_MORE, argparse.REMAINDER)
+"""Positional arguments that argparse names as required, although it accepts none."""
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -22,6 +26,17 @@ class CommandParser(argparse.ArgumentParser):
         # Accepted because command lines for ros2 use them. There is no daemon here.
         self.add_argument("--no-daemon", action="store_true", help=argparse.SUPPRESS)
         self.add_argument("--spin-time", type=float, metavar="SECONDS", help=argparse.SUPPRESS)
+
+    def add_argument(self, *names: str, **settings: Any) -> argparse.Action:
+        """Add an argument; the parser's error about missing ones names only required ones."""
+        action = super().add_argument(*names, **settings)
+        if not action.option_strings and action.nargs in (
+            argparse.ZERO_OR_MORE,
+            argparse.REMAINDER,
+        ):
+            # argparse calls them required, and still accepts none.
+            action.required = False
+        return action
 
     def parse_words(self, words: Sequence[str]) -> argparse.Namespace:
         """Return the parsed options; a mistake ends the process with exit code 2."""

@@ -48,6 +48,17 @@ def test_an_unknown_verb_suggests_a_similar_one(capsys, word, sentence):
     assert (captured.out, captured.err) == ("", sentence)
 
 
+def test_optional_arguments_are_not_missing(capsys):
+    with pytest.raises(SystemExit):
+        main(["check"])
+    with pytest.raises(SystemExit):
+        main(["run", "arm_controller"])
+    assert capsys.readouterr().err == (
+        "arm check: the following arguments are required: FILE; see arm check --help\n"
+        "arm run: the following arguments are required: executable_name; see arm run --help\n"
+    )
+
+
 def test_help_imports_no_verb():
     code = (
         "import sys; from arm_cli.main import main; main(['--help']); "

@@ -1,6 +1,7 @@
 """The verbs of `arm control` that change controllers or hardware components."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.command_parser import positive_number
@@ -14,6 +15,7 @@ from arm_cli.control.manager import (
     refuse,
     suggestion,
 )
+from arm_cli.names import absolute_name
 from arm_cli.output import complain, say, say_document
 from arm_cli.verb import VerbFunctions
 from arm_cli.word_completion import complete_with
@@ -37,6 +39,9 @@ def add_load_controller_arguments(parser: argparse.ArgumentParser) -> None:
         loadable_controllers,
     )
     parser.add_argument(
+        "param_file", nargs="?", help="YAML file with the controller's parameters and type"
+    )
+    parser.add_argument(
         "--set-state", choices=("inactive", "active"), help="also bring it to this state"
     )
     add_manager_arguments(parser)
@@ -52,6 +57,8 @@ def load_controller(options: argparse.Namespace) -> int:
     with ask_manager(options) as manager:
         if name in manager.states():
             say(f"Controller : {name} already loaded, skipping load_controller!")
+        elif refusal := _give_parameters(manager, options):
+            return refuse(refusal)
         elif manager.load(name):
             say(f"Successfully loaded controller {name}")
         else:
@@ -65,6 +72,25 @@ def load_controller(options: argparse.Namespace) -> int:
             return refuse(f"Error activating controller : {name}, check controller_manager logs")
     say(f"Successfully loaded controller {name} into state {state}")
     return 0
+
+
+def _give_parameters(manager: "ControllerManagerClient", options: argparse.Namespace) -> str:
+    """Tell the manager the controller's parameter file and type; return why it refuses, or ""."""
+    if options.param_file is None:
+        return ""
+    if not Path(options.param_file).exists():
+        return f"Controller parameter file : {options.param_file} does not exist, Aborting!"
+    # Imported here, because the other verbs do without it.
+    from arm_control.errors import ParameterError
+    from arm_control.manager.parameter_file import ControllerParameterFile, manager_parameters
+
+    namespace = absolute_name(options.controller_manager).rpartition("/")[0] or "/"
+    try:
+        file = ControllerParameterFile(options.param_file)
+        parameters = manager_parameters(options.controller_name, namespace, [file])
+    except ParameterError as error:
+        return str(error)
+    return manager.set_parameters(parameters) if parameters else ""
 
 
 def add_unload_controller_arguments(parser: argparse.ArgumentParser) -> None:

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from arm_cli.errors import CommandUsageError
 from arm_cli.graph_files import to_dot, to_mermaid, write_text
 from arm_cli.output import say_document
 from arm_cli.ros.connection import connect
@@ -38,9 +39,14 @@ def run(options: argparse.Namespace) -> None:
     """Print or write the graph.
 
     Raises:
-        CommandUsageError: the file cannot be written.
+        CommandUsageError: the file cannot be written, or its suffix names no format.
     """
     suffix = Path(options.output).suffix if options.output else ""
+    if suffix and not options.format and suffix not in SUFFIXES:
+        raise CommandUsageError(
+            f"no format for {suffix!r} of {options.output}; there is {', '.join(SUFFIXES)}, or "
+            f"--format {{{','.join(WRITERS)}}}"
+        )
     write = WRITERS[options.format or SUFFIXES.get(suffix, "mermaid")]
     with connect() as session:
         from arm_cli.ros.graph import Graph

@@ -31,6 +31,7 @@ class TopicListener:
         self.topic = session.full_name(topic)
         self._session = session
         self._graph = Graph(session)
+        self._subscribed = ""
 
     def find_class(self) -> type:
         """Return the message class of the topic as soon as it is discovered.
@@ -68,11 +69,18 @@ class TopicListener:
     ) -> Subscription:
         """Subscribe; the callback gets the messages, as bytes if `raw`."""
         node = self._session.node
+        self._subscribed = f"{message_class.__module__.split('.')[0]}/msg/{message_class.__name__}"
         return node.create_subscription(message_class, self.topic, callback, profile, raw=raw)
 
     def silence(self) -> str:
         """Return a notice that says why no message has arrived yet."""
-        if self._graph.publishers(self.topic):
+        types = sorted({publisher.topic_type for publisher in self._graph.publishers(self.topic)})
+        if types and self._subscribed and self._subscribed not in types:
+            return (
+                f"waiting for a {self._subscribed} on {self.topic}; "
+                f"its publishers send {', '.join(types)}"
+            )
+        if types:
             return f"waiting for a message on {self.topic}"
         return f"waiting for a publisher of {self.topic}"
 

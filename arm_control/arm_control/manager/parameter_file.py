@@ -1,6 +1,6 @@
 """Finds the parameters of one controller in the content of a ROS parameter file."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -143,6 +143,42 @@ class ControllerParameterFile(ParametersByNode):
         if not isinstance(content, dict):
             raise ParameterError(f"{source} contains no nodes")
         super().__init__(cast(dict[str, Any], content), source)
+
+
+def manager_parameters(
+    controller: str, namespace: str, files: Sequence[ControllerParameterFile]
+) -> dict[str, str | list[str]]:
+    """Return the parameters that a manager needs before it loads a controller of these files.
+
+    Args:
+        controller: name of the controller.
+        namespace: namespace of its node, with the leading slash.
+        files: parameter files; the first one that has a value counts.
+
+    Raises:
+        ParameterError: see `ParametersByNode.lookup`, or a value has a wrong type.
+    """
+
+    def found(parameter: str) -> Any:
+        values = (file.lookup(controller, namespace, parameter) for file in files)
+        return next((value for value in values if value is not None), None)
+
+    parameters: dict[str, str | list[str]] = {}
+    if paths := [str(file.path) for file in files if file.mentions(controller, namespace)]:
+        parameters[f"{controller}.params_file"] = paths
+    type_name = found("type")
+    if type_name is not None:
+        if not isinstance(type_name, str):
+            raise ParameterError(f"the type of controller '{controller}' is {type_name!r}")
+        parameters[f"{controller}.type"] = type_name
+    if fallbacks := found("fallback_controllers"):
+        if not isinstance(fallbacks, list) or not all(isinstance(f, str) for f in fallbacks):
+            raise ParameterError(
+                f"fallback_controllers of controller '{controller}' must be a list of names, "
+                f"not {fallbacks!r}"
+            )
+        parameters[f"{controller}.fallback_controllers"] = fallbacks
+    return parameters
 
 
 def _flat(values: Mapping[Any, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

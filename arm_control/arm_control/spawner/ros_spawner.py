@@ -2,12 +2,11 @@
 
 import logging
 from collections.abc import Sequence
-from typing import Any
 
 from rclpy.node import Node
 
-from arm_control.errors import ParameterError, SpawnError
-from arm_control.manager.parameter_file import ControllerParameterFile
+from arm_control.errors import SpawnError
+from arm_control.manager.parameter_file import ControllerParameterFile, manager_parameters
 from arm_control.spawner.command_line import absolute_name
 from arm_control.spawner.ros_retrying_caller import RetryingCaller
 from arm_control.spawner.ros_unspawner import UNLOAD_SERVICES, unload_controllers
@@ -127,29 +126,7 @@ class _Spawner:
         if controller.ros_args:
             parameters[f"{name}.node_options_args"] = controller.ros_args
         files = [self._files[path] for path in dict.fromkeys(controller.param_files)]
-        paths = [str(file.path) for file in files if file.mentions(name, self._namespace)]
-        if paths:
-            parameters[f"{name}.params_file"] = paths
-        type_name = self._from_files(name, files, "type")
-        if type_name is not None:
-            if not isinstance(type_name, str):
-                raise ParameterError(f"the type of controller '{name}' is {type_name!r}")
-            parameters[f"{name}.type"] = type_name
-        fallbacks = self._from_files(name, files, "fallback_controllers")
-        if fallbacks:
-            if not isinstance(fallbacks, list) or not all(isinstance(f, str) for f in fallbacks):
-                raise ParameterError(
-                    f"fallback_controllers of controller '{name}' must be a list of names, "
-                    f"not {fallbacks!r}"
-                )
-            parameters[f"{name}.fallback_controllers"] = fallbacks
-        return parameters
-
-    def _from_files(
-        self, name: str, files: Sequence[ControllerParameterFile], parameter: str
-    ) -> Any:
-        values = (file.lookup(name, self._namespace, parameter) for file in files)
-        return next((value for value in values if value is not None), None)
+        return parameters | manager_parameters(name, self._namespace, files)
 
     def _chosen_namespace(self) -> str:
         own, given = self._node.get_namespace(), self._options.namespace

@@ -189,6 +189,8 @@ def _reason(error: Exception) -> str:
         if isinstance(cause, OSError) and cause.filename:
             return f"cannot read {cause.filename}: {cause.strerror}"
         cause = getattr(cause, "exc", None)
+    if wrapped is not None and str(error.args[0]).startswith("<class "):
+        return _first_line(wrapped)
     return _first_line(wrapped if isinstance(wrapped, DescriptionError) else error)
 
 

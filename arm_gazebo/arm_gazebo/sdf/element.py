@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from arm_description.errors import XmlError
 from arm_description.mesh.data import Color
-from arm_description.transforms import rotation_from_rpy, transform
+from arm_description.transforms import rotation_from_quaternion, rotation_from_rpy, transform
 from arm_description.urdf.element import written_name
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import WorldError
@@ -205,13 +205,28 @@ class SdfElement:
         pose = self.child("pose")
         if pose is None:
             return SdfPose(np.eye(4))
-        if pose.attribute("rotation_format") not in ("", "euler_rpy"):
-            raise pose.error("has a rotation_format other than euler_rpy")
-        x, y, z, *rpy = pose._numbers(6) if pose._text() else (0.0,) * 6
-        if pose.boolean("degrees"):
-            rpy = [math.radians(angle) for angle in rpy]
-        matrix = transform(rotation_from_rpy(rpy), (x, y, z))
+        matrix = pose._transform() if pose._text() else np.eye(4)
         return SdfPose(matrix, pose.attribute("relative_to"))
+
+    def _transform(self) -> NDArray[np.float64]:
+        """Return the transform (4, 4) that a <pose> holds."""
+        match self.attribute("rotation_format"):
+            case "" | "euler_rpy":
+                x, y, z, *rpy = self._numbers(6)
+                if self.boolean("degrees"):
+                    rpy = [math.radians(angle) for angle in rpy]
+                return transform(rotation_from_rpy(rpy), (x, y, z))
+            case "quat_xyzw":
+                x, y, z, *quaternion = self._numbers(7)
+                norm = math.hypot(*quaternion)
+                if norm == 0.0:
+                    raise self.error("has a quaternion of length 0")
+                unit = np.array(quaternion) / norm
+                return transform(rotation_from_quaternion(unit), (x, y, z))
+            case other:
+                raise self.error(
+                    f"has the rotation_format {other!r}; there is euler_rpy, quat_xyzw"
+                )
 
     def unread(self) -> "Iterator[Unread]":
         """Yield the elements and attributes that have not been read."""

@@ -144,6 +144,19 @@ def test_an_included_file_that_does_not_exist_is_named_once(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        ("$(env NO_SUCH_VARIABLE)", "environment variable 'NO_SUCH_VARIABLE' is not set"),
+        ("$(eval 1 +)", "invalid syntax (<string>, line 1)"),
+        ("${1/0}", "division by zero"),
+    ],
+)
+def test_the_reason_of_an_error_comes_once(tmp_path, value, reason):
+    file = write(tmp_path / "robot.xacro", f'<link name="{value}"/>')
+    assert refusal(file) == f"cannot expand {file}, line 2: {reason}"
+
+
 def test_an_error_in_a_macro_names_the_macro_its_file_and_its_line(tmp_path):
     inner = write(
         tmp_path / "inner.xacro",

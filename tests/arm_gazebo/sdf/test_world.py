@@ -157,6 +157,13 @@ def test_poses_are_relative_to_models_and_frames(world):
     assert data.body("hat").xmat.reshape(3, 3)[:, 2] == pytest.approx([0, -1, 0], abs=1e-6)
 
 
+def test_a_rotation_may_be_a_quaternion(world):
+    attributes = 'rotation_format="quat_xyzw"'
+    _, data, _ = world(model("hat", "1 2 3 0.7 0 0 0.7", head=STATIC, attributes=attributes))
+    assert data.body("hat").xpos == pytest.approx([1, 2, 3])
+    assert data.body("hat").xmat.reshape(3, 3)[:, 2] == pytest.approx([0, -1, 0], abs=1e-6)
+
+
 def test_links_of_a_model_keep_their_frames(world):
     _, data, _ = world(
         '<model name="lamp"><static>true</static><link name="foot"/>'
@@ -326,6 +333,14 @@ def test_attributes_without_effect_are_listed_too(world):
         (model("a") + model("a"), "already taken"),
         ("<include><uri>model://nowhere</uri></include>", "is not available: no file"),
         ("<include/>", "needs a <uri>"),
+        (
+            model("a", "0 0 0 0 0 0 0", attributes='rotation_format="quat_xyzw"'),
+            "has a quaternion of length 0",
+        ),
+        (
+            model("a", attributes='rotation_format="matrix"'),
+            "has the rotation_format 'matrix'; there is euler_rpy, quat_xyzw",
+        ),
         (GROUND.replace("<static>true</static>", ""), "a plane cannot move"),
     ],
 )

@@ -52,6 +52,19 @@ def test_a_service_that_does_not_answer(arm: Any, client: Any) -> None:
     ]
 
 
+def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> None:
+    publisher = client.node.create_publisher(JointState, "/states", 10)
+    try:
+        words = ("topic", "echo", "/states", "std_msgs/msg/String", "--once", "--timeout", "2")
+        said = arm(*words, code=1)
+    finally:
+        client.node.destroy_publisher(publisher)
+    assert said.err.splitlines()[0] == (
+        "waiting for a std_msgs/msg/String on /states; "
+        "its publishers send sensor_msgs/msg/JointState"
+    )
+
+
 def test_a_missing_action(arm: Any) -> None:
     said = arm("action", "send_goal", "/no", ACTION, "--timeout", "0.2", code=1)
     assert said.err == "arm action send_goal: action /no has no server (waited 0.2 s)\n"

@@ -1,6 +1,7 @@
 """`arm control` says what ros2 control says, on both ways: done, and refused."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -46,6 +47,38 @@ def test_load_says_each_step_and_skips_what_is_loaded(arm_control: Any, control:
         f"Error cleaning up controller {POSITION}, check controller_manager logs\n"
     )
     assert control.states()[POSITION] == "active"
+
+
+def test_load_takes_a_parameter_file(arm_control: Any, control: Any, tmp_path: Path) -> None:
+    file = tmp_path / "own.yaml"
+    file.write_text(
+        "own_controller: {ros__parameters: "
+        "{type: position_controllers/JointGroupPositionController, joints: [j1, j2]}}"
+    )
+    said = arm_control("load_controller", "own_controller", str(file), "--set-state", "active")
+    assert said == (
+        "Successfully loaded controller own_controller\n"
+        "Successfully loaded controller own_controller into state active\n"
+    )
+    assert "j2/position [available] [claimed]" in arm_control("list_hardware_interfaces")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (None, "Controller parameter file : {file} does not exist, Aborting!"),
+        ("[", "parameter file '{file}' is not YAML: "),
+        ("own_controller: {ros__parameters: {type: 5}}", "the type of controller 'own_controller'"),
+    ],
+)
+def test_an_unusable_parameter_file_is_refused(
+    arm_control: Any, tmp_path: Path, content: str | None, sentence: str
+) -> None:
+    file = tmp_path / "own.yaml"
+    if content is not None:
+        file.write_text(content)
+    said = arm_control("load_controller", "own_controller", str(file), code=1)
+    assert said.startswith(sentence.format(file=file))
 
 
 @pytest.mark.parametrize(
