@@ -1,5 +1,7 @@
 """`arm launch copies:=4`: four arms in one world, each by its own topics."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -50,3 +52,47 @@ def test_each_copy_moves_by_its_own_topic_and_stands_at_its_own_place(launch, cl
     }
     corners = [(0.0, 0.0), (0.0, 0.75), (0.75, 0.0), (0.75, 0.75)]
     assert feet == {f"{name}_base_link": xy for name, xy in zip(names, corners, strict=True)}
+
+
+def test_copies_serve_goals_and_queries_without_a_busy_thread(launch, client):
+    from builtin_interfaces.msg import Duration
+    from control_msgs.action import FollowJointTrajectory
+    from control_msgs.srv import QueryTrajectoryState
+    from rclpy.action import ActionClient
+    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+    launched = launch("mycobot", "copies:=2")
+    launched.wait_until_ready()
+    (simulation,) = [
+        p for p in launched.descendants() if "arm_gazebo_node" in " ".join(p.cmdline())
+    ]
+    controller = "/mycobot_280_1/arm_controller"
+
+    def positions():
+        request = QueryTrajectoryState.Request()
+        return client.call(QueryTrajectoryState, f"{controller}/query_state", request)
+
+    start = positions()
+    assert start.name[0] == "mycobot_280_1_link1_to_link2"
+    target = [0.3, *start.position[1:]]
+    point = JointTrajectoryPoint(positions=target, time_from_start=Duration(sec=3))
+    goal = FollowJointTrajectory.Goal(
+        trajectory=JointTrajectory(joint_names=start.name, points=[point])
+    )
+    action = client.run(
+        lambda: ActionClient(
+            client.node, FollowJointTrajectory, f"{controller}/follow_joint_trajectory"
+        ),
+        "the action client",
+    )
+    client.wait_until(action.server_is_ready, "the action server")
+    sent = client.run(lambda: action.send_goal_async(goal), "the goal")
+    handle = client.result_of(sent, "the goal's answer")
+    before, began_s = simulation.cpu_times(), time.monotonic()
+    ended = client.run(handle.get_result_async, "the request for the result")
+    answer = client.result_of(ended, "the goal's result")
+    spent, lasted_s = simulation.cpu_times(), time.monotonic() - began_s
+    assert answer.result.error_string == "Goal successfully reached!"
+    assert positions().position == pytest.approx(target, abs=0.02)
+    # Two arms at 100 Hz take less than a tenth of a core; a thread that polls takes one.
+    assert spent.user + spent.system - before.user - before.system < 0.5 * lasted_s

@@ -3,8 +3,7 @@
 import logging
 import threading
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar
 
 from rclpy.action.server import (
     ActionServer,
@@ -15,15 +14,10 @@ from rclpy.action.server import (
 )
 from rclpy.executors import Executor
 from rclpy.node import Node
-from rclpy.task import Future
 
 from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
 from arm_control.loop.control_loop import ControlLoop
-from arm_control.loop.ros_executor_bridge import (
-    EXECUTOR_TIMEOUT_S,
-    complete_future,
-    let_executor_answer,
-)
+from arm_control.loop.ros_executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer
 
 RESULT_TIMEOUT_S = 10
 """How long a result is kept for its client. With rclpy's default of 15 minutes, a stream of goals
@@ -34,20 +28,15 @@ ControllerT = TypeVar("ControllerT", bound=GoalController)
 ResultT = TypeVar("ResultT", bound=GoalEnd)
 
 
-@dataclass(frozen=True, slots=True)
-class _RunningGoal:
-    """A goal whose result a coroutine of the executor awaits."""
-
-    handle: ServerGoalHandle
-    ended: Future
-
-
 class ControllerAction(ABC, Generic[ControllerT, ResultT]):
     """Passes goals to the controller, and its results to their clients.
 
     Goals arrive on the executor's thread, of which there must be only one; results arrive on the
     loop thread. The loop serves each request immediately, so that goals are cancelled and preempted
     even while the simulation is paused.
+
+    rclpy would run a callback as long as a goal lasts. Here that callback runs when the goal has
+    ended, because a coroutine that waits keeps rclpy's event-driven executor busy.
     """
 
     def __init__(
@@ -73,14 +62,15 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
         self._loop = loop
         self._executor = executor
         self._logger = logging.getLogger(controller.name)
-        self._running: dict[bytes, _RunningGoal] = {}
+        self._running: dict[bytes, ServerGoalHandle] = {}
+        self._ending: set[bytes] = set()
         self._idle = threading.Event()
         self._idle.set()
         self._server = ActionServer(
             node,
             action_type,
             name,
-            self._await_end,
+            _refuse_to_execute,
             goal_callback=self._answer,
             handle_accepted_callback=self._start,
             cancel_callback=self._cancel,
@@ -114,14 +104,13 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
 
         The goal of a restored snapshot has none either.
         """
-        running = self._running.get(goal_id)
-        return running and running.handle
+        return self._running.get(goal_id)
 
     def finish(self, goal_id: bytes, result: ResultT) -> None:
         """End a goal, unless its client has already received a result; any thread."""
-        running = self._running.get(goal_id)
-        if running is not None:
-            complete_future(running.ended, result, self._executor)
+        if goal_id in self._running and goal_id not in self._ending:
+            self._ending.add(goal_id)
+            self._executor.create_task(self._end, goal_id, result)
 
     # Executor's thread
 
@@ -136,8 +125,9 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
     def _start(self, handle: ServerGoalHandle) -> None:
         goal_id = bytes(handle.goal_id.uuid)
         self._idle.clear()
-        self._running[goal_id] = _RunningGoal(handle, Future())
-        handle.execute()
+        self._running[goal_id] = handle
+        # `handle.execute` would also run the callback.
+        handle._update_state(GoalEvent.EXECUTE)  # pyright: ignore[reportPrivateUsage]
         result = self.submit(goal_id, handle.request)
         if result is not None:
             self.finish(goal_id, result)
@@ -153,9 +143,9 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
         self._loop.call(self.controller.serve_requests)
         return CancelResponse.ACCEPT
 
-    async def _await_end(self, handle: ServerGoalHandle) -> Any:
-        goal_id = bytes(handle.goal_id.uuid)
-        result = cast(ResultT, await self._running[goal_id].ended)
+    def _end(self, goal_id: bytes, result: ResultT) -> None:
+        self._ending.discard(goal_id)
+        handle = self._running.pop(goal_id)
         match result.outcome:
             case GoalOutcome.SUCCEEDED:
                 handle.succeed()
@@ -164,10 +154,14 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
             case GoalOutcome.CANCELED:
                 _cancel_by_itself(handle)
                 handle.canceled()
-        del self._running[goal_id]
+        self._server.notify_execute(handle, lambda _: self.result_message(result))
         if not self._running:
             self._idle.set()
-        return self.result_message(result)
+
+
+def _refuse_to_execute(_handle: ServerGoalHandle) -> None:
+    """Never run: every goal gets its own callback when it ends."""
+    raise AssertionError("a goal is executed before it has ended")
 
 
 def _cancel_by_itself(handle: ServerGoalHandle) -> None:

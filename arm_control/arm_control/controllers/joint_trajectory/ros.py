@@ -56,7 +56,7 @@ from arm_control.controllers.ros_times import (
 )
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
-from arm_control.loop.ros_executor_bridge import call_on_loop, run_on_executor
+from arm_control.loop.ros_executor_bridge import run_on_executor
 from arm_node.workarounds.message_template import MessageTemplate
 
 FIELD_OF_QUANTITY: dict[str, str] = dict(zip(QUANTITIES, FIELDS, strict=True))
@@ -238,14 +238,13 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
     def _scale(self, message: SpeedScalingFactor) -> None:
         self.controller.request_speed_scaling(message.factor)
 
-    async def _answer(
+    def _answer(
         self, request: QueryTrajectoryState.Request, response: QueryTrajectoryState.Response
     ) -> QueryTrajectoryState.Response:
         time_s = seconds_of(request.time)
         try:
-            state = await call_on_loop(
-                self.loop, lambda: self.controller.query_state(time_s), self._executor
-            )
+            # Waits for the end of a tick: rclpy's event-driven executor runs no coroutines.
+            state = self.loop.call(lambda: self.controller.query_state(time_s)).result()
         except LoopStoppedError as error:
             response.message = str(error)
             return response
