@@ -166,7 +166,7 @@ class ControlLoop:
             if self._paused:
                 self._idle()
                 continue
-            if not self._partners_are_ready():
+            if self.lock_step is not None and not self._partners_are_ready(self.lock_step):
                 continue
             remaining_s = pacer.remaining_s()
             if remaining_s > 0.0:
@@ -185,7 +185,7 @@ class ControlLoop:
             return
         request = self._step_requests[0]
         if not request.is_over:
-            if not self._partners_are_ready():
+            if self.lock_step is not None and not self._partners_are_ready(self.lock_step):
                 return
             self._tick()
             self.outbox.end_tick()
@@ -195,10 +195,9 @@ class ControlLoop:
             self._step_requests.popleft().finish()
         self._serve_calls()
 
-    def _partners_are_ready(self) -> bool:
+    def _partners_are_ready(self, lock_step: LockStep) -> bool:
         """Return whether a tick may run; otherwise wait for a call, or pause after the time-out."""
-        lock_step = self.lock_step
-        if lock_step is None or lock_step.is_open():
+        if lock_step.is_open():
             return True
         remaining_s = lock_step.remaining_s()
         if remaining_s > 0.0:

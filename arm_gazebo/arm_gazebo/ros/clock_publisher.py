@@ -5,7 +5,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from arm_control.loop.outbox import Outbox
-from arm_node.workarounds.message_template import MessageTemplate
+from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that both default and best-effort subscribers match."""
@@ -29,6 +29,7 @@ class RosClockPublisher:
         self._outbox = outbox
         self._known_publishers = 1
         self._publisher = node.create_publisher(Clock, "/clock", CLOCK_QOS)
+        self._send = raw_sender(self._publisher)
         self._topic = self._publisher.topic_name
         self._message = MessageTemplate(Clock())
         self._time_s = 0.0
@@ -42,7 +43,7 @@ class RosClockPublisher:
         self._time_s = time_s
         if self._publisher.get_subscription_count():
             self._message.set_stamps(round(time_s * 1e9))
-            self._outbox.put(self._publisher.publish, self._message.to_bytes())
+            self._outbox.put(self._send, self._message.to_bytes())
 
     def take_warning(self) -> str | None:
         """Return a warning if the topic has gained other publishers; executor thread."""

@@ -46,10 +46,24 @@ _SECONDS_END = 2**31
 logger = logging.getLogger(__name__)
 
 
+def raw_sender(publisher: Publisher) -> Callable[[bytes], None]:
+    """Return a function that publishes serialised messages, for one thread at a time.
+
+    rclpy's own `publish` checks the type of each message, which takes several calls.
+
+    Args:
+        publisher: is not destroyed while the function runs.
+    """
+    return publisher.handle.publish_raw if is_on("message_template") else publisher.publish
+
+
 class MessageTemplate:
     """A message with fixed names and lengths, and writable stamps and float64 values.
 
     One thread at a time. Other numbers keep the values of the prototype.
+
+    Attributes:
+        to_bytes: returns the message with its current values, serialised.
 
         template = MessageTemplate(JointState(name=names, position=[0.0] * len(names)))
         position = template.doubles("position")    # a view: write into it
@@ -65,6 +79,7 @@ class MessageTemplate:
                 later changes to it have no effect.
         """
         self._layout = _layout_of(prototype)
+        self.to_bytes: Callable[[], bytes] = self._layout.to_bytes
         self._message = self._layout.message
         stamps = [field for field in time_fields(self._message) if isinstance(field.owner, Time)]
         places = self._indices(stamps).tolist()
@@ -136,10 +151,6 @@ class MessageTemplate:
         for second, nanosecond in self._stamps:
             self._signed[second] = seconds
             self._unsigned[nanosecond] = rest
-
-    def to_bytes(self) -> bytes:
-        """Return the message with its current values, serialised."""
-        return self._layout.to_bytes()
 
     def publish(self, publisher: Publisher) -> None:
         """Publish the message with its current values.

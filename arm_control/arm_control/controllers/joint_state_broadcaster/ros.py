@@ -15,7 +15,7 @@ from arm_control.controllers.joint_state_broadcaster.controller import (
 )
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.loop.outbox import Outbox
-from arm_node.workarounds.message_template import MessageTemplate
+from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 
 class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
@@ -56,7 +56,7 @@ class _StampedArray:
         where: NDArray[np.intp],
         outbox: Outbox,
     ) -> None:
-        self._publisher = publisher
+        self._send = raw_sender(publisher)
         self._outbox = outbox
         self._template = template
         self._where = where
@@ -64,7 +64,7 @@ class _StampedArray:
     def publish(self, stamp_ns: int, values: NDArray[np.float64]) -> None:
         self._template.set_stamps(stamp_ns)
         self._template.float64[self._where] = values
-        self._outbox.put(self._publisher.publish, self._template.to_bytes())
+        self._outbox.put(self._send, self._template.to_bytes())
 
 
 class _JointStateBroadcastPublisher:
