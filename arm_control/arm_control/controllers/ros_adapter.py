@@ -23,7 +23,7 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
     It is created when the controller is loaded. The methods run on a control-plane thread, never
     while the controller is active. The end points that they create pass messages to the core on the
     executor's thread, and publish its results on the loop thread. Callbacks must not be coroutines:
-    with several robots, rclpy's event-driven executor spins the node, and it runs none.
+    rclpy's event-driven executor, which spins the node, runs none.
 
     Attributes:
         controller: the core.

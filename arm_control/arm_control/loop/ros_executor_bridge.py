@@ -19,8 +19,8 @@ ResultT = TypeVar("ResultT")
 EXECUTOR_TIMEOUT_S = 5.0
 
 PASSES_TO_ANSWER = 3
-"""In the first pass the executor takes the pending requests and ends goals; in the next ones it runs
-the tasks that make and send their results."""
+"""In the first pass the executor takes the pending requests and ends goals; in the next ones it
+makes their results and sends them."""
 
 
 def complete_future(future: Future, result: object, executor: Executor) -> None:

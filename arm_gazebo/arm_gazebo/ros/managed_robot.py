@@ -2,10 +2,8 @@
 
 import logging
 from collections.abc import Sequence
-from contextlib import ExitStack
 
 from rclpy.executors import Executor
-from rclpy.experimental.events_executor import EventsExecutor
 
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.loop.clock import Clock
@@ -14,9 +12,7 @@ from arm_control.manager.ros.controller_manager_node import ControllerManagerNod
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 from arm_gazebo.assembly.robot import AssembledRobot
 from arm_gazebo.assembly.robot_settings import RobotSettings
-from arm_gazebo.assembly.settings import SimulationSettings
 from arm_gazebo.physics.simulation import Simulation
-from arm_node.executor_thread import ExecutorThread
 
 logger = logging.getLogger(__name__)
 
@@ -90,30 +86,3 @@ class ManagedRobot:
             self.node.destroy_node()
         else:
             self._server.destroy_nodes()
-
-
-LONGEST_WAIT_S = 1.0
-"""Without a timeout, spin_once of the event-driven executor polls the clock and holds the GIL."""
-
-
-def executor_of_robots(
-    settings: SimulationSettings, shared: Executor, ending: ExitStack
-) -> Executor:
-    """Return the executor of the controllers of all robots.
-
-    For each message rclpy's usual executor looks at all nodes that it has. With the event-driven
-    one, the simulation of 4 arms that are commanded at 100 Hz takes 12 % of a core instead of 34 %,
-    and a command to one of 16 arms moves it after 8 ms instead of 16 ms. One robot keeps the usual
-    one. A lock-step takes the commands out of the process's executor.
-
-    Args:
-        settings: the robots.
-        shared: the process's executor.
-        ending: stops the thread of the executor.
-    """
-    if len(settings.robots) == 1 or settings.lockstep:
-        return shared
-    thread = ExecutorThread("controllers", EventsExecutor(), LONGEST_WAIT_S)
-    ending.callback(thread.stop)
-    thread.start()
-    return thread.executor

@@ -22,6 +22,7 @@ from arm_control.loop.outbox import Outbox
 from arm_control.loop.pacer import Pacer
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.controllers_executor import controllers_executor
 from arm_control.manager.ros.emergency_stop import EmergencyStopServer
 from arm_gazebo.assembly.settings import SimulationSettings, read_above_zero, read_settings
 from arm_gazebo.assembly.world import AssembledWorld, assemble_world
@@ -36,7 +37,7 @@ from arm_gazebo.recording.session import RunParts
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.fault_parameter import FaultParameter
 from arm_gazebo.ros.live_parameters import follow_parameter
-from arm_gazebo.ros.managed_robot import ManagedRobot, executor_of_robots
+from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.run_recording import RunRecording
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_gazebo.state.complete_state import CompleteState
@@ -75,7 +76,10 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         settings = read_settings(partial(declare, node))
         outbox = Outbox()
         clock = RosClockPublisher(node, outbox)
-        executor = executor_of_robots(settings, process.executor, ending)
+        # A lock-step takes the commands out of the process's executor.
+        executor = (
+            process.executor if settings.lockstep else ending.enter_context(controllers_executor())
+        )
         robots = []
         for robot_settings in settings.robots:
             robots.append(ManagedRobot(robot_settings, arguments, clock))

@@ -22,6 +22,7 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.registry import create_hardware
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
+from arm_control.manager.ros.controllers_executor import controllers_executor
 from arm_control.manager.ros.description_topic import DescriptionTopic
 from arm_control.manager.ros.simulated_clock import DeadlineClock, SimulatedClock
 from arm_description.errors import DescriptionError
@@ -49,6 +50,7 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
         # Destroying a node while the executor uses it crashes the process.
         ending.callback(process.join_spinning)
         node = first_node(lambda: ControllerManagerNode(arguments))
+        executor = ending.enter_context(controllers_executor())
         own = nodes.enter_context(ExitStack())
         own.callback(node.destroy_node)
         descriptions = DescriptionTopic(node)
@@ -67,7 +69,7 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
                 node,
                 manager,
                 loop,
-                process.executor,
+                executor,
                 robot_description=description,
                 descriptions=descriptions,
             )

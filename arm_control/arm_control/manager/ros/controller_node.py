@@ -18,6 +18,7 @@ from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.supervision import failure_of
 from arm_control.manager.controller_creation import general_specs, requested_rate_hz
 from arm_control.manager.registry import load_object
+from arm_control.manager.ros.controllers_executor import check_callbacks
 from arm_control.manager.ros.messages import transition_events
 from arm_control.manager.ros.parameter_node import ParameterNode
 from arm_control.manager.settings import ManagerSettings
@@ -106,9 +107,14 @@ class ControllerNode(ParameterNode):
         return parameters, requested_rate_hz(self.get_name(), general)
 
     def on_configure(self, parameters: Any) -> None:
-        """Create the controller's end points."""
+        """Create the controller's end points.
+
+        Raises:
+            ControllerError: a callback is a coroutine function.
+        """
         if self._adapter is not None:
             self._adapter.on_configure(parameters)
+            check_callbacks(self)
 
     def take_late_changes(self) -> str:
         """Apply parameters that were set since they were last read; return why that fails."""

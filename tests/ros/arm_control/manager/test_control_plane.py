@@ -265,3 +265,23 @@ def test_warnings_of_overruns_can_be_switched_off_at_any_time(
     for value in (False, True):
         assert ros_bench.set(ros_bench.node, "overruns.print_warnings", value).successful
         assert ros_bench.loop.pacer.print_warnings is value
+
+
+def test_a_controller_whose_callback_is_a_coroutine_is_not_configured(
+    loaded: LoadedProbe, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from std_srvs.srv import Trigger
+
+    from arm_control.controllers.forward_command.ros import ForwardCommandAdapter
+
+    async def answer(_request: Any, response: Any) -> Any:
+        return response
+
+    def on_configure(adapter: Any, _parameters: Any) -> None:
+        adapter.node.create_service(Trigger, "~/ask", answer)
+
+    monkeypatch.setattr(ForwardCommandAdapter, "on_configure", on_configure)
+    reason = "the callback of service ~/ask is a coroutine, which is never run; use a plain"
+    with pytest.raises(ControllerManagerError, match=reason):
+        loaded.plane.configure_controller("it")
+    assert loaded.state is LifecycleState.UNCONFIGURED
