@@ -30,11 +30,7 @@ class CommandParser(argparse.ArgumentParser):
     def add_argument(self, *names: str, **settings: Any) -> argparse.Action:
         """Add an argument; the parser's error about missing ones names only required ones."""
         action = super().add_argument(*names, **settings)
-        if not action.option_strings and action.nargs in (
-            argparse.ZERO_OR_MORE,
-            argparse.REMAINDER,
-        ):
-            # argparse calls them required, and still accepts none.
+        if not action.option_strings and action.nargs in _OF_ANY_LENGTH:
             action.required = False
         return action
 
