@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from arm_cli.command_parser import positive_number
-from arm_cli.errors import ArmCliError
+from arm_cli.errors import ArmCliError, CommandUsageError
 from arm_cli.output import say_document
 
 MODULE = "arm_cli.check_process"
@@ -58,12 +58,15 @@ def run(options: argparse.Namespace) -> int:
     """Print the report; return 1 if the robot or world cannot be simulated.
 
     Raises:
+        CommandUsageError: no file is named.
         ArmCliError: the file cannot be read, or the check takes too much time or memory.
     """
     words = {
         name: getattr(options, name)
         for name in ("file", "arguments", "package_path", "strict", "json", "urdf", "memory_limit")
     }
+    if not options.file:
+        raise CommandUsageError("FILE is empty")
     os.getcwd()  # Where it is gone, the process of the check could not say so.
     try:
         done = subprocess.run(

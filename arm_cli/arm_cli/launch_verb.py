@@ -1,16 +1,19 @@
 """`arm launch`: the simulated arm, or any launch file, under launch_py's supervisor."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from functools import partial
 
 from arm_cli.errors import ArmCliError
 from arm_cli.launch_domain import launch_domain
+from arm_cli.output import complain
 from arm_cli.word_completion import complete_with
-from arm_node.ros_domain import NoFreeDomainError
+from arm_node.ros_domain import NoFreeDomainError, describe_users, other_users
 from launch_py import LaunchError
 from launch_py.command.command_line import run as run_launch
+from launch_py.fast_dds.participants import domain_of
 
 SHORT_NAMES = {
     "": ("arm_gazebo", "arm_gazebo.launch.py"),
@@ -60,3 +63,6 @@ def _check_environment() -> None:
         prepare_environment()
     except UnusableEnvironmentError as error:
         raise LaunchError(str(error)) from error
+    users = other_users(domain_of(os.environ.get("ROS_DOMAIN_ID")) or 0)
+    if users:
+        complain(f"[launch] warning: {describe_users(users)}; domain:=auto takes another domain")

@@ -1,9 +1,10 @@
-"""A ROS domain that nobody else on this machine uses."""
+"""The ROS domains in use on this machine: by other users, and one that nobody uses."""
 
 import fcntl
 import os
+import pwd
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,6 +12,9 @@ DOMAINS = range(1, 102)
 """Domain ids whose ports no operating system hands out by itself."""
 FIRST_PORT, PORTS_OF_DOMAIN = 7400, 250
 """The first UDP port of domain 0, and the number of ports of a domain (DDSI-RTPS 2.5, 9.6.2.3)."""
+MULTICAST_PORTS = 10
+"""The first ports of a domain; those of participants follow."""
+UDP_SOCKETS = Path("/proc/net/udp")
 FOLDER = "ros-domains"
 
 
@@ -48,8 +52,47 @@ def domain_of_its_own() -> Iterator[int]:
     raise NoFreeDomainError(f"all ROS domains from {DOMAINS[0]} to {DOMAINS[-1]} are in use")
 
 
+def other_users(domain: int, table: Path = UDP_SOCKETS) -> list[str]:
+    """Return the names of the users, except this one, whose programs listen in a domain.
+
+    Fast DDS's shared memory can be opened by its owner only, so programs of two users discover each
+    other, and then no message arrives.
+
+    Args:
+        domain: the domain's id; nothing is known about ids whose ports the system hands out.
+        table: the file with the sockets, see proc_net(5).
+    """
+    if domain and domain not in DOMAINS:
+        return []
+    first = FIRST_PORT + PORTS_OF_DOMAIN * domain
+    ports = range(first + MULTICAST_PORTS, first + PORTS_OF_DOMAIN)
+    users = {user for port, user in _udp_sockets(table) if port in ports} - {os.getuid()}
+    return sorted(_user_name(user) for user in users)
+
+
+def describe_users(users: Sequence[str]) -> str:
+    """Return a sentence about other users whose programs listen in this domain."""
+    who = f"users {', '.join(users)} run" if len(users) > 1 else f"user {users[0]} runs"
+    return (
+        f"{who} ROS programs in this ROS domain, too: they and yours discover each other, but "
+        "no message passes, because shared memory belongs to one user"
+    )
+
+
+def _user_name(user: int) -> str:
+    try:
+        return pwd.getpwuid(user).pw_name
+    except KeyError:
+        return f"with id {user}"
+
+
 def _busy_domains() -> set[int]:
-    table = Path("/proc/net/udp")
-    lines = table.read_text().splitlines()[1:] if table.exists() else []
-    ports = (int(line.split()[1].rpartition(":")[2], 16) for line in lines)
+    ports = [port for port, _ in _udp_sockets(UDP_SOCKETS)]
     return {(port - FIRST_PORT) // PORTS_OF_DOMAIN for port in ports if port >= FIRST_PORT}
+
+
+def _udp_sockets(table: Path) -> Iterator[tuple[int, int]]:
+    """Yield the port of each UDP socket, and the id of its user."""
+    for line in table.read_text().splitlines()[1:] if table.exists() else []:
+        fields = line.split()
+        yield int(fields[1].rpartition(":")[2], 16), int(fields[7])

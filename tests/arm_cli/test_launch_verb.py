@@ -89,3 +89,20 @@ def test_its_help_explains_the_arguments(capsys):
     text = capsys.readouterr().out
     assert "usage: arm launch" in text
     assert "arm_gazebo arm_gazebo.launch.py" in text
+
+
+def test_another_user_in_the_domain_is_named(monkeypatch, capsys):
+    def run(argv, before_start, **options):
+        before_start()
+        return 0
+
+    monkeypatch.setattr(launch_verb, "run_launch", run)
+    monkeypatch.setattr(launch_verb, "other_users", lambda domain: ["anna"] if domain == 7 else [])
+    monkeypatch.setenv("ROS_DOMAIN_ID", "8")
+    assert main(["launch"]) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert main(["launch"]) == 0
+    said = capsys.readouterr().err
+    assert said.startswith("[launch] warning: user anna runs ROS programs in this ROS domain, too")
+    assert "domain:=auto takes another domain" in said

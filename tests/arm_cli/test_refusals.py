@@ -39,6 +39,7 @@ ARRAY = "std_msgs/msg/Float64MultiArray"
         ),
         (["param", "load", "/n", "/no/such.yaml"], "no parameter file /no/such.yaml"),
         (["graph", "-o", "x.png"], "no format for '.png' of x.png; there is .svg, .mmd"),
+        (["check", ""], "arm check: FILE is empty"),
         (["sim", "step", "0"], "the number of steps is 0; it must be at least 1"),
     ],
 )

@@ -1,4 +1,4 @@
-"""The check on which network interfaces this machine's ROS programs listen."""
+"""The checks on who listens in the domain: this user's ROS programs, and where, and other users."""
 
 import os
 import re
@@ -11,6 +11,7 @@ from pathlib import Path
 
 from arm_cli.doctor.diagnosis import Diagnosis
 from arm_cli.doctor.discovery import RANGE, domain_port
+from arm_node.ros_domain import UDP_SOCKETS, describe_users, other_users
 from launch_py.fast_dds.participants import FIRST_PORT, PORTS_OF_DOMAIN
 
 PROC = Path("/proc")
@@ -68,6 +69,19 @@ def check_listening(environ: Mapping[str, str], proc: Path = PROC) -> Diagnosis:
             "start it with 'arm run PACKAGE PROGRAM' or 'arm launch', which limit it to 127.0.0.1",
         )
     return Diagnosis.ok("listening", sentence)
+
+
+def check_users(environ: Mapping[str, str], table: Path = UDP_SOCKETS) -> Diagnosis:
+    """Name the other users whose programs are in the same domain, whom no message reaches."""
+    domain = (_ports(environ).start - FIRST_PORT) // PORTS_OF_DOMAIN
+    users = other_users(domain, table)
+    if not users:
+        return Diagnosis.ok("users", "no other user of this machine is in this domain")
+    return Diagnosis.warning(
+        "users",
+        describe_users(users),
+        "export another ROS_DOMAIN_ID, from 0 to 101, or run everything as one user",
+    )
 
 
 def find_listeners(environ: Mapping[str, str], proc: Path = PROC) -> list[_Listener]:

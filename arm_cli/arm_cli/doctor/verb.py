@@ -25,7 +25,7 @@ from arm_cli.doctor.installation import (
     check_rendering,
     check_wheels,
 )
-from arm_cli.doctor.listening import check_listening
+from arm_cli.doctor.listening import check_listening, check_users
 from arm_cli.doctor.observation import GraphObservation
 from arm_cli.doctor.resources import check_page_port, check_shared_memory
 from arm_cli.doctor.simulation import (
@@ -95,6 +95,7 @@ def installation_checks(environ: Mapping[str, str]) -> tuple[Callable[[], Diagno
         partial(check_discovery, environ),
         partial(check_ports, environ),
         partial(check_listening, environ),
+        partial(check_users, environ),
         check_page_port,
     )
 

@@ -1,5 +1,6 @@
 """Subscribes to a topic with the type and the QoS found on the graph."""
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +14,8 @@ from arm_cli.ros.graph import Graph
 from arm_cli.ros.qos import MEASURING, matching_profile
 from arm_cli.ros.session import CommandSession
 from arm_node.names import describe_known
+from arm_node.ros_domain import describe_users, other_users
+from launch_py.fast_dds.participants import domain_of
 
 
 class TopicListener:
@@ -81,7 +84,9 @@ class TopicListener:
                 f"its publishers send {', '.join(types)}"
             )
         if types:
-            return f"waiting for a message on {self.topic}"
+            users = other_users(domain_of(os.environ.get("ROS_DOMAIN_ID")) or 0)
+            hint = f"; {describe_users(users)}" if users else ""
+            return f"waiting for a message on {self.topic}{hint}"
         return f"waiting for a publisher of {self.topic}"
 
     def _missing_topic(self) -> str:

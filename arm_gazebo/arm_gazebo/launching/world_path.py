@@ -30,13 +30,14 @@ def find_world(world: str | Path) -> Path:
     if str(world) in shipped:
         return shipped[str(world)]
     path = Path(world).expanduser()
-    if os.path.exists(path):
+    if str(world) and os.path.exists(path):
         try:
             check_file(path)
         except OSError as error:
             raise WorldError(f"cannot read the world {path}: {error.strerror}") from error
         return path
+    problem = f"there is no file {path.absolute()}" if str(world) else "the name is empty"
     raise WorldError(
-        f"no world '{world}': there is no file {path.absolute()}, and the shipped worlds are "
+        f"no world '{world}': {problem}, and the shipped worlds are "
         f"{', '.join(shipped) or 'not installed'}"
     )

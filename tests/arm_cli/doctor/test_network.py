@@ -1,6 +1,7 @@
 """`arm doctor` checks the network: discovery, ports, the page's port and listening programs."""
 
 import contextlib
+import os
 import socket
 import sys
 import threading
@@ -11,7 +12,7 @@ import pytest
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.discovery import check_discovery, check_ports
-from arm_cli.doctor.listening import check_listening
+from arm_cli.doctor.listening import check_listening, check_users
 from arm_cli.doctor.resources import check_page_port
 from launch_py.fast_dds.participants import LAST_DOMAIN
 
@@ -199,3 +200,15 @@ def test_a_program_with_localhost_that_listens_everywhere_is_a_warning(processes
     finding = check_listening({}, proc)
     assert finding.severity is Severity.WARNING
     assert "mine (11): despite ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST" in finding.sentence
+
+
+def test_other_users_of_the_domain_are_a_warning(tmp_path):
+    table = tmp_path / "udp"
+    row = _udp_row("127.0.0.1", 7410, 4711).split()
+    row[7] = str(os.getuid() + 4_000_000)
+    table.write_text(f"header\n{' '.join(row)}\n")
+    finding = check_users({}, table)
+    assert finding.severity is Severity.WARNING
+    assert f"user with id {row[7]} runs ROS programs in this ROS domain" in finding.sentence
+    assert "ROS_DOMAIN_ID" in finding.fix
+    assert check_users({"ROS_DOMAIN_ID": "3"}, table).severity is Severity.OK

@@ -84,6 +84,11 @@ def test_a_missing_world_is_refused_before_anything_starts(capsys):
     assert "the shipped worlds are empty, house, objects" in captured.err
 
 
+def test_a_world_without_a_name_is_no_folder(capsys):
+    assert main([*LINE, "model:=any.urdf", "world:="]) == 2
+    assert "no world '': the name is empty, and the shipped worlds are" in capsys.readouterr().err
+
+
 def plan_of(name: str, **arguments: str):
     file = find_package("arm_gazebo") / "launch" / name
     environ = {**os.environ, "PATH": "/bin"}

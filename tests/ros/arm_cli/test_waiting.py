@@ -65,6 +65,17 @@ def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> Non
     )
 
 
+def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm_cli.ros.topic_listener.other_users", lambda domain: ["anna"])
+    publisher = client.node.create_publisher(JointState, "/states", 10)
+    try:
+        said = arm("topic", "echo", "/states", "--once", "--timeout", "2", code=1)
+    finally:
+        client.node.destroy_publisher(publisher)
+    notice = "waiting for a message on /states; user anna runs ROS programs in this ROS domain, too"
+    assert said.err.startswith(notice)
+
+
 def test_a_missing_action(arm: Any) -> None:
     said = arm("action", "send_goal", "/no", ACTION, "--timeout", "0.2", code=1)
     assert said.err == "arm action send_goal: action /no has no server (waited 0.2 s)\n"
