@@ -103,7 +103,7 @@ def parameters_of(plan, name: str) -> str:
 def test_rviz_that_is_not_installed_is_a_warning_and_the_page():
     plan = plan_of("arm_world.launch.py", use_rviz="true")
     assert "arm_viewer_node" in [step.name for step in plan.processes]
-    assert [w for w in plan.warnings if "RViz (rviz2) is not installed" in w]
+    assert [w for w in plan.warnings if w.startswith("RViz (rviz2)") and "not installed" in w]
     opened = plan_of("arm_world.launch.py", use_rviz="true", viewer="true")
     assert [step.name for step in opened.processes].count("arm_viewer_node") == 1
 
