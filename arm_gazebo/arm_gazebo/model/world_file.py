@@ -1,6 +1,8 @@
 """Read world files: MuJoCo XML or SDF."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import mujoco
 
@@ -23,7 +25,7 @@ def load_world(
 
     Args:
         world: name of a shipped world, or path of a file.
-        report: receives what is not simulated in an SDF world.
+        report: receives what is not simulated.
         limit: limit on the memory of an MJCF.
 
     Raises:
@@ -37,11 +39,39 @@ def load_world(
         text = read_text(path)
         check_readable(text, path)
         check_mjcf_size(text, path.name, path, limit)
-        return mujoco.MjSpec.from_file(str(path))
+        spec = mujoco.MjSpec.from_file(str(path))
+        if report is not None:
+            _report_unused(spec, path.name, report)
+        return spec
     except OSError as error:
         raise WorldError(f"cannot read the world {path}: {error}") from error
     except (ModelError, XmlError, ValueError, mujoco.FatalError) as error:
         raise _unusable(path, error) from error
+
+
+def _report_unused(spec: mujoco.MjSpec, file: str, report: BuildReport) -> None:
+    """Report what MuJoCo itself would use of a file, and the simulation does not."""
+    step_s = spec.option.timestep
+    if step_s != mujoco.MjSpec().option.timestep:
+        report.drop(
+            f"<option timestep='{step_s:g}'> of {file}",
+            "the physics step divides the control period; the parameter physics_step changes it",
+        )
+    if spec.keys:
+        report.drop(_named("keyframe", spec.keys, file), "the world starts at its joints' qpos0")
+    if spec.actuators:
+        report.warn(
+            _named("actuator", spec.actuators, file),
+            "nothing commands what belongs to no robot, so the control stays 0",
+        )
+    if spec.sensors:
+        report.drop(_named("sensor", spec.sensors, file), "it is not read")
+
+
+def _named(kind: str, elements: Sequence[Any], file: str) -> str:
+    more = f" and {len(elements) - 1} more" if len(elements) > 1 else ""
+    name = f" '{elements[0].name}'" if elements[0].name else ""
+    return f"{kind}{name} of {file}{more}"
 
 
 def check_world(world: str | Path) -> None:

@@ -8,6 +8,7 @@ from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.model.world_file import load_world
 from arm_gazebo.sensors.camera_reader import parse_cameras
+from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 FRONT_CAMERA_SEES = {
     "purple_sphere",
@@ -28,6 +29,31 @@ def test_own_world_is_found_by_its_path(tmp_path):
     world = tmp_path / "mine.xml"
     world.write_text("<mujoco/>")
     assert find_world(str(world)) == world
+
+
+def test_what_an_mjcf_world_has_in_vain_is_reported(tmp_path):
+    world = tmp_path / "mine.xml"
+    world.write_text(
+        "<mujoco><option timestep='0.001'/><worldbody><body><joint name='j'/><geom size='.1'/>"
+        "</body></worldbody><actuator><motor name='m' joint='j'/><motor name='n' joint='j'/>"
+        "</actuator><keyframe><key name='up' qpos='1'/></keyframe>"
+        "<sensor><jointpos joint='j'/></sensor></mujoco>"
+    )
+    report = BuildReport()
+    load_world(world, report)
+    assert [(f.outcome, f.element) for f in report.findings] == [
+        (BuildOutcome.DROPPED, "<option timestep='0.001'> of mine.xml"),
+        (BuildOutcome.DROPPED, "keyframe 'up' of mine.xml"),
+        (BuildOutcome.DOUBTFUL, "actuator 'm' of mine.xml and 1 more"),
+        (BuildOutcome.DROPPED, "sensor of mine.xml"),
+    ]
+
+
+def test_a_shipped_world_has_nothing_in_vain():
+    for name in shipped_worlds():
+        report = BuildReport()
+        load_world(name, report)
+        assert report.findings == ()
 
 
 def test_missing_world_is_named_with_those_that_exist(tmp_path):
