@@ -15,6 +15,8 @@ from launch_py import LaunchError
 from launch_py.command.command_line import run as run_launch
 from launch_py.fast_dds.participants import domain_of
 
+STOP = (sys.executable, "-P", "-m", "arm_cli", "stop")
+"""`arm stop`; with -P, a user's yaml.py in the current folder does not take a library's place."""
 SHORT_NAMES = {
     "": ("arm_gazebo", "arm_gazebo.launch.py"),
     "mycobot": ("mycobot_gazebo", "mycobot.gazebo.launch.py"),
@@ -45,7 +47,7 @@ def run(argv: Sequence[str]) -> int:
                 program="arm launch",
                 short_names=SHORT_NAMES,
                 before_start=_check_environment,
-                key=KeyCommand("emergency stop", (sys.executable, "-m", "arm_cli", "stop")),
+                key=KeyCommand("emergency stop", STOP),
             )
     except NoFreeDomainError as error:
         raise ArmCliError(str(error)) from error

@@ -106,3 +106,18 @@ def test_another_user_in_the_domain_is_named(monkeypatch, capsys):
     said = capsys.readouterr().err
     assert said.startswith("[launch] warning: user anna runs ROS programs in this ROS domain, too")
     assert "domain:=auto takes another domain" in said
+
+
+def test_the_emergency_stop_starts_beside_modules_of_the_user(tmp_path):
+    for name in ("argparse", "random", "types", "yaml"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('the user's own')")
+    done = subprocess.run(
+        [*launch_verb.STOP, "--help"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("usage: arm stop")

@@ -92,8 +92,8 @@ def try_command(command: Sequence[str], environ: Mapping[str, str]) -> Trial:
 
 
 def try_python(words: Sequence[str], environ: Mapping[str, str]) -> Trial:
-    """Run this Python with some arguments."""
-    return try_command([sys.executable, *words], environ)
+    """Run this Python with some arguments. Modules of the current folder do not count."""
+    return try_command([sys.executable, "-P", *words], environ)
 
 
 def check_python(

@@ -49,7 +49,7 @@ def launch_command(
         given["model"] = robot
     given.update(arguments or {})
     assigned = [f"{name}:={_text(value)}" for name, value in given.items() if value is not None]
-    return [sys.executable, "-m", "arm_cli", "launch", *words, *assigned]
+    return [sys.executable, "-P", "-m", "arm_cli", "launch", *words, *assigned]
 
 
 def _text(value: object) -> str:

@@ -50,6 +50,12 @@ def test_a_failed_child_s_last_line_is_kept(environ):
     assert silent.complaint.endswith("ended with code -6")
 
 
+def test_a_module_in_the_current_folder_takes_no_library_s_place(environ, tmp_path, monkeypatch):
+    (tmp_path / "mujoco.py").write_text("raise SystemExit('the user's own')")
+    monkeypatch.chdir(tmp_path)
+    assert try_python(["-c", "import mujoco; print(mujoco.mj_step is not None)"], environ).worked
+
+
 def test_this_python_is_supported():
     assert check_python().severity is Severity.OK
 

@@ -8,7 +8,7 @@ import pytest
 from arm_sim.bench.errors import BenchError
 from arm_sim.bench.launch_command import launch_command
 
-ARM = [sys.executable, "-m", "arm_cli", "launch"]
+ARM = [sys.executable, "-P", "-m", "arm_cli", "launch"]
 
 
 @pytest.mark.parametrize(
