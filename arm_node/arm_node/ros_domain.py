@@ -19,7 +19,7 @@ FOLDER = "ros-domains"
 
 
 class NoFreeDomainError(RuntimeError):
-    """Every ROS domain is in use; the message says so."""
+    """No ROS domain can be reserved; the message says why."""
 
 
 @contextmanager
@@ -29,16 +29,22 @@ def domain_of_its_own() -> Iterator[int]:
     Other callers of this function get other domains until the `with` block or the process ends.
 
     Raises:
-        NoFreeDomainError: all of them are in use.
+        NoFreeDomainError: all of them are in use, or the folder of their locks is not usable.
     """
     folder = Path(tempfile.gettempdir()) / f"{FOLDER}-{os.getuid()}"
-    folder.mkdir(exist_ok=True)
     busy = _busy_domains()
     for offset in DOMAINS:
         domain = 1 + (os.getpid() + offset) % len(DOMAINS)
         if domain in busy:
             continue
-        lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
+        try:
+            folder.mkdir(exist_ok=True)
+            lock = os.open(folder / str(domain), os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
+        except OSError as error:
+            raise NoFreeDomainError(
+                f"cannot reserve a ROS domain in {folder}: {error.strerror}; remove it, or set "
+                "TMPDIR to a folder of yours"
+            ) from error
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

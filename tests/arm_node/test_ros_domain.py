@@ -42,6 +42,15 @@ def test_without_a_free_domain_there_is_a_sentence(monkeypatch, tmp_path):
         pass
 
 
+def test_a_folder_of_locks_that_cannot_be_used_is_named(monkeypatch, tmp_path):
+    monkeypatch.setattr(ros_domain.tempfile, "gettempdir", lambda: str(tmp_path))
+    folder = tmp_path / f"ros-domains-{os.getuid()}"
+    folder.touch()
+    sentence = rf"cannot reserve a ROS domain in {folder}: File exists; remove it, or set TMPDIR"
+    with pytest.raises(NoFreeDomainError, match=sentence), domain_of_its_own():
+        pass
+
+
 @pytest.fixture
 def table(tmp_path):
     """Return a function that writes a file like /proc/net/udp from ports and users."""
