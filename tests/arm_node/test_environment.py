@@ -65,15 +65,17 @@ def test_a_middleware_of_a_sourced_ros_is_left_as_it_is(tmp_path):
     index = tmp_path / "share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
     (index / "rmw_made_up_cpp").touch()
-    prepare_environment(
-        {
-            "HOME": "/home/me",
-            "AMENT_PREFIX_PATH": str(tmp_path),
-            "RMW_IMPLEMENTATION": "rmw_made_up_cpp",
-        }
-    )
+    environment = {
+        "HOME": "/home/me",
+        "AMENT_PREFIX_PATH": str(tmp_path),
+        "RMW_IMPLEMENTATION": "rmw_made_up_cpp",
+    }
+    prepare_environment(environment)
+    assert environment["RMW_IMPLEMENTATION"] == "rmw_made_up_cpp"
 
 
 @pytest.mark.parametrize("name", ["", "rmw_fastrtps_cpp"])
 def test_the_middleware_of_the_wheels_is_accepted(name):
-    prepare_environment({"HOME": "/home/me", "RMW_IMPLEMENTATION": name})
+    environment = {"HOME": "/home/me", "RMW_IMPLEMENTATION": name}
+    prepare_environment(environment)
+    assert environment["RMW_IMPLEMENTATION"] == name
