@@ -23,6 +23,7 @@ class FakeNode:
         return SimpleNamespace(
             topic_name=topic,
             publish=self.sent.append,
+            handle=SimpleNamespace(publish_raw=self.sent.append),
             get_subscription_count=lambda: self.subscribers,
         )
 
