@@ -20,8 +20,8 @@ def controllers_executor() -> Iterator[Executor]:
     """Spin an event-driven executor in a thread until the end of `with`.
 
     For each message rclpy's usual executor looks at all nodes that it has. With the event-driven
-    one, the simulation of an arm that is commanded at 100 Hz takes half of the processor time, that
-    of 4 arms a third, and a command to one of 16 arms moves it after half of the time.
+    one, the simulation of an arm that is commanded at 100 Hz takes half of the processor time, and
+    that of 4 arms a third; a command to one of 16 arms moves it after half of the time.
     """
     thread = ExecutorThread("controllers", EventsExecutor(), LONGEST_WAIT_S)
     thread.start()
