@@ -8,6 +8,7 @@ request.
 """
 
 import json
+import logging
 import os
 import socket
 import struct
@@ -32,6 +33,8 @@ DEFAULT_RANGE = "SUBNET"
 SOCKETS = "/proc/net/unix"
 _CREDENTIALS = struct.Struct("3i")
 """Process, user and group of the peer; see SO_PEERCRED in unix(7)."""
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +67,22 @@ def telling_names(node: "Node") -> Iterator[None]:
     """
     stop = threading.Event()
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as server:
-        server.bind(f"\0{_socket_name(os.environ)}")
         thread = threading.Thread(
             target=_tell, args=(server, node, stop), name="graph names", daemon=True
         )
-        thread.start()
+        try:
+            server.bind(f"\0{_socket_name(os.environ)}")
+            thread.start()
+        except OSError as error:
+            logger.info("Tab discovers the names of the graph itself: %s", error)
         try:
             yield
         finally:
             stop.set()
-            with suppress(OSError):  # It does not listen yet.
+            with suppress(OSError):  # It does not listen yet, or not at all.
                 server.shutdown(socket.SHUT_RDWR)
-            thread.join()
+            if thread.ident is not None:
+                thread.join()
 
 
 def ask_for_names(environ: Mapping[str, str], sockets: str = SOCKETS) -> GraphNames | None:

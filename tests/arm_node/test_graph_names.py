@@ -91,6 +91,15 @@ def test_a_process_that_ends_before_it_listens_does_not_wait(domain, monkeypatch
         assert ask_for_names({"ROS_DOMAIN_ID": domain}) is None
 
 
+def test_a_process_that_cannot_listen_goes_on_and_says_so(domain, monkeypatch, caplog):
+    caplog.set_level("INFO")
+    monkeypatch.setattr(graph_names, "_socket_name", lambda _: "too long" * 20)
+    with telling_names(FakeNode()):
+        assert ask_for_names({"ROS_DOMAIN_ID": domain}) is None
+    (message,) = caplog.messages
+    assert message.startswith("Tab discovers the names of the graph itself: ")
+
+
 def test_another_domain_has_other_names(domain):
     with telling_names(FakeNode()):
         assert answer({"ROS_DOMAIN_ID": domain}) is not None
