@@ -144,8 +144,9 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
         return CancelResponse.ACCEPT
 
     def _end(self, goal_id: bytes, result: ResultT) -> None:
-        self._ending.discard(goal_id)
+        # In this order: between the two, the loop's thread may finish the goal again.
         handle = self._running.pop(goal_id)
+        self._ending.discard(goal_id)
         match result.outcome:
             case GoalOutcome.SUCCEEDED:
                 handle.succeed()
