@@ -28,6 +28,7 @@ from arm_gazebo.drives.servo_tuning import (
     set_armature,
 )
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.spec.dry_friction import YIELDING, sticking
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_node.index_slice import as_slice
 
@@ -110,6 +111,7 @@ class Servo:
         self._bind(model, data, joints, tuning)
         for driven, joint in zip(self._joints, joints, strict=True):
             driven.joint = joint
+        self.set_friction_solvers()
         # The activations that hold a resting joint must be written to the new state.
         self._awake_ticks = self._settle_ticks
 
@@ -205,6 +207,7 @@ class Servo:
         for driven, saved in zip(self._joints, state["joints"], strict=True):
             driven.load_state(saved)
         self._find_servoed()
+        self.set_friction_solvers()
         self._gains, self._still = list(state["gains"]), list(state["still"])
         self._tick, self._awake_ticks = state["tick"], state["awake_ticks"]
 
@@ -334,3 +337,20 @@ class Servo:
         set_armature(model, self._joints[index].joint.dof_address, rotor)
         for follower, gear in tuning.gears[index]:
             set_armature(model, follower, 0.0 if mode is DriveMode.FREE else gear)
+        self._set_friction_solver(index)
+
+    def set_friction_solvers(self) -> None:
+        """Let dry friction yield or stick, after a change of modes or frictions from outside."""
+        for index in range(len(self._joints)):
+            self._set_friction_solver(index)
+
+    def _set_friction_solver(self, index: int) -> None:
+        """Let friction stick unless the drive holds the joint and can overcome it."""
+        model, tuning = self._model, self._tuning
+        driven = self._joints[index]
+        dofs = (driven.joint.dof_address, *(follower for follower, _ in tuning.gears[index]))
+        friction = float(np.abs(tuning.coupling[:, index]).dot(model.dof_frictionloss))
+        held = driven.mode in SERVOED and friction < tuning.sizing[index]
+        solver = YIELDING if held else sticking(model.opt.timestep)
+        for dof in dofs:
+            solver.apply(model, dof)

@@ -40,6 +40,8 @@ FULL_EFFORT_ERROR = 0.02
 """Largest error in rad or m at which a drive does not yet use all of its effort."""
 DEFAULT_EFFORT = 10.0
 """Effort in N m or N that sizes a drive without an effort limit."""
+FRICTION_SHARE = 0.25
+"""Fraction of its sizing effort that a drive without an effort limit uses against friction."""
 DEFAULT_ACCELERATION = 50.0
 """Largest acceleration in rad/s2 or m/s2 of a drive without an effort limit; strong real drives
 do no more."""
@@ -84,6 +86,7 @@ class ServoTuning:
         shares: a tenth of the largest inertias, for MuJoCo's constants, kg m2 or kg.
         gears: for each joint, the degrees of freedom that mimic it and their armatures.
         efforts: effort limits, N m or N; inf for none.
+        sizing: efforts that size the drives: the limits, or what a drive without a limit needs.
         braking: accelerations that all joints can reach at once in any pose, rad/s2 or m/s2.
         braking_efforts: efforts that these need in the worst pose, without gravity, N m or N.
         jerkless: highest accelerations in any case, rad/s2 or m/s2.
@@ -99,6 +102,7 @@ class ServoTuning:
     shares: Array
     gears: tuple[Gears, ...]
     efforts: Array
+    sizing: Array
     braking: Array
     braking_efforts: Array
     jerkless: Array
@@ -140,7 +144,9 @@ def tune(
     dofs = [joint.dof_address for joint in joints]
     model.dof_armature[dofs] = 0.0
     efforts = np.array([joint.effort for joint in joints])
-    rotor = _rotor(efforts, model.opt.timestep)
+    speeds = np.array([joint.velocity for joint in joints])
+    sizing = _sizing(model, coupling, efforts, speeds)
+    rotor = _rotor(sizing, model.opt.timestep)
     gears, felt = _gear(model, coupling, dofs, rotor)
     inertia, own, gravity = _sample(model, joints, coupling, qpos)
     largest = inertia.diagonal() + felt
@@ -148,7 +154,6 @@ def tune(
     armature = np.maximum(shares, rotor)
     _derive(model, mujoco.MjData(model), dofs, shares, gears)
     damping = 2.0 * armature / model.opt.timestep
-    speeds = np.array([joint.velocity for joint in joints])
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
     jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], DEFAULT_ACCELERATION)
     spare = np.maximum(EFFORT_SHARE * (efforts - gravity), MIN_EFFORT_SHARE * efforts)
@@ -161,6 +166,7 @@ def tune(
         shares=shares,
         gears=gears,
         efforts=efforts,
+        sizing=sizing,
         braking=braking,
         braking_efforts=worst @ braking,
         jerkless=jerkless,
@@ -188,7 +194,7 @@ def retune(
         tuning: tuning of the joints in the previous model.
     """
     coupling, dofs = _coupling(model, joints), [joint.dof_address for joint in joints]
-    gears, _ = _gear(model, coupling, dofs, _rotor(tuning.efforts, model.opt.timestep))
+    gears, _ = _gear(model, coupling, dofs, _rotor(tuning.sizing, model.opt.timestep))
     _derive(model, data, dofs, tuning.shares, gears)
     return replace(tuning, coupling=coupling, gears=gears)
 
@@ -229,10 +235,20 @@ def resistance(model: mujoco.MjModel, coupling: Array) -> tuple[list[float], lis
     return friction.tolist(), (coupling**2).T.dot(model.dof_damping).tolist()
 
 
-def _rotor(efforts: Array, step_s: float) -> Array:
+def _sizing(model: mujoco.MjModel, coupling: Array, efforts: Array, speeds: Array) -> Array:
+    """Return the efforts (n,) that size the drives.
+
+    A drive without a limit works against friction and damping beside its default effort. Friction
+    ends with the motion, and the error swings by friction over stiffness then.
+    """
+    friction, damping = map(np.array, resistance(model, coupling))
+    needed = DEFAULT_EFFORT + friction / FRICTION_SHARE + damping * speeds
+    return np.where(np.isfinite(efforts), efforts, needed)
+
+
+def _rotor(sizing: Array, step_s: float) -> Array:
     """Return the armature (n,) with whose stiffness FULL_EFFORT_ERROR uses the whole effort."""
-    bounded = np.where(np.isfinite(efforts), efforts, DEFAULT_EFFORT)
-    return bounded / FULL_EFFORT_ERROR * TIME_CONSTANT_S * step_s / 2.0
+    return sizing / FULL_EFFORT_ERROR * TIME_CONSTANT_S * step_s / 2.0
 
 
 def set_armature(model: mujoco.MjModel, dof: int, armature: float) -> None:

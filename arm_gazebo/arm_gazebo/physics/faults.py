@@ -9,14 +9,12 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.spec.dry_friction import sticking
+
 Values = NDArray[np.float64]
 
 STICTION = 1e5
 """Friction in N m or N that no drive overcomes."""
-STIFF = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""Impedance of that friction, the largest that MuJoCo takes: a pushed joint hardly creeps."""
-PROMPT = (1e-4, 1.0)
-"""Time constant of that friction in s, and its damping; MuJoCo takes two steps at least."""
 
 
 class Distortion(Enum):
@@ -51,8 +49,7 @@ class PhysicsFaults:
                 model.dof_solref[address].copy(),
             )
         model.dof_frictionloss[address] = STICTION
-        model.dof_solimp[address] = STIFF
-        model.dof_solref[address] = PROMPT
+        sticking(model.opt.timestep).apply(model, address)
 
     def free(self, joint: str) -> None:
         """Let a joint move again; has no effect if it does not stick."""

@@ -141,6 +141,7 @@ class Simulation:
     def free_joint(self, joint: str) -> None:
         """Let a joint that sticks move again."""
         self.faults.free(joint)
+        self.servo.set_friction_solvers()
 
     @run_input
     def distort(self, name: str, kind: str, deviation: float = 0.0, seed: int = 0) -> None:

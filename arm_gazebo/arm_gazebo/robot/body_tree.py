@@ -18,6 +18,7 @@ from arm_gazebo.robot.inertia_repair import (
     repair_inertia,
 )
 from arm_gazebo.robot.link_geometry import LinkGeometry
+from arm_gazebo.spec.dry_friction import sticking
 from arm_gazebo.spec.names import free_name
 from arm_gazebo.spec.report import BuildReport
 
@@ -196,12 +197,8 @@ class BodyTree:
         added.solref_limit = [max(0.004, 2 * self._step_s), 1.0]
         added.damping = np.array([joint.dynamics.damping, 0.0, 0.0])
         added.frictionloss = joint.dynamics.friction
-        if joint.limit is not None and 0.0 < joint.limit.effort <= joint.dynamics.friction:
-            # MuJoCo's default friction is so soft that a drive would overcome it all the same. A
-            # friction below the effort limit keeps the default: if stiff, it would cause a static
-            # error of 1 mrad and more.
-            added.solref_friction = [max(0.004, 2 * self._step_s), 1.0]
-            added.solimp_friction = [0.999, 0.9999, 0.001, 0.5, 2.0]
+        solver = sticking(self._step_s)
+        added.solref_friction, added.solimp_friction = solver.solref, solver.solimp
         bounds = self._bounds(joint)
         added.limited = mujoco.mjtLimited.mjLIMITED_FALSE
         if bounds is not None:

@@ -1,26 +1,130 @@
-"""Dry friction of a joint: stiff only where the joint's drive cannot overcome it."""
+"""Dry friction of a joint: it holds what it can, and does not spoil what a servo does."""
 
-import mujoco
+from typing import Any
+
+import numpy as np
 import pytest
 
-from arm_description.urdf.parser import parse_urdf
-from arm_gazebo.model.builder import build_model
+G = 9.81
 
-URDF = """
-<robot name="r"><link name="base"/><link name="arm"/>
-<joint name="j" type="revolute"><parent link="base"/><child link="arm"/>
-  <dynamics friction="1.0"/><limit lower="-1" upper="1" effort="{effort}" velocity="1"/></joint>
-</robot>
-"""
+
+def hanging(parts: Any, mass_kg: float, arm_m: float, friction: float, effort: float = 0.0) -> str:
+    """Return the URDF of a link that hangs beside its axis 'j'."""
+    return parts.robot(
+        parts.link("base"),
+        parts.link("bob", mass_kg, arm_m / 4, f"{arm_m} 0 0"),
+        parts.joint(
+            "j",
+            "base",
+            "bob",
+            xyz="0 0 2",
+            limit=f'lower="-3" upper="3" effort="{effort}" velocity="3"',
+            more=f'<dynamics friction="{friction}"/>',
+        ),
+        parts.ros2_control(["j"]),
+    )
 
 
 @pytest.mark.parametrize(
-    ("effort", "stiff"),
-    [(2.0, False), (0.5, True), (0.0, False)],
-    ids=["weaker than the drive", "stronger than the drive", "no limit of effort"],
+    ("mass_kg", "arm_m"), [(0.001, 0.01), (0.001, 0.1), (0.1, 0.1), (1.0, 0.3), (100.0, 1.0)]
 )
-def test_friction_is_stiff_if_the_drive_cannot_overcome_it(effort, stiff):
-    model = build_model(parse_urdf(URDF.format(effort=effort)), []).model
-    assert model.dof_frictionloss.tolist() == [1.0]
-    default = mujoco.MjSpec().default.joint.solimp_friction[0]
-    assert (model.dof_solimp[0, 0] != pytest.approx(default)) == stiff
+@pytest.mark.parametrize("speed", [0.0, -3.0], ids=["at rest", "thrown"])
+def test_a_joint_rests_under_its_own_friction(
+    bench: Any, parts: Any, mass_kg: float, arm_m: float, speed: float
+):
+    run = bench(hanging(parts, mass_kg, arm_m, mass_kg * G * arm_m / 0.9))
+    run.claim("effort")
+    run.command(0.0)
+    run.simulation.data.qvel[0] = speed
+    come_to_rest = run.run(0.5)[-1]
+    moved = run.run(10.0) - come_to_rest
+    assert np.abs(moved).max() < 0.002
+    assert abs(run.state("velocity")[0]) < 2e-4
+
+
+def test_a_joint_that_nothing_drives_rests_too(bench: Any, parts: Any):
+    limb = parts.joint("k", "bob", "limb", xyz="0.1 0 0", more='<dynamics friction="0.2"/>')
+    urdf = hanging(parts, 1.0, 0.1, 20.0, 50.0).replace(
+        "</robot>", parts.link("limb", 0.1, 0.02, "0.1 0 0") + limb + "</robot>"
+    )
+    run = bench(urdf, hold_joints=False)
+    run.run(10.0)
+    limb = run.built.joints["k"]
+    assert abs(run.simulation.data.qpos[limb.qpos_address]) < 0.001
+
+
+def test_joints_that_stick_do_not_chatter(bench: Any, parts: Any):
+    """A thrown arm comes to rest for good, whatever its neighbours do."""
+    arm = bench(parts.serial_arm(6, 5.0, 0.6, friction=0.6))
+    arm.claim("effort")
+    arm.command(*[0.0] * 6)
+    arm.simulation.data.qvel[:] = (2, -3, 4, -8, 8, -8)
+    arm.run(1.0)
+    assert np.ptp(arm.run(1.0), axis=0).max() < 1e-4
+
+
+def solver(run: Any) -> float:
+    return float(run.simulation.model.dof_solimp[0, 0])
+
+
+STICKS, YIELDS = 0.9999, 0.9
+
+
+def test_friction_sticks_unless_a_servo_holds_the_joint(bench: Any, parts: Any):
+    run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
+    assert solver(run) == YIELDS
+    run.claim("effort")
+    assert solver(run) == STICKS
+    run.release("effort")
+    assert solver(run) == YIELDS
+
+
+def test_friction_sticks_where_the_drive_cannot_overcome_it(bench: Any, parts: Any):
+    assert solver(bench(hanging(parts, 0.1, 0.1, 0.2, 0.1))) == STICKS
+
+
+def test_friction_of_a_follower_yields_with_its_leader(bench: Any, parts: Any):
+    mimic = '<mimic joint="j"/><dynamics friction="0.1"/>'
+    urdf = hanging(parts, 0.1, 0.1, 0.2, 5.0).replace(
+        "</robot>",
+        parts.link("other", 0.1) + parts.joint("k", "base", "other", more=mimic) + "</robot>",
+    )
+    run = bench(urdf)
+    assert run.simulation.model.dof_solimp[:, 0].tolist() == [YIELDS, YIELDS]
+    run.claim("effort")
+    assert run.simulation.model.dof_solimp[:, 0].tolist() == [STICKS, STICKS]
+
+
+def test_a_stalled_joint_stays_stalled_whatever_its_mode_and_is_free_in_the_last_one(
+    bench: Any, parts: Any
+):
+    run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
+    run.simulation.stall_joint("j")
+    run.claim("effort")
+    run.release("effort")
+    assert solver(run) == STICKS
+    run.simulation.free_joint("j")
+    assert solver(run) == YIELDS
+
+
+def test_a_restored_state_has_the_friction_of_its_modes(bench: Any, parts: Any):
+    run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
+    held = run.simulation.save_state()["servo"]
+    run.claim("effort")
+    run.simulation.servo.load_state(held)
+    assert solver(run) == YIELDS
+
+
+@pytest.mark.parametrize("mass_kg", [0.2, 2.0, 20.0])
+@pytest.mark.parametrize("dynamics", ['friction="30"', 'friction="30" damping="30"'])
+def test_a_drive_without_an_effort_limit_is_sized_for_friction_and_damping(
+    bench: Any, parts: Any, mass_kg: float, dynamics: str
+):
+    urdf = hanging(parts, mass_kg, 0.1, 0).replace('friction="0"', dynamics)
+    run = bench(urdf)
+    run.claim()
+    start = run.state("position")[0]
+    run.command(start + 0.3)
+    positions = run.run(2.0)[:, 0]
+    assert positions.max() < start + 0.3 * 1.005
+    assert positions[-1] == pytest.approx(start + 0.3, abs=1e-5)
