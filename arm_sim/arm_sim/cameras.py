@@ -9,8 +9,10 @@ from arm_gazebo.camera.on_demand import OnDemandCameras
 from arm_gazebo.physics.simulation import Simulation as Physics
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_sim.errors import UnknownNameError
+from arm_sim.user_traceback import ends_at_the_caller
 
 
+@ends_at_the_caller
 class Camera:
     """One camera; it draws the present state on request.
 

@@ -11,6 +11,7 @@ from arm_control.manager.controller_starter import ControllerStarter
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_sim.errors import CallError, GoalError, UnknownNameError
 from arm_sim.goals import Goal, RunningGoals
+from arm_sim.user_traceback import ends_at_the_caller
 
 if TYPE_CHECKING:
     from arm_control.controllers.gripper import GripperResult
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from arm_sim.trajectory import AnyTrajectory
 
 
+@ends_at_the_caller
 class ControllerHandle:
     """One loaded controller.
 
@@ -127,6 +129,7 @@ class ControllerHandle:
         return self.goals.start(lambda number: GripperRequest(number, (position,), efforts))
 
 
+@ends_at_the_caller
 class Controllers(Mapping[str, ControllerHandle]):
     """The loaded controllers by name. The simulation's thread."""
 

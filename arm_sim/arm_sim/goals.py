@@ -6,10 +6,12 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
 from arm_sim.errors import CallError, GoalError
+from arm_sim.user_traceback import ends_at_the_caller
 
 ResultT = TypeVar("ResultT", bound=GoalEnd)
 
 
+@ends_at_the_caller
 class Goal(Generic[ResultT]):
     """A goal of a controller; it advances while the simulation runs.
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.physics.simulation import Simulation as Physics
 from arm_sim.errors import UnknownNameError
+from arm_sim.user_traceback import ends_at_the_caller
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,7 @@ class JointState:
     effort: float
 
 
+@ends_at_the_caller
 class Joints(Mapping[str, JointState]):
     """The present states of all joints that move: by name, or as arrays in the order of `names`.
 

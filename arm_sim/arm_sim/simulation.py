@@ -15,6 +15,7 @@ from arm_sim.pose import AnyPose, Matrix
 from arm_sim.robots import AnyPath
 from arm_sim.snapshots import SavedState, Snapshots
 from arm_sim.states import Sensors, States
+from arm_sim.user_traceback import ends_at_the_caller
 
 if TYPE_CHECKING:
     from arm_control.controllers.gripper import GripperResult
@@ -27,6 +28,7 @@ GOAL_TIMEOUT_S = 60.0
 ROUNDING = 1e-6  # of a duration, in control periods
 
 
+@ends_at_the_caller
 class Simulation:
     """A robot in a world with its controllers; time passes only in `step` and `run`.
 

@@ -5,8 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_sim.errors import UnknownNameError
+from arm_sim.user_traceback import ends_at_the_caller
 
 
+@ends_at_the_caller
 class States(Mapping[str, float]):
     """The state interfaces of the hardware by full name, such as 'j0/position'.
 
@@ -31,6 +33,7 @@ class States(Mapping[str, float]):
         return len(self._indices)
 
 
+@ends_at_the_caller
 class Sensors(Mapping[str, Mapping[str, float]]):
     """The present readings of the robot's sensors by name: the values of their channels."""
 

@@ -135,20 +135,16 @@ class Background:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._line = ""
         self._running: Running | None = None
 
     def start(self, line: str, output: tuple[str, ...]) -> None:
-        """Start a command and wait for what its page shows, unless it is running already."""
-        if line == self._line:
-            return
+        """End what runs, start a command, and wait for what its page shows."""
         self.stop()
         self._running = Running(line, self._folder)
-        self._line = line
         self._running.wait_until_shown([*output] or [ANYTHING, "ready 1.43 s"])
 
     def stop(self) -> None:
         """End it."""
         if self._running is not None:
             self._running.close()
-        self._running, self._line = None, ""
+        self._running = None

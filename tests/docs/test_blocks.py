@@ -14,16 +14,7 @@ from shell import ANYTHING, INTERRUPT, Background, Running, comparable, pattern
 LANGUAGES = {"console", "bash", "python", "yaml", "xml", "toml", "text", "dockerfile"}
 
 
-def first_launch(page: Path) -> str:
-    """Return what a page starts first, so that pages with the same launch follow each other."""
-    started = (commands_of(b)[0].line for b in blocks_of(page) if b.directive == "background")
-    return next(started, "")
-
-
-RUNNING_PAGES = sorted(
-    (page for page in PAGES if any(b.language == "console" for b in blocks_of(page))),
-    key=first_launch,
-)
+RUNNING_PAGES = [p for p in PAGES if any(b.language == "console" for b in blocks_of(p))]
 
 
 @pytest.mark.ros
@@ -33,7 +24,9 @@ def test_the_commands_of_a_page_print_what_it_says(
     page: Path, folder: Path, background: Background
 ):
     for block in blocks_of(page):
-        if block.language == "console" and not block.directive.startswith("not run"):
+        if block.title:
+            (folder / block.title).write_text(block.text)
+        elif block.language == "console" and not block.directive.startswith("not run"):
             for command in commands_of(block):
                 run(command, block, folder, background)
 
