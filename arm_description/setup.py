@@ -44,6 +44,7 @@ setup(
         "console_scripts": [
             "robot_state_publisher = arm_description.robot_state_publisher_node:main",
             "joint_state_publisher = arm_description.joint_state_publisher_node:main",
+            "static_transform_publisher = arm_description.static_transform_publisher_node:main",
         ],
         "launch_py.packages": [
             "robot_state_publisher = arm_description",

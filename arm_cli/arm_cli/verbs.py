@@ -199,6 +199,7 @@ TF = VerbFamily(
     (
         Verb("tree", "print the tree of frames", "arm_cli.tf.tree:PRINT_TREE"),
         Verb("echo", "print the transform between two frames", "arm_cli.tf.echo"),
+        Verb("monitor", "print how late transforms arrive", "arm_cli.tf.monitor"),
         Verb("view_frames", "draw the tree of frames to a file", "arm_cli.tf.tree:VIEW_FRAMES"),
     ),
 )

@@ -27,21 +27,21 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         # Other words are ignored, as by ROS 2's program.
         known, _ = _parser().parse_known_args(remove_ros_args(arguments)[1:])
-        nodes = first_node(lambda: _nodes(known.namespaces), _destroy)
+        nodes = first_node(lambda: _nodes(known.namespaces, known.urdf), _destroy)
         with spinning(*nodes), telling_names(nodes[0]):
             yield
 
     return run_process(application, arguments, user_errors=(DescriptionError,))
 
 
-def _nodes(namespaces: Sequence[str]) -> "list[RobotStatePublisher]":
+def _nodes(namespaces: Sequence[str], urdf: str | None) -> "list[RobotStatePublisher]":
     """Return a node for each namespace; if one cannot be made, none of them stays."""
     from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 
     with ExitStack() as made:
         nodes: list[RobotStatePublisher] = []
         for namespace in namespaces:
-            nodes.append(RobotStatePublisher(namespace))
+            nodes.append(RobotStatePublisher(namespace, urdf))
             made.callback(nodes[-1].destroy_node)
         made.pop_all()
     return nodes
@@ -57,6 +57,11 @@ def _parser() -> argparse.ArgumentParser:
         prog="robot_state_publisher",
         description="Publish the transforms of a robot's links from its joint states. Parameters "
         "and topics are those of the ROS 2 node of the same name.",
+    )
+    parser.add_argument(
+        "urdf",
+        nargs="?",
+        help="a URDF file, where the parameter robot_description is empty (deprecated by ROS)",
     )
     parser.add_argument(
         "--namespaces",

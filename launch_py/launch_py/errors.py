@@ -5,6 +5,7 @@ LaunchError
 +-- LaunchFileError        a launch file that cannot be read or does not make sense
 +-- SubstitutionError      a substitution that has no value
 +-- NotFoundError          a package, executable or program that does not exist
+    +-- UnavailableError   one that is known, but that nothing replaces here
 +-- NodeParameterError     a node parameter that cannot be passed on
 +-- StartError             a process that could not be started
 """
@@ -31,6 +32,10 @@ class SubstitutionError(LaunchError):
 
 class NotFoundError(LaunchError):
     """A package, an executable or a program does not exist."""
+
+
+class UnavailableError(NotFoundError):
+    """A known executable of ROS has no replacement here; a launch starts without it."""
 
 
 class NodeParameterError(LaunchError):

@@ -22,12 +22,14 @@ class FrameHistory:
         static: whether the latest transform came on /tf_static.
         pose: the latest pose in the parent.
         stamps_s: the stamps of the received transforms, oldest first.
+        delays_s: from each stamp to its arrival; empty for a static frame.
     """
 
     parent: str
     static: bool
     pose: RigidTransform = field(default_factory=RigidTransform)
     stamps_s: deque[float] = field(default_factory=lambda: deque(maxlen=_STAMPS_KEPT))
+    delays_s: deque[float] = field(default_factory=lambda: deque(maxlen=_STAMPS_KEPT))
 
     @property
     def span_s(self) -> float:
@@ -62,7 +64,13 @@ class FrameLog:
         self._frames: dict[str, FrameHistory] = {}
 
     def add(
-        self, parent: str, child: str, stamp_s: float, pose: RigidTransform, static: bool
+        self,
+        parent: str,
+        child: str,
+        stamp_s: float,
+        pose: RigidTransform,
+        static: bool,
+        delay_s: float = 0.0,
     ) -> None:
         """Add a transform. A frame has one parent, and a new parent replaces the old one."""
         parent, child = parent.lstrip("/"), child.lstrip("/")
@@ -74,7 +82,10 @@ class FrameLog:
         if history.stamps_s and stamp_s < history.stamps_s[-1]:
             # The clock was set back, as by a reset; tf2 forgets the old time as well.
             history.stamps_s.clear()
+            history.delays_s.clear()
         history.stamps_s.append(stamp_s)
+        if not static:
+            history.delays_s.append(delay_s)
 
     @property
     def frames(self) -> dict[str, FrameHistory]:
@@ -99,6 +110,23 @@ class FrameLog:
         Raises:
             NoSuchNameError: there is no such frame, or the two are in different trees.
         """
+        up, down = self._ways(source, target)
+        pose = self._pose_below(up).inverse().then(self._pose_below(down))
+        moving = [h for h in (self._frames[name] for name in (*up, *down)) if not h.static]
+        return Lookup(pose, min((h.stamps_s[-1] for h in moving), default=0.0))
+
+    def path(self, source: str, target: str) -> list[str]:
+        """Return the frames from one to the other, with both; raises like `lookup`."""
+        up, down = self._ways(source, target)
+        common = self._frames[up[-1]].parent if up else source
+        return [*up, common, *reversed(down)]
+
+    def _ways(self, source: str, target: str) -> tuple[list[str], list[str]]:
+        """Return the frames below the common ancestor: those above the source, then the target.
+
+        Raises:
+            NoSuchNameError: see `lookup`.
+        """
         known = self.names()
         for name in (source, target):
             if name not in known:
@@ -111,10 +139,7 @@ class FrameLog:
                 f"{source_line[-1]!r} and {target_line[-1]!r}"
             )
         down = target_line[: target_line.index(common)]
-        up = source_line[: source_line.index(common)]
-        pose = self._pose_below(up).inverse().then(self._pose_below(down))
-        moving = [h for h in (self._frames[name] for name in (*up, *down)) if not h.static]
-        return Lookup(pose, min((h.stamps_s[-1] for h in moving), default=0.0))
+        return source_line[: source_line.index(common)], down
 
     def draw_tree(self) -> Iterator[str]:
         """Yield the lines of the tree, with the roots first."""

@@ -2,7 +2,8 @@
 
 from functools import partial
 
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from arm_cli.errors import UnansweredError
@@ -33,24 +34,35 @@ def listen(session: CommandSession, duration_s: float) -> FrameLog:
 
 
 def _collected(session: CommandSession) -> FrameLog:
-    """Return a log to which all transforms are added that the session's node receives."""
+    """Return a log to which all transforms are added that the session's node receives.
+
+    Their delays are by /clock where somebody publishes it.
+    """
     log = FrameLog()
+    simulated_s: list[float] = []
+
+    def take_clock(message: Clock) -> None:
+        simulated_s[:] = [message.clock.sec + message.clock.nanosec * 1e-9]
 
     def take(message: TFMessage, static: bool) -> None:
+        now_s = simulated_s[0] if simulated_s else session.clock_s()
         for transform in message.transforms:
             stamp = transform.header.stamp
+            stamp_s = stamp.sec + stamp.nanosec * 1e-9
             translation, rotation = transform.transform.translation, transform.transform.rotation
             log.add(
                 transform.header.frame_id,
                 transform.child_frame_id,
-                stamp.sec + stamp.nanosec * 1e-9,
+                stamp_s,
                 RigidTransform(
                     (translation.x, translation.y, translation.z),
                     (rotation.x, rotation.y, rotation.z, rotation.w),
                 ),
                 static,
+                max(0.0, now_s - stamp_s),
             )
 
+    session.node.create_subscription(Clock, "/clock", take_clock, qos_profile_sensor_data)
     latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     session.node.create_subscription(TFMessage, "/tf", partial(take, static=False), 100)
     session.node.create_subscription(TFMessage, "/tf_static", partial(take, static=True), latched)

@@ -18,7 +18,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from arm_description.errors import DescriptionError
+from arm_description.errors import DescriptionError, SettingsError
 from arm_description.kinematics.transform_tree import Frame, Motion, TransformTree
 from arm_description.publishers.state_publisher_settings import (
     StatePublisherSettings,
@@ -31,6 +31,7 @@ from arm_node.names import listing
 from arm_node.parameter_values import read_flag, read_text, wanted_by
 from arm_node.parameters import declare_untyped
 from arm_node.printable import printable
+from arm_node.user_file import read_text as read_file_text
 from arm_node.workarounds.joint_state_encoding import (
     NANOSECONDS,
     EncodingError,
@@ -104,17 +105,20 @@ class RobotStatePublisher(Node):
 
     Args:
         namespace: namespace of the node; an argument __ns of the process takes its place.
+        urdf_file: the file that robot_description comes from if that parameter is empty.
 
     Raises:
         SettingsError: a parameter is invalid, for example an empty robot_description.
         XmlError, UrdfError: the description is not a robot.
     """
 
-    def __init__(self, namespace: str = "") -> None:
+    def __init__(self, namespace: str = "", urdf_file: str | None = None) -> None:
         super().__init__("robot_state_publisher", namespace=namespace)
         self._stamp_clock = StampClock(self)
         for name, (default, read, description) in _PARAMETERS.items():
             declare_untyped(self, name, default, description, wanted_by(read), read_only=False)
+        if urdf_file is not None and not self.get_parameter("robot_description").value:
+            self._take_file(urdf_file)
         self._settings = self._checked(())
         self._tree = TransformTree(parse_urdf(self._settings.robot_description))
         self._throttle = StateThrottle(self._settings.publish_frequency_hz)
@@ -148,6 +152,24 @@ class RobotStatePublisher(Node):
         self.add_post_set_parameters_callback(self._take_parameters)
         self._publish_description()
         self._publish_static()
+
+    def _take_file(self, path: str) -> None:
+        """Set robot_description from a file.
+
+        Raises:
+            SettingsError: the file cannot be read.
+        """
+        self.get_logger().warning(
+            "No robot_description parameter, but command-line argument available.  Assuming "
+            "argument is name of URDF file.  This backwards compatibility fallback will be "
+            "removed in the future."
+        )
+        try:
+            text = read_file_text(path)
+        except (OSError, UnicodeError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise SettingsError(f"Failed to open URDF file: {path}: {reason}") from error
+        self.set_parameters([Parameter("robot_description", value=text)])
 
     def _checked(self, changes: Sequence[Parameter]) -> StatePublisherSettings:
         values = {name: self.get_parameter(name).value for name in _PARAMETERS}

@@ -11,7 +11,7 @@ from typing import Any, TypedDict
 
 from launch_py.action import Action, check_actions
 from launch_py.conditions import Condition
-from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
+from launch_py.errors import LaunchError, LaunchFileError, NotFoundError, UnavailableError
 from launch_py.event_handlers import OnProcessExit, Reaction
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_entity import LaunchSurvey
@@ -161,12 +161,18 @@ class ExecuteProcess(Action):
     def expand(self, context: LaunchContext) -> None:
         """Add the process, and the actions that follow its exit, to the plan.
 
+        A known program of ROS that nothing replaces here is left out, with a warning.
+
         Raises:
             LaunchError: its program does not exist, or an argument is invalid.
         """
         namespace = self.resolve_namespace(context)
-        command = self._with_prefix(context, self.command_words(context))
         name = self.process_name(context)
+        try:
+            command = self._with_prefix(context, self.command_words(context))
+        except UnavailableError as error:
+            context.warnings.append(f"{name} is skipped: {error}")
+            return
         context.plan.add(
             ProcessStep(
                 after=(*context.after, *(Trigger(TriggerKind.READY, t) for t in self.depends_on)),
@@ -254,6 +260,7 @@ class ExecuteProcess(Action):
 
         Raises:
             NotFoundError: neither exists; see `find_program`.
+            UnavailableError: it is a program of ROS that nothing replaces here.
         """
         path = context.environment_variable("PATH") or ""
         if os.sep in program and self.cwd is not None:
@@ -262,10 +269,18 @@ class ExecuteProcess(Action):
         try:
             return (find_program(program, path),)
         except NotFoundError:
-            stand_in = Packages(context.base_environment).stand_in(program)
-            if stand_in is None:
+            packages = Packages(context.base_environment)
+            stand_in = packages.stand_in(program)
+            if stand_in is not None:
+                return stand_in
+            # rviz2 and others are the only executable of a package of their name.
+            name = os.path.basename(program)
+            listed = packages.stand_in_of(name, name)
+            if listed is None:
                 raise
-            return stand_in
+            command = packages.executable(name, name)
+            context.warnings.append(listed.remark)
+            return command
 
     def _environment(self, context: LaunchContext) -> dict[str, str | None]:
         variables: dict[str, str | None] = {} if self.env is not None else dict(context.environment)

@@ -90,6 +90,7 @@ class Node(ExecuteProcess):
             NotFoundError: there is no such package or executable.
             NodeParameterError: a parameter cannot be passed on.
         """
+        words = [perform_text(context, word) for word in self.arguments]
         executable = perform_text(context, self.executable)
         if self.package is None:
             program = self.find(context, executable)
@@ -98,8 +99,11 @@ class Node(ExecuteProcess):
             packages = Packages(context.base_environment)
             program = packages.executable(package, executable)
             found = packages.stand_in_of(package, executable)
-            if found is not None and found.remark:
-                context.warnings.append(found.remark)
+            if found is not None:
+                if found.remark:
+                    context.warnings.append(found.remark)
+                if not found.takes_ros_arguments:
+                    return (*program, *words)
         ros: list[str | GeneratedFile] = []
         name = "" if self.node_name is None else perform_text(context, self.node_name)
         namespace = self.resolve_namespace(context)
@@ -113,7 +117,6 @@ class Node(ExecuteProcess):
         for old, new in [*context.remappings, *remappings]:
             ros += ["-r", f"{old}:={new}"]
         ros += [perform_text(context, word) for word in self.ros_arguments]
-        words = [perform_text(context, word) for word in self.arguments]
         return (*program, *words, *(["--ros-args", *ros] if ros else []))
 
     def node_names(self, context: LaunchContext) -> Callable[[], Sequence[str]]:

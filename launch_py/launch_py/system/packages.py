@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from launch_py.errors import NotFoundError
+from launch_py.errors import NotFoundError, UnavailableError
 from launch_py.near_names import (
     MAX_LISTED,
     describe_irregular_file,
@@ -199,12 +199,13 @@ class Packages:
         Raises:
             NotFoundError: there is no such package or executable; the message suggests similar
                 names.
+            UnavailableError: it is known, but nothing replaces it; the message says what to do.
         """
         found = self.stand_in_of(package, name)
         if found is None:
             return self._own_executable(package, name)
         if found.kind == NOTHING:
-            raise NotFoundError(f"{name} of {package} is not available: {found.words[0]}")
+            raise UnavailableError(f"{name} of {package} is not available: {found.words[0]}")
         owner, program, *words = found.words
         filled = (SHARE.sub(lambda m: str(self.share_folder(m[1])), word) for word in words)
         return (*self._own_executable(owner, program), *filled)
@@ -212,7 +213,7 @@ class Packages:
     def stand_in_of(self, package: str, name: str) -> StandIn | None:
         """Return the replacement of an executable, or None if it is installed or has none."""
         for found in stand_ins(self._prefixes):
-            if (found.package, found.name) == (package, name):
+            if found.replaces(package, name):
                 with suppress(NotFoundError):
                     self._own_executable(package, name)
                     return None
@@ -285,7 +286,11 @@ class Packages:
                         if os.path.isfile(f"{folder}/{name}")
                         and os.access(f"{folder}/{name}", os.X_OK)
                     )
-        found.update((s.package, s.name) for s in stand_ins(self._prefixes) if s.kind == SAME)
+        found.update(
+            (s.package, s.name)
+            for s in stand_ins(self._prefixes)
+            if s.kind == SAME and "::" not in s.name
+        )
         return sorted(found)
 
     def _indexed_packages(self) -> set[str]:

@@ -10,6 +10,7 @@ import os
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 FOLDER = "share/ament_index/resource_index/executable_stand_ins"
@@ -21,8 +22,8 @@ class StandIn:
     """The replacement of an executable.
 
     Attributes:
-        package: the package of the missing executable.
-        name: the name of the missing executable.
+        package: the package of the missing executable, with wildcards.
+        name: the name of the missing executable or composable node, with wildcards.
         kind: SAME for the same program, OTHER for another one, NOTHING if nothing replaces it.
         words: package, executable and arguments of the replacement; for NOTHING, a sentence.
     """
@@ -32,13 +33,22 @@ class StandIn:
     kind: str
     words: tuple[str, ...]
 
+    def replaces(self, package: str, name: str) -> bool:
+        """Return whether this is the replacement of an executable."""
+        return fnmatchcase(package, self.package) and fnmatchcase(name, self.name)
+
+    @property
+    def takes_ros_arguments(self) -> bool:
+        """Whether the replacement is a node, not a command line tool."""
+        return self.words[1] != "arm"
+
     @property
     def remark(self) -> str:
         """A message about the replacement, "" if it is the same program."""
         if self.kind != OTHER:
             return ""
         program = " ".join(word for word in self.words[1:] if not word.startswith("-"))
-        if self.words[1] != "arm":
+        if self.takes_ros_arguments:
             program = f"{self.words[1]} of {self.words[0]}"
         return f"{self.package} is not installed: {program} runs in place of {self.name}"
 

@@ -7,6 +7,7 @@ import pytest
 from arm_cli.errors import NoSuchNameError
 from arm_cli.tf.echo import describe_lookup
 from arm_cli.tf.frame_log import FrameLog
+from arm_cli.tf.monitor import describe_delays
 from arm_cli.tf.tree import export, frame_graph
 from arm_node.rigid_transform import RigidTransform
 
@@ -124,3 +125,23 @@ def test_a_frame_whose_time_went_back_has_the_rate_of_the_new_time(log):
         log.add("base", "arm", stamp_s, RigidTransform(), static=False)
     assert log.frames["arm"].rate_hz == pytest.approx(20.0)
     assert log.lookup("base", "arm").stamp_s == 0.1
+
+
+def test_the_delays_as_tf2_monitor_prints_them(log):
+    for stamp_s, delay_s in ((1.3, 0.02), (1.4, 0.04)):
+        log.add("base", "arm", stamp_s, RigidTransform(), static=False, delay_s=delay_s)
+    everything = "\n".join(describe_delays(log, []))
+    assert everything.startswith("RESULTS: for all Frames\n\nFrames:\nFrame: arm, published by <")
+    assert "Frame: arm, published by <default_authority>, Average Delay: 0.012, Max" in everything
+    assert "Frame: hand, published by <default_authority>, static" in everything
+    assert "All Broadcasters:\nNode: <default_authority> 10 Hz, Average Delay: 0.012" in everything
+    between = list(describe_delays(log, ["camera", "hand"]))
+    assert between[:3] == [
+        "RESULTS: for camera to hand",
+        "Chain is: camera -> base -> arm -> hand",
+        "Net delay     avg = 0.012: max = 0.04",
+    ]
+    assert any(line.startswith("Frame: camera, ") for line in between)
+    assert "Frame: camera" not in "\n".join(describe_delays(log, ["base", "hand"]))
+    with pytest.raises(NoSuchNameError, match="no frame 'hnd'"):
+        list(describe_delays(log, ["base", "hnd"]))

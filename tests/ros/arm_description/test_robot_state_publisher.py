@@ -301,3 +301,25 @@ def test_a_signal_ends_it_with_exit_code_0_and_without_a_word(tf, send, number):
     collector.wait_for()
     assert node.stop(number) == 0
     assert node.own_words == []
+
+
+FALLBACK = "No robot_description parameter, but command-line argument available.  Assuming argument"
+
+
+def test_a_urdf_file_as_argument_takes_the_place_of_the_parameter(
+    client, start, urdf, latched, tmp_path
+):
+    from std_msgs.msg import String
+
+    file = tmp_path / "robot.urdf"
+    file.write_text(urdf)
+    node = start(MODULE, str(file))
+    node.wait_for(FALLBACK)
+    received = client.subscribe(String, "robot_description", latched).wait_for()
+    assert received[0].data == urdf
+
+
+def test_a_urdf_file_that_does_not_exist_is_named(start, tmp_path):
+    node = start(MODULE, str(tmp_path / "robt.urdf"))
+    node.wait_for(f"Failed to open URDF file: {tmp_path}/robt.urdf: No such file or directory")
+    assert node.process.wait(20) == 1
