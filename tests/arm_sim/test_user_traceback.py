@@ -19,7 +19,7 @@ HERE = Path(__file__).name
 
 
 def test_an_error_of_a_method_ends_here_without_a_cause(sim: Simulation):
-    with pytest.raises(RequestError, match="no file for 'can.sdf'") as raised:
+    with pytest.raises(RequestError, match=r"no file for 'can\.sdf'") as raised:
         sim.spawn("can.sdf")
     assert files_of(raised.value) == [HERE]
     assert raised.value.__cause__ is None

@@ -1,4 +1,4 @@
-"""A folder and a background for the blocks of one page, which start with nothing from another page."""
+"""A folder and a background for the blocks of one page, which share nothing with other pages."""
 
 import sys
 from collections.abc import Iterator
