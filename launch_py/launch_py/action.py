@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
 from launch_py.conditions import Condition
-from launch_py.errors import LaunchFileError, errors_attributed_to
+from launch_py.errors import LaunchFileError, errors_attributed_to, errors_located_at
 from launch_py.events import ProcessEvent
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_entity import LaunchDescriptionEntity, LaunchSurvey
 from launch_py.plan.steps import DeferredStep, Step
+
+LAUNCH_FILE = "__launch_file__"
+"""The global name by which the code of a Python launch file is known; its value is the path."""
 
 
 class Action(LaunchDescriptionEntity, ABC):
@@ -19,10 +23,14 @@ class Action(LaunchDescriptionEntity, ABC):
 
     Expanding an action starts nothing: it only adds steps to the plan or changes the context for
     the actions that follow. Processes start after the whole description has been expanded.
+
+    Attributes:
+        where: the file and line that describe it, for messages; "" for one of no launch file.
     """
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         self.condition = condition
+        self.where = place_in_launch_file()
 
     def visit(self, context: LaunchContext) -> None:
         """Expand the action if its condition holds.
@@ -30,7 +38,7 @@ class Action(LaunchDescriptionEntity, ABC):
         Raises:
             LaunchError: the action is invalid, or an argument of it has the wrong type.
         """
-        with errors_attributed_to(self.describe):
+        with errors_located_at(self.where), errors_attributed_to(self.describe):
             if self.condition is None or self.condition.evaluate(context):
                 with context.plan.expanding(self):
                     self.expand(context)
@@ -46,6 +54,16 @@ class Action(LaunchDescriptionEntity, ABC):
     def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
         """Record this action and all actions inside it, whatever their conditions say."""
         survey.actions.add(self)
+
+
+def place_in_launch_file() -> str:
+    """Return the file and line of a Python launch file whose code is running, else ""."""
+    frame = inspect.currentframe()
+    while frame is not None:
+        if LAUNCH_FILE in frame.f_globals:
+            return f"{frame.f_globals[LAUNCH_FILE]}, line {frame.f_lineno}"
+        frame = frame.f_back
+    return ""
 
 
 def check_actions(actions: Iterable[Action] | Action, owner: str) -> list[Action]:

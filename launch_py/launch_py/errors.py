@@ -66,3 +66,22 @@ def errors_attributed_to(describe: Callable[[], str]) -> Iterator[None]:
         is_custom = type(error).__module__ != "builtins"
         text = str(error) if is_custom and str(error) else f"{type(error).__name__}: {error}"
         raise LaunchFileError(f"{describe()}: {text}") from error
+
+
+@contextmanager
+def errors_located_at(where: str) -> Iterator[None]:
+    """Let an error begin with a place in a launch file, unless it already names a line.
+
+    A UsageError is about the command line, so it stays as it is.
+
+    Args:
+        where: the file and line, "" if unknown.
+    """
+    try:
+        yield
+    except UsageError:
+        raise
+    except LaunchError as error:
+        if where and ", line " not in str(error):
+            error.args = (f"{where}: {error}",)
+        raise

@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from launch_py.action import LAUNCH_FILE
 from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
 from launch_py.launch_description import LaunchDescription
 from launch_py.ros_imports import MissingRosNameError, ros_imports
@@ -78,7 +79,7 @@ def read_launch_file(path: Path) -> LaunchDescription:
 def _read_python(path: Path) -> LaunchDescription:
     """Run a Python launch file; see `read_launch_file`."""
     module = ModuleType(path.name.replace(".", "_"))
-    module.__file__ = str(path)
+    module.__file__ = module.__dict__[LAUNCH_FILE] = str(path)
     try:
         # Compiled by hand: an import would leave a __pycache__ in the installed share folder.
         with ros_imports():

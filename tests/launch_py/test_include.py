@@ -5,7 +5,7 @@ import os
 import pytest
 
 from launch_py.command.command_line import find_launch_file
-from launch_py.errors import LaunchFileError, NotFoundError, UsageError
+from launch_py.errors import LaunchError, LaunchFileError, NotFoundError, UsageError
 from launch_py.launch_description import survey_description
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan.steps import MessageStep
@@ -173,3 +173,20 @@ def test_reading_leaves_no_cache_folder(write_launch_file):
     path = write_launch_file("actions = []")
     read_launch_file(path)
     assert [p.name for p in path.parent.iterdir() if p.name != "log"] == [path.name]
+
+
+@pytest.mark.parametrize(
+    ("action", "said"),
+    [
+        ("EqualsSubstitution(LaunchConfiguration('a'), 1)", "no launch argument 'a'"),
+        ("NotSubstitution('maybe')", "maybe is 'maybe', neither"),
+        ("PythonExpression('1 / 0')", "expression '1 / 0' raises ZeroDivisionError"),
+        ("33", "a text or a substitution is needed, not 33"),
+    ],
+)
+def test_errors_of_expansion_name_file_and_line(write_launch_file, expand_file, action, said):
+    path = write_launch_file(f"actions = [\nLogInfo(msg='a'),\nLogInfo(msg={action}),\n]")
+    with pytest.raises(LaunchError) as caught:
+        expand_file(path)
+    line = next(n for n, text in enumerate(path.read_text().splitlines(), 1) if action in text)
+    assert str(caught.value).startswith(f"{path}, line {line}: {said}")

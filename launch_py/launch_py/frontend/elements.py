@@ -126,7 +126,9 @@ def _action(entity: Entity) -> Action:
     if element.children is not None:
         _check_parts(entity, element.children)
     try:
-        return element.make(entity)
+        action = element.make(entity)
+        action.where = entity.where
+        return action
     except LaunchFileError:
         raise
     except LaunchError as error:

@@ -23,10 +23,10 @@ from launch_py.substitutions import (
     NotEqualsSubstitution,
     NotSubstitution,
     OrSubstitution,
-    PythonExpression,
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
+from launch_py.substitutions.safe_expression import SafeExpression
 
 NAME = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
 MANY = 1000
@@ -49,7 +49,7 @@ KINDS = {
     "dirname": _Kind(ThisLaunchFileDir, 0, 0),
     "env": _Kind(lambda name, value=None: EnvironmentVariable(name, default_value=value), 1, 2),
     "equals": _Kind(EqualsSubstitution, 2, 2),
-    "eval": _Kind(PythonExpression),
+    "eval": _Kind(SafeExpression, 1, 2),
     "filename": _Kind(ThisLaunchFile, 0, 0),
     "find-exec": _Kind(lambda name: FindExecutable(name=name)),
     "find-pkg-prefix": _Kind(FindPackagePrefix),
@@ -112,7 +112,8 @@ class _Parser:
             if self._next() == "(" and not quote:
                 raise self._malformed()
             parts.append(self._character() if self._take("\\") else self._part())
-        return parts
+        plain = [part for part in parts if isinstance(part, str)]
+        return "".join(plain) if len(plain) == len(parts) else parts
 
     def _character(self) -> str:
         if not self._next():

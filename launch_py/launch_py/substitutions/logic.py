@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from os import PathLike
+
 from launch_py.errors import SubstitutionError
 from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
 from launch_py.typed_values import boolean_text, parse_boolean
@@ -18,34 +21,55 @@ def _truth(context: LaunchScope, value: Text) -> bool:
 def _equal(context: LaunchScope, left: Text, right: Text) -> bool:
     """Compare two texts as ROS does: as booleans, else as numbers, else as texts."""
     a, b = perform_text(context, left), perform_text(context, right)
-    if a.lower() in ("true", "false") and b.lower() in ("true", "false"):
-        return a.lower() == b.lower()
+    booleans = {"true": True, "1": True, "false": False, "0": False}
+    if a.lower() in booleans and b.lower() in booleans:
+        return booleans[a.lower()] == booleans[b.lower()]
     try:
-        return float(a) == float(b)
+        return math.isclose(float(a), float(b))
     except ValueError:
         return a == b
 
 
-class _Pair(Substitution):
-    def __init__(self, left: Text, right: Text) -> None:
-        self.left = left
-        self.right = right
+def _as_text(value: object) -> Text:
+    """Return a value as a text to compare; texts and substitutions stay as they are."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return boolean_text(value)
+        case str() | Substitution() | PathLike():
+            return value
+        case list() | tuple() if any(isinstance(part, Substitution) for part in value):
+            return value
+    return str(value)
 
 
-class EqualsSubstitution(_Pair):
-    """Whether two texts are equal; numbers and true/false compare by value."""
+class _Comparison(Substitution):
+    def __init__(self, left: object, right: object) -> None:
+        self.left = _as_text(left)
+        self.right = _as_text(right)
+
+
+class EqualsSubstitution(_Comparison):
+    """Whether two values are equal; numbers and booleans (1 is true) compare by value."""
 
     def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
         return boolean_text(_equal(context, self.left, self.right))
 
 
-class NotEqualsSubstitution(_Pair):
-    """Whether two texts differ."""
+class NotEqualsSubstitution(_Comparison):
+    """Whether two values differ; the opposite of `EqualsSubstitution`."""
 
     def perform(self, context: LaunchScope) -> str:
         """Return 'true' or 'false'."""
         return boolean_text(not _equal(context, self.left, self.right))
+
+
+class _Pair(Substitution):
+    def __init__(self, left: Text, right: Text) -> None:
+        self.left = left
+        self.right = right
 
 
 class AndSubstitution(_Pair):

@@ -257,3 +257,19 @@ def test_xml_and_yaml_files_are_found_by_package_and_name(demo, run_launch_py):
     assert "It has demo.launch.xml" in done.stderr
     done = run_launch_py("demo", "demo.launch.yaml")
     assert "did you mean 'demo.launch.xml'" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ('<log message="$(not maybe)"/>', "line 2: maybe is 'maybe', neither true nor false"),
+        ('<log message="$(equals $(var a) 1)"/>', "line 2: no launch argument 'a'"),
+        ("<group><log message=\"$(eval '1 / 0')\"/></group>", "line 2: expression '1 / 0'"),
+        ('<log message="a" if="$(eval 2)"/>', "line 2: a condition on"),
+    ],
+)
+def test_errors_of_substitutions_are_reported_with_their_line(ros_file, body, said):
+    path = ros_file(f"<launch>\n{body}\n</launch>")
+    with pytest.raises(LaunchError) as caught:
+        expand(path)
+    assert str(caught.value).startswith(f"{path}, {said}")
