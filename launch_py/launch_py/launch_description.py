@@ -6,10 +6,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from launch_py.action import Action, check_actions
-from launch_py.errors import UsageError, errors_attributed_to
+from launch_py.errors import errors_attributed_to
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_entity import LaunchSurvey
-from launch_py.near_names import describe_known
 from launch_py.plan.steps import LaunchPlan
 
 
@@ -47,7 +46,7 @@ def survey_description(
         LaunchFileError: an entry has the wrong type.
     """
     survey = LaunchSurvey()
-    context = LaunchContext(base_environment=environ).included(path, {})
+    context = LaunchContext(base_environment=environ).included(path)
     with errors_attributed_to(lambda: _name(path)):
         description.survey(survey, context)
     return survey
@@ -68,19 +67,16 @@ def expand_description(
         path: the launch file it comes from.
 
     Raises:
-        LaunchError: the description is invalid, or an argument is not declared.
+        LaunchError: the description is invalid.
     """
     survey = survey_description(description, environ, path)
-    for name in arguments:
-        if name not in survey.arguments:
-            known = describe_known(name, survey.arguments, "its arguments are")
-            raise UsageError(f"{_name(path)} has no launch argument {name!r}; {known}")
-    context = LaunchContext(base_environment=environ).included(path, {})
-    context.launch_configurations.update(arguments)
+    context = LaunchContext(base_environment=environ).included(path)
+    given = context.give(arguments)
     context.plan.surveyed_actions = survey.actions
     context.plan.surveyed_names = survey.process_names
     with errors_attributed_to(lambda: _name(path)):
         description.visit(context)
+        context.warn_of_unread(given, survey.arguments)
         return context.plan.finish(context.warnings)
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Self, cast
 
 from launch_py.errors import LaunchFileError
+from launch_py.launch_configurations import GivenArgument, LaunchConfigurations
 from launch_py.names import join_names
 
 
@@ -40,15 +41,24 @@ class LaunchScope:
     warnings: list[str] = field(default_factory=list)
     """Warnings for the user; all copies share this list."""
 
+    def __post_init__(self) -> None:
+        """Let the configurations know what is read of them."""
+        if not isinstance(self.launch_configurations, LaunchConfigurations):
+            self.launch_configurations = LaunchConfigurations(self.launch_configurations)
+
     def scoped(self) -> Self:
         """Return a copy; changes to it do not affect this scope."""
         return replace(
             self,
-            launch_configurations=dict(self.launch_configurations),
+            launch_configurations=self._tracked().copy(),
             environment=dict(self.environment),
             parameters=list(self.parameters),
             remappings=list(self.remappings),
         )
+
+    def surveyed(self) -> Self:
+        """Return a copy for a survey; what it reads does not count as read."""
+        return replace(self.scoped(), launch_configurations=self._tracked().untracked())
 
     def bare(self) -> Self:
         """Return a copy without any of the settings made so far."""
@@ -61,15 +71,38 @@ class LaunchScope:
             remappings=[],
         )
 
-    def included(self, path: Path | None, arguments: Mapping[str, str]) -> Self:
-        """Return the scope of a file that is included here with these arguments."""
+    def included(self, path: Path | None) -> Self:
+        """Return the scope of a file that is included here."""
         inner = self.scoped()
-        inner.launch_configurations.update(arguments)
-        inner.fixed_arguments = self.fixed_arguments | arguments.keys()
         inner.launch_file = path
         if path is not None:
             inner.included_files = (*self.included_files, path)
         return inner
+
+    def fix_arguments(self, arguments: Mapping[str, str]) -> list[GivenArgument]:
+        """Set the arguments that an include passes; return them for `warn_of_unread`."""
+        self.fixed_arguments |= arguments.keys()
+        return self.give(arguments)
+
+    def give(self, arguments: Mapping[str, str]) -> list[GivenArgument]:
+        """Set arguments; return them for `warn_of_unread`."""
+        return self._tracked().give(arguments)
+
+    def warn_of_unread(
+        self, given: Iterable[GivenArgument], declared: Iterable[str], where: str = ""
+    ) -> None:
+        """Warn of the undeclared arguments that nothing has read.
+
+        Args:
+            given: the arguments.
+            declared: the names of the arguments that the launch file declares.
+            where: what passes them, for the message.
+        """
+        for sentence in self._tracked().unread(given, declared):
+            self.warnings.append(f"{where}: {sentence}" if where else sentence)
+
+    def _tracked(self) -> LaunchConfigurations:
+        return cast("LaunchConfigurations", self.launch_configurations)
 
     def perform_substitution(self, value: Text) -> str:
         """Return the text that `value` stands for in this scope."""

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from launch_py.command.command_line import find_launch_file
-from launch_py.errors import LaunchError, LaunchFileError, NotFoundError, UsageError
+from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
 from launch_py.launch_description import survey_description
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan.steps import MessageStep
@@ -46,10 +46,46 @@ def test_the_command_line_reaches_an_argument_that_only_the_included_file_declar
     assert texts(expand_file(parent(), rate="500")) == ["child empty 500"]
 
 
-def test_an_argument_that_the_include_sets_cannot_be_set_on_the_command_line(parent, expand_file):
-    path = parent(', launch_arguments={"world": "objects"}')
-    with pytest.raises(UsageError, match="no launch argument 'world'; its arguments are rate"):
-        expand_file(path, world="empty")
+def test_an_argument_that_the_include_sets_has_no_effect_on_the_command_line(parent, expand_file):
+    plan = expand_file(parent(', launch_arguments={"world": "objects"}'), world="empty")
+    assert texts(plan) == ["child objects 100"]
+    assert "launch argument 'world' has no effect: nothing that starts reads it" in plan.warnings[0]
+
+
+def test_an_argument_that_is_read_but_not_declared_is_taken(write_launch_file, expand_file):
+    child = """actions = [
+        LogInfo(msg=["child ", LaunchConfiguration("speed", default="1")]),
+        OpaqueFunction(function=lambda context: [
+            LogInfo(msg=context.launch_configurations.get("colour", "grey")),
+        ]),
+    ]"""
+    write_launch_file(child, "child.launch.py")
+    path = write_launch_file(
+        f"""actions = [
+        {INCLUDE}, launch_arguments={{"colour": "red"}}),
+        LogInfo(msg=LaunchConfiguration("mode", default="slow")),
+    ]"""
+    )
+    plan = expand_file(path, speed="3", mode="fast")
+    assert texts(plan) == ["child 3", "red", "fast"]
+    assert plan.warnings == ()
+
+
+@pytest.mark.parametrize(
+    "reader",
+    [
+        "dict(context.launch_configurations)",
+        "{**context.launch_configurations}",
+        "list(context.launch_configurations.items())",
+        "context.launch_configurations['any']",
+        "'any' in context.launch_configurations",
+    ],
+)
+def test_a_function_may_read_an_argument_in_any_way(write_launch_file, expand_file, reader):
+    path = write_launch_file(
+        f"actions = [OpaqueFunction(function=lambda context: [LogInfo(msg=str({reader}))])]"
+    )
+    assert expand_file(path, any="7").warnings == ()
 
 
 def test_an_included_file_sees_the_outer_configurations(parent, expand_file):
@@ -62,10 +98,16 @@ def test_nothing_leaks_out(parent, expand_file):
     assert texts(expand_file(path)) == ["child empty 100", "clean"]
 
 
-def test_an_argument_that_it_does_not_declare_is_refused(parent, expand_file):
+def test_an_argument_that_it_does_not_read_is_a_warning(parent, expand_file):
     path = parent(', launch_arguments={"wrld": "objects"}')
-    with pytest.raises(UsageError, match=r"'wrld', which .*child.*declare; did you mean 'world'"):
-        expand_file(path)
+    (warning,) = expand_file(path).warnings
+    assert "child.launch.py: launch argument 'wrld' has no effect" in warning
+    assert "did you mean 'world'" in warning
+
+
+def test_a_declared_argument_of_a_part_that_does_not_start_is_no_warning(parent, expand_file):
+    plan = expand_file(parent(', condition=IfCondition("false")'), world="objects")
+    assert plan.warnings == ()
 
 
 def test_the_survey_lists_the_included_arguments_with_their_file(parent):

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 from launch_py.action import Action
 from launch_py.conditions import Condition
-from launch_py.errors import LaunchError, LaunchFileError, UsageError
+from launch_py.errors import LaunchError, LaunchFileError
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description import LaunchDescription
 from launch_py.launch_description_entity import LaunchSurvey
@@ -16,7 +15,6 @@ from launch_py.launch_description_sources import (
     PythonLaunchDescriptionSource,
     read_launch_file,
 )
-from launch_py.near_names import describe_known
 from launch_py.substitution import Pairs, Text, keep_pairs, perform_pairs
 
 MAX_DEPTH = 20
@@ -29,8 +27,8 @@ class IncludeLaunchDescription(Action):
     """The actions of another launch file, in a scope of their own.
 
     The included file sees the arguments of the including file, overridden by `launch_arguments`.
-    Unlike in ROS, its settings do not leak back, and an argument that it does not declare is an
-    error.
+    Unlike in ROS, its settings do not leak back, and there is a warning of an argument that nothing
+    in it reads.
     """
 
     def __init__(
@@ -48,19 +46,18 @@ class IncludeLaunchDescription(Action):
         self._read: tuple[Path, LaunchDescription] | None = None
 
     def expand(self, context: LaunchContext) -> None:
-        """Expand the included actions.
-
-        Raises:
-            UsageError: `launch_arguments` holds an argument that the file does not declare.
-        """
+        """Expand the included actions."""
         arguments = dict(perform_pairs(context, self.launch_arguments, "launch_arguments="))
         path, description = self._load(context)
-        inner = context.included(path, arguments)
+        inner = context.included(path)
         if len(inner.included_files) > MAX_DEPTH:
             raise LaunchFileError(f"launch files include each other in a cycle: {path}")
+        survey = LaunchSurvey()
         if arguments:
-            self._refuse_unknown(arguments, path, description, inner)
+            description.survey(survey, inner.surveyed())
+        given = inner.fix_arguments(arguments)
         description.visit(inner)
+        inner.warn_of_unread(given, survey.arguments, self.describe())
 
     def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
         """Survey the included actions if the file can be found without expanding anything."""
@@ -71,7 +68,9 @@ class IncludeLaunchDescription(Action):
         except LaunchError:
             return
         if path is None or path not in context.included_files:
-            description.survey(survey, context.included(path, arguments))
+            inner = context.included(path)
+            inner.fix_arguments(arguments)
+            description.survey(survey, inner)
 
     def _load(self, context: LaunchContext) -> tuple[Path | None, LaunchDescription]:
         if isinstance(self.source, LaunchDescription):
@@ -82,25 +81,6 @@ class IncludeLaunchDescription(Action):
         if self._read is None or self._read[0] != path:
             self._read = (path, read_launch_file(path))
         return self._read
-
-    def _refuse_unknown(
-        self,
-        arguments: Mapping[str, str],
-        path: Path | None,
-        description: LaunchDescription,
-        inner: LaunchContext,
-    ) -> None:
-        scope = inner.scoped()
-        scope.fixed_arguments = frozenset()
-        survey = LaunchSurvey()
-        description.survey(survey, scope)
-        for name in arguments:
-            if name not in survey.arguments:
-                known = describe_known(name, survey.arguments, "it declares")
-                raise UsageError(
-                    f"{self.describe()} passes the argument {name!r}, "
-                    f"which {path or 'it'} does not declare; {known}"
-                )
 
     def describe(self) -> str:
         """Return its name in messages."""

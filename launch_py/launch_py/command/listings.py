@@ -47,7 +47,8 @@ MAX_TEXT = 300
 
 def list_plan(plan: LaunchPlan, environ: Mapping[str, str]) -> str:
     """Return the steps of a plan, and the variables that all processes get."""
-    lines = ["Environment added for all processes:"]
+    lines = [f"warning: {warning}" for warning in plan.warnings]
+    lines.append("Environment added for all processes:")
     added = default_environment(environ, Path("<log folder>"), "<socket>", colours=False)
     lines += [f"  {name}={value}" for name, value in sorted(added.items())]
     for step in plan.steps:

@@ -91,9 +91,12 @@ def test_a_launch_file_of_a_package_is_offered_with_its_package(refused, demo, h
     assert refused(word).endswith(f"no launch file {word}; did you mean 'demo demo.launch.py'?")
 
 
-def test_an_unknown_argument(refused, demo):
-    line = refused("demo", "demo.launch.py", "wrold:=objects")
-    assert "demo.launch.py has no launch argument 'wrold'; did you mean 'world'?" in line
+def test_an_unknown_argument_is_a_warning(demo, capsys):
+    words = ["demo", "demo.launch.py", "model:=x", "wrold:=objects", "--print"]
+    assert command_line.run(words, "prog") == 0
+    first = capsys.readouterr().out.splitlines()[0]
+    assert first.startswith("warning: launch argument 'wrold' has no effect")
+    assert first.endswith("did you mean 'world'?")
 
 
 def test_an_unknown_choice(refused, demo):
