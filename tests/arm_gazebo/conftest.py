@@ -203,6 +203,24 @@ class Bench:
         return self.states[[i for i, name in enumerate(names) if name.endswith(f"/{interface}")]]
 
 
+SEVERAL_CONTROLS = """<mujoco><worldbody>
+  <body name="door" pos="3 0 1"><joint name="dj" axis="0 0 1"/><geom size="0.1" mass="1"/></body>
+  <body name="head" pos="4 0 1"><joint name="hj" type="ball"/><geom size="0.1" mass="1"/></body>
+</worldbody><actuator>
+  <pid name="p" joint="dj" kp="10" kv="1"/>
+  <orientation name="o" joint="hj" kp="10" kv="1"/>
+  <pid name="i" joint="dj" kp="1" kv="1" ki="1"/>
+</actuator></mujoco>"""
+
+
+@pytest.fixture
+def several_controls(tmp_path: Path) -> Path:
+    """Return a world with actuators that have several controls each, 7 in all, at rest."""
+    file = tmp_path / "several_controls.xml"
+    file.write_text(SEVERAL_CONTROLS)
+    return file
+
+
 class Parts:
     """The parts from which the tests of this folder build URDFs."""
 

@@ -19,6 +19,7 @@ from arm_gazebo.batch.copies import (
 )
 from arm_gazebo.drives.servo_batch import ServoBatch
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.robot.actuation import drive_slices
 
 POSITION_STAGE = mujoco.mjtStage.mjSTAGE_POS
 NO_STAGE = mujoco.mjtStage.mjSTAGE_NONE
@@ -55,11 +56,9 @@ class PhysicsBatch:
         self._servo = ServoBatch(model, servo, copies)
         self._start = start_of(simulation, model)
         self._gates = ContactGates(self._batch, model, self._start, self._period_s)
-        first = next((j.actuator for j in servo.joints if j.actuator is not None), 0)
-        count = len(servo.joints)
-        activation = int(model.actuator_actadr[first]) if count else 0
-        self._act = self._batch.bind("act")[:, activation : activation + count]
-        self._ctrl = self._batch.bind("ctrl")[:, first : first + count]
+        activations, controls = drive_slices(model, servo.joints)
+        self._act = self._batch.bind("act")[:, activations]
+        self._ctrl = self._batch.bind("ctrl")[:, controls]
         self._time = self._batch.bind("time").reshape(copies)
         self.qpos, self.qvel = self._batch.bind("qpos"), self._batch.bind("qvel")
         self._new_inertia, self._new_bias = self._batch.bind("M"), self._batch.bind("qfrc_bias")

@@ -27,7 +27,7 @@ from arm_gazebo.drives.servo_tuning import (
     resistance,
     set_armature,
 )
-from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.robot.actuation import RobotJoint, drive_slices
 from arm_gazebo.spec.dry_friction import YIELDING, sticking
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_node.index_slice import as_slice
@@ -129,12 +129,8 @@ class Servo:
         self._friction, self._drag = resistance(model, tuning.coupling)
         self._motion = np.zeros(model.nv)
         self._load = np.zeros(model.nv)
-        count = len(joints)
-        first = next((j.actuator for j in joints if j.actuator is not None), 0)
-        activation = int(model.actuator_actadr[first]) if count else 0
-        self._actuators = range(first, first + count)
-        self._act = data.act[activation : activation + count]
-        self._ctrl = data.ctrl[first : first + count]
+        activations, controls = drive_slices(model, joints)
+        self._act, self._ctrl = data.act[activations], data.ctrl[controls]
         dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
         addresses = np.array([joint.qpos_address for joint in joints], dtype=np.intp)
         self._dofs, self._addresses = as_slice(dofs), as_slice(addresses)
@@ -320,7 +316,8 @@ class Servo:
         self._ctrl[:] = rates
 
     def _set_gains(self, index: int, mode: DriveMode) -> None:
-        tuning, model, actuator = self._tuning, self._model, self._actuators[index]
+        tuning, model = self._tuning, self._model
+        actuator = self._joints[index].joint.actuator
         gain, stiffness, damping = 0.0, 0.0, 0.0
         rotor = 0.0
         if mode in SERVOED:

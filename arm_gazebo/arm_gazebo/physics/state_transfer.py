@@ -1,23 +1,13 @@
 """Copy the state of one model to another, matched by name."""
 
-from collections.abc import Collection, Iterator
+from bisect import bisect_right
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from enum import Enum, auto
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-POSITIONS = {
-    mujoco.mjtJoint.mjJNT_FREE: 7,
-    mujoco.mjtJoint.mjJNT_BALL: 4,
-    mujoco.mjtJoint.mjJNT_SLIDE: 1,
-    mujoco.mjtJoint.mjJNT_HINGE: 1,
-}
-VELOCITIES = {
-    mujoco.mjtJoint.mjJNT_FREE: 6,
-    mujoco.mjtJoint.mjJNT_BALL: 3,
-    mujoco.mjtJoint.mjJNT_SLIDE: 1,
-    mujoco.mjtJoint.mjJNT_HINGE: 1,
-}
 DRIVE_ARRAYS = (
     "actuator_gainprm",
     "actuator_biasprm",
@@ -26,119 +16,235 @@ DRIVE_ARRAYS = (
 )
 Indices = NDArray[np.intp]
 Pair = tuple[int, int]
+OBJECT = mujoco.mjtObj
+
+
+class Element(Enum):
+    """The elements of a model whose state is copied."""
+
+    WORLD = auto()
+    BODY = auto()
+    MOCAP = auto()
+    JOINT = auto()
+    ACTUATOR = auto()
+    EQUALITY = auto()
+    SENSOR = auto()
+    TENDON = auto()
+    FLEX = auto()
+
+
+OF_VELOCITIES = "nv", {"jnt_dofadr": Element.JOINT}
+OF_MOCAPS = "nmocap", {"body_mocapid": Element.MOCAP}
+LAYOUT: Mapping[str, tuple[str, Mapping[str, Element]]] = {
+    "qpos": ("nq", {"jnt_qposadr": Element.JOINT}),
+    "qvel": OF_VELOCITIES,
+    "act": ("na", {"actuator_actadr": Element.ACTUATOR}),
+    "history": (
+        "nhistory",
+        {"actuator_historyadr": Element.ACTUATOR, "sensor_historyadr": Element.SENSOR},
+    ),
+    "qacc_warmstart": OF_VELOCITIES,
+    "ctrl": ("nu", {"actuator_ctrladr": Element.ACTUATOR}),
+    "qfrc_applied": OF_VELOCITIES,
+    "xfrc_applied": ("nbody", {"": Element.BODY}),
+    "eq_active": ("neq", {"": Element.EQUALITY}),
+    "mocap_pos": OF_MOCAPS,
+    "mocap_quat": OF_MOCAPS,
+    "userdata": ("nuserdata", {"": Element.WORLD}),
+    "plugin_state": ("npluginstate", {"": Element.WORLD}),
+    "plastic": (
+        "nplastic",
+        {
+            "jnt_plasticadr": Element.JOINT,
+            "tendon_plasticadr": Element.TENDON,
+            "flex_plasticadr": Element.FLEX,
+        },
+    ),
+}
+"""The arrays of MuJoCo's state but the time: their length, and where the part of an element begins.
+
+A part ends where the next one begins. Without a field ("") an element's number is its place.
+"""
 
 
 class StateTransfer:
-    """Copies positions, velocities, drives and warm starts between states of two models.
+    """Copies MuJoCo's state and the drives' gains from one model to another.
 
     The constructor looks up each name once; `carry` only copies.
 
     Args:
         source: the model whose state is known.
         target: the model that continues from that state.
-        roots: top-level bodies whose joints are copied; the joints of other bodies keep the
-            target's state.
+        roots: top-level bodies that continue with their joints, and the actuators and equalities
+            of these; everything else keeps the target's state. If the world is one of them, its
+            equalities, actuators, sensors and tendons continue, too.
     """
 
     def __init__(
         self, source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
     ) -> None:
-        joints = list(_joints(source, target, roots))
-        kinds = [mujoco.mjtJoint(int(source.jnt_type[one])) for one, _ in joints]
-        self._positions = _blocks(
-            [(source.jnt_qposadr[a], target.jnt_qposadr[b]) for a, b in joints],
-            [POSITIONS[kind] for kind in kinds],
-        )
-        self._velocities = _blocks(
-            [(source.jnt_dofadr[a], target.jnt_dofadr[b]) for a, b in joints],
-            [VELOCITIES[kind] for kind in kinds],
-        )
-        actuators = list(_actuators(source, target, dict(joints)))
-        self._controls = _blocks(actuators, [1] * len(actuators))
-        driven = [(a, b) for a, b in actuators if source.actuator_actnum[a]]
-        self._activations = _blocks(
-            [(source.actuator_actadr[a], target.actuator_actadr[b]) for a, b in driven],
-            [int(source.actuator_actnum[a]) for a, _ in driven],
-        )
-        mocaps = list(_mocaps(source, target, roots))
-        self._mocaps = _blocks(mocaps, [1] * len(mocaps))
+        pairs = _pairs(source, target, roots)
+        self._indices = {
+            name: _indices(source, target, length, fields, pairs)
+            for name, (length, fields) in LAYOUT.items()
+        }
+        drives = np.array(pairs[Element.ACTUATOR], dtype=np.intp).reshape(-1, 2)
+        self._drives = drives[:, 0], drives[:, 1]
 
     def carry(self, source: mujoco.MjData, target: mujoco.MjData) -> None:
         """Copy the state of the first model to the state of the second one."""
         target.time = source.time
-        for (there, here), before, after in (
-            (self._positions, source.qpos, target.qpos),
-            (self._velocities, source.qvel, target.qvel),
-            (self._velocities, source.qacc_warmstart, target.qacc_warmstart),
-            (self._controls, source.ctrl, target.ctrl),
-            (self._activations, source.act, target.act),
-            (self._mocaps, source.mocap_pos, target.mocap_pos),
-            (self._mocaps, source.mocap_quat, target.mocap_quat),
-        ):
-            after[here] = before[there]
+        for name, (there, here) in self._indices.items():
+            getattr(target, name)[here] = getattr(source, name)[there]
 
     def carry_positions(self, source: NDArray[np.float64], target: NDArray[np.float64]) -> None:
         """Copy generalised positions (nq,) of the first model to those of the second one."""
-        there, here = self._positions
+        there, here = self._indices["qpos"]
         target[here] = source[there]
 
     def carry_drives(self, source: mujoco.MjModel, target: mujoco.MjModel) -> None:
         """Copy the drives' rotors, gains and limits, which are set on the running model."""
-        there, here = self._velocities
+        there, here = self._indices["qvel"]
         rotors = source.dof_armature[there]
         # As `Servo` does when it sets them.
         target.dof_M0[here] += rotors - target.dof_armature[here]
         target.dof_armature[here] = rotors
-        there, here = self._controls
+        there, here = self._drives
         for name in DRIVE_ARRAYS:
             getattr(target, name)[here] = getattr(source, name)[there]
+
+
+def _pairs(
+    source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
+) -> dict[Element, list[Pair]]:
+    """Return the numbers in both models of the elements that continue."""
+    same_world = source.body(0).name in roots
+    joints = list(_joints(source, target, roots))
+    of_joints, bodies = dict(joints), list(_bodies(source, target, roots))
+    others = {
+        element: list(_namesakes(source, target, kind, count)) if same_world else []
+        for element, kind, count in (
+            (Element.SENSOR, OBJECT.mjOBJ_SENSOR, source.nsensor),
+            (Element.TENDON, OBJECT.mjOBJ_TENDON, source.ntendon),
+            (Element.FLEX, OBJECT.mjOBJ_FLEX, source.nflex),
+        )
+    }
+    return {
+        Element.WORLD: [(0, 0)] if same_world else [],
+        Element.BODY: bodies,
+        Element.MOCAP: list(_mocaps(source, target, bodies)),
+        Element.JOINT: joints,
+        Element.ACTUATOR: list(_actuators(source, target, of_joints, same_world)),
+        Element.EQUALITY: list(_equalities(source, target, of_joints, same_world)),
+        **others,
+    }
+
+
+def _namesakes(
+    source: mujoco.MjModel, target: mujoco.MjModel, kind: mujoco.mjtObj, count: int
+) -> Iterator[Pair]:
+    """Yield the numbers of elements that have the same name in both models."""
+    for number in range(count):
+        name = mujoco.mj_id2name(source, kind, number)
+        other = mujoco.mj_name2id(target, kind, name) if name else -1
+        if other >= 0:
+            yield number, other
+
+
+def _bodies(
+    source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
+) -> Iterator[Pair]:
+    for body, other in _namesakes(source, target, OBJECT.mjOBJ_BODY, source.nbody):
+        if source.body(source.body_rootid[body]).name in roots:
+            yield body, other
 
 
 def _joints(
     source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
 ) -> Iterator[Pair]:
-    known = {target.joint(joint).name: joint for joint in range(target.njnt)}
-    for joint in range(source.njnt):
-        other = known.get(source.joint(joint).name)
+    for joint, other in _namesakes(source, target, OBJECT.mjOBJ_JOINT, source.njnt):
         root = source.body(source.body_rootid[source.jnt_bodyid[joint]]).name
-        if other is not None and root in roots and target.jnt_type[other] == source.jnt_type[joint]:
+        if root in roots and target.jnt_type[other] == source.jnt_type[joint]:
             yield joint, other
 
 
 def _actuators(
-    source: mujoco.MjModel, target: mujoco.MjModel, joints: dict[int, int]
+    source: mujoco.MjModel, target: mujoco.MjModel, joints: dict[int, int], same_world: bool
 ) -> Iterator[Pair]:
-    known = {target.actuator(actuator).name: actuator for actuator in range(target.nu)}
-    at_joint = mujoco.mjtTrn.mjTRN_JOINT
-    for actuator in range(source.nu):
-        other = known.get(source.actuator(actuator).name)
-        if other is None or target.actuator_actnum[other] != source.actuator_actnum[actuator]:
-            continue
-        if source.actuator_trntype[actuator] == at_joint:
+    for actuator, other in _namesakes(source, target, OBJECT.mjOBJ_ACTUATOR, source.nactuator):
+        if source.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_JOINT:
             joint = int(source.actuator_trnid[actuator, 0])
-            if joints.get(joint) != int(target.actuator_trnid[other, 0]):
-                continue
-        yield actuator, other
+            continues = joints.get(joint) == int(target.actuator_trnid[other, 0])
+        else:
+            continues = same_world
+        if continues:
+            yield actuator, other
+
+
+def _equalities(
+    source: mujoco.MjModel, target: mujoco.MjModel, joints: dict[int, int], same_world: bool
+) -> Iterator[Pair]:
+    for equality, other in _namesakes(source, target, OBJECT.mjOBJ_EQUALITY, source.neq):
+        kind = source.eq_type[equality]
+        if kind == mujoco.mjtEq.mjEQ_JOINT:
+            joint = int(source.eq_obj1id[equality])
+            continues = joints.get(joint) == int(target.eq_obj1id[other])
+        else:
+            continues = same_world
+        if continues and kind == target.eq_type[other]:
+            yield equality, other
 
 
 def _mocaps(
-    source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
+    source: mujoco.MjModel, target: mujoco.MjModel, bodies: Sequence[Pair]
 ) -> Iterator[Pair]:
-    known = {target.body(body).name: body for body in range(target.nbody)}
-    for body in np.flatnonzero(source.body_mocapid >= 0).tolist():
-        name = source.body(body).name
-        other = known.get(name)
-        if other is None or name not in roots or target.body_mocapid[other] < 0:
-            continue
+    for body, other in bodies:
         # A body with another pose in the target model was moved there on purpose.
         if np.array_equal(source.body_pos[body], target.body_pos[other]) and np.array_equal(
             source.body_quat[body], target.body_quat[other]
         ):
-            yield int(source.body_mocapid[body]), int(target.body_mocapid[other])
+            yield body, other
 
 
-def _blocks(starts: list[Pair], sizes: list[int]) -> tuple[Indices, Indices]:
-    """Return the indices of blocks of values in both models, shape (n,) each."""
-    there = [int(a) + k for (a, _), size in zip(starts, sizes, strict=True) for k in range(size)]
-    here = [int(b) + k for (_, b), size in zip(starts, sizes, strict=True) for k in range(size)]
-    return np.array(there, dtype=np.intp), np.array(here, dtype=np.intp)
+def _indices(
+    source: mujoco.MjModel,
+    target: mujoco.MjModel,
+    length: str,
+    fields: Mapping[str, Element],
+    pairs: Mapping[Element, Sequence[Pair]],
+) -> tuple[Indices, Indices]:
+    """Return where the same values are in an array of both models, shape (n,) each."""
+    there, here = (_parts(model, length, fields) for model in (source, target))
+    found = [
+        (there[field][one], here[field][other])
+        for field, element in fields.items()
+        for one, other in pairs[element]
+    ]
+    # An element whose part has another size was made anew.
+    same = [both for both in found if len(both[0]) == len(both[1])]
+    places = [pair for one, other in same for pair in zip(one, other, strict=True)]
+    table = np.array(places, dtype=np.intp).reshape(-1, 2)
+    return table[:, 0], table[:, 1]
+
+
+def _parts(
+    model: mujoco.MjModel, length: str, fields: Mapping[str, Element]
+) -> dict[str, list[range]]:
+    """Return for each field which values of an array belong to each element."""
+    total = getattr(model, length)
+    starts: dict[str, Sequence[int]] = {
+        name: getattr(model, name).tolist()
+        if name
+        else range(1 if element is Element.WORLD else total)
+        for name, element in fields.items()
+    }
+    ends = [*sorted(start for each in starts.values() for start in each if start >= 0), total]
+    return {
+        name: [
+            range(start, ends[bisect_right(ends, start, hi=len(ends) - 1)])
+            if start >= 0
+            else range(0)
+            for start in each
+        ]
+        for name, each in starts.items()
+    }

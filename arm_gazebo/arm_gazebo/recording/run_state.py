@@ -120,7 +120,9 @@ def _per_velocity(model: mujoco.MjModel, kind: str) -> Iterator[str]:
 
 
 def _per_drive(model: mujoco.MjModel, kind: str) -> Iterator[str]:
-    return (f"{kind} of drive {model.actuator(i).name or i}" for i in range(model.nu))
+    for actuator in range(model.nactuator):
+        name, count = model.actuator(actuator).name or actuator, model.actuator_ctrlnum[actuator]
+        yield from _parts(f"{kind} of drive {name}", count)
 
 
 def _per_joint(
@@ -131,8 +133,12 @@ def _per_joint(
     for joint in range(model.njnt):
         name = model.joint(joint).name or f"number {joint}"
         count = ends[joint] - int(addresses[joint])
-        for i in range(count):
-            yield f"{kind} of joint {name}" + (f", number {i + 1} of {count}" if count > 1 else "")
+        yield from _parts(f"{kind} of joint {name}", count)
+
+
+def _parts(name: str, count: int) -> Iterator[str]:
+    """Return the name of each of the numbers of one thing."""
+    return (name + (f", number {i + 1} of {count}" if count > 1 else "") for i in range(count))
 
 
 _NAMED: dict[str, Callable[[mujoco.MjModel, str], Iterator[str]]] = {

@@ -22,7 +22,8 @@ class RobotJoint:
         name: as in the URDF.
         qpos_address: index in `data.qpos`.
         dof_address: index in `data.qvel`.
-        actuator: index of its actuator in `data.ctrl` and `data.act`; None if it is not driven.
+        actuator: number of its actuator in the model; None if it is not driven. Its control and
+            activation are elsewhere, see `drive_slices`.
         lower: lower position limit, -inf if there is none.
         upper: upper position limit, inf if there is none.
         velocity: highest speed of a set-point that moves to a position, above 0.
@@ -43,6 +44,23 @@ class RobotJoint:
     effort: float = math.inf
     initial: float = 0.0
     linear: bool = False
+
+
+def drive_slices(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> tuple[slice, slice]:
+    """Return where driven joints have their activations in `data.act`, and controls in `data.ctrl`.
+
+    Neither is at the actuator's number: a world may have actuators with several controls or none.
+
+    Args:
+        model: the model.
+        joints: driven joints, whose actuators stand together.
+    """
+    first = next((joint.actuator for joint in joints if joint.actuator is not None), None)
+    if first is None:
+        return slice(0, 0), slice(0, 0)
+    starts = int(model.actuator_actadr[first]), int(model.actuator_ctrladr[first])
+    activations, controls = (slice(start, start + len(joints)) for start in starts)
+    return activations, controls
 
 
 UNLIMITED = 1e9

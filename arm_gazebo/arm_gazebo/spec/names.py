@@ -18,7 +18,7 @@ UNNAMED_BODY = "thing"
 
 
 def name_elements(spec: mujoco.MjSpec) -> None:
-    """Give every unnamed body, joint and actuator a unique name."""
+    """Give every unnamed element that has a state a unique name, so that a swap finds it again."""
     bodies = {body.name for body in spec.bodies}
     for body in spec.bodies:
         if not body.name:
@@ -29,8 +29,15 @@ def name_elements(spec: mujoco.MjSpec) -> None:
         if not joint.name:
             joint.name = free_name(f"{joint.parent.name}::joint", joints)
             joints.add(joint.name)
-    actuators = {actuator.name for actuator in spec.actuators}
-    for actuator in spec.actuators:
-        if not actuator.name:
-            actuator.name = free_name(f"{actuator.target or UNNAMED_BODY}::actuator", actuators)
-            actuators.add(actuator.name)
+    for kind, elements, owner in (
+        ("actuator", spec.actuators, "target"),
+        ("equality", spec.equalities, "name1"),
+        ("sensor", spec.sensors, "objname"),
+        ("tendon", spec.tendons, ""),
+    ):
+        names = {element.name for element in elements}
+        for element in elements:
+            if not element.name:
+                prefix = getattr(element, owner, "") or UNNAMED_BODY
+                element.name = free_name(f"{prefix}::{kind}", names)
+                names.add(element.name)

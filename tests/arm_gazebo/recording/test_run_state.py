@@ -44,6 +44,19 @@ def test_flags_of_mujoco_are_numbers_of_the_present_state(run):
     assert np.frombuffer(row.copy(0.0))[flag] == 0.0
 
 
+def test_each_of_several_controls_has_its_name(recorded, parts, several_controls):
+    run = recorded(parts.pendulum(), world=several_controls)
+    data = run.simulation.data
+    names = state_names(run.simulation.model, [run.manager])
+    row = StateRow(run.simulation, [run.manager])
+    assert len(names) == row.width
+    data.ctrl[:] = range(1, 9)
+    state = dict(zip(names, np.frombuffer(row.copy(0.0)).tolist(), strict=True))
+    assert state["control of drive p, number 2 of 2"] == 2.0
+    assert state["control of drive o, number 3 of 3"] == 5.0
+    assert state["control of drive j"] == 8.0
+
+
 def test_a_copy_stays_as_it_is(run):
     row = StateRow(run.simulation, [run.manager])
     before = row.copy(run.simulation.time_s)

@@ -32,7 +32,7 @@ def test_every_state_is_carried_over(moving, things):
         name = model.joint(joint).name
         assert after.joint(name).qpos == pytest.approx(before.joint(name).qpos, abs=1e-12)
         assert after.joint(name).qvel == pytest.approx(before.joint(name).qvel, abs=1e-12)
-    for actuator in range(model.nu):
+    for actuator in range(model.nactuator):
         name = model.actuator(actuator).name
         assert after.actuator(name).ctrl == pytest.approx(before.actuator(name).ctrl, abs=1e-12)
         there, here = (m.actuator(name).actadr[0] for m in (model, simulation.model))

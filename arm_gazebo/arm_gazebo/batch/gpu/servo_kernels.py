@@ -39,7 +39,7 @@ class DriveLaw:
     servoed: wp.array[wp.int32]
     address: wp.array[wp.int32]
     dof: wp.array[wp.int32]
-    actuator: wp.array[wp.int32]
+    control: wp.array[wp.int32]
     activation: wp.array[wp.int32]
     diagonal: wp.array[wp.int32]
     effort: wp.array[wp.float64]
@@ -336,4 +336,4 @@ def write(
     elif joints.mode[joint] == EFFORT and not wp.isnan(drives.taken[copy, joint]):
         activation = drives.taken[copy, joint]
     act[copy, joints.activation[joint]] = wp.float32(activation)
-    ctrl[copy, joints.actuator[joint]] = wp.float32(rate)
+    ctrl[copy, joints.control[joint]] = wp.float32(rate)

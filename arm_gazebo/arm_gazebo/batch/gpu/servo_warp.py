@@ -43,7 +43,7 @@ class ServoWarp:
         actuators = np.array([joint.actuator or 0 for joint in servo.joints], dtype=np.intp)
         with wp.ScopedDevice(device):
             self._joints = _joints(constants, product)
-            self._joints.actuator = _integers(actuators)
+            self._joints.control = _integers(model.actuator_ctrladr[actuators])
             self._joints.activation = _integers(model.actuator_actadr[actuators])
             self._drives = _drives(copies, len(servo.joints), model.nv)
             self._start = _numbers(start)

@@ -1,6 +1,7 @@
 """The drives' law as kernels: bit for bit the law on the host."""
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from arm_gazebo.drives.driven_joint import DriveMode  # noqa: E402
 from arm_gazebo.drives.servo_batch import ServoBatch  # noqa: E402
 
 COPIES, TICKS, MOVING_TICKS = 40, 160, 100
-KINDS = ("position", "velocity", "effort", "mixed", "proportional", "mycobot")
+KINDS = ("position", "velocity", "effort", "mixed", "proportional", "mycobot", "several controls")
 MODES = {
     "velocity": [DriveMode.VELOCITY] * 4,
     "effort": [DriveMode.EFFORT] * 4,
@@ -30,9 +31,11 @@ def device(request: pytest.FixtureRequest) -> str:
     return request.param
 
 
-def simulation(kind: str) -> Simulation:
+def simulation(kind: str, world: Path) -> Simulation:
     if kind == "mycobot":
         return Simulation("mycobot")
+    if kind == "several controls":
+        return Simulation("arm", world=world, arguments={"camera": "none"})
     gain = {"position_proportional_gain": 0.1} if kind == "proportional" else {}
     sim = Simulation("arm", arguments={"camera": "none"}, **gain)
     for index, mode in enumerate(MODES.get(kind, ())):
@@ -64,8 +67,10 @@ def states(physics, random: np.random.Generator):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_kernels_give_the_bits_of_the_law_on_the_host(kind: str, device: str):
-    sim = simulation(kind)
+def test_the_kernels_give_the_bits_of_the_law_on_the_host(
+    kind: str, several_controls: Path, device: str
+):
+    sim = simulation(kind, several_controls)
     physics, random = sim.parts.physics, np.random.default_rng(0)
     model, joints = physics.model, physics.servo.joints
     start = start_of(physics, model)
@@ -74,7 +79,7 @@ def test_the_kernels_give_the_bits_of_the_law_on_the_host(kind: str, device: str
     every = np.arange(COPIES)
     zeros = np.zeros((COPIES, model.nv))
     actuators = [joint.actuator for joint in joints]
-    activations = model.actuator_actadr[actuators]
+    activations, controls = model.actuator_actadr[actuators], model.actuator_ctrladr[actuators]
     with wp.ScopedDevice(device):
         act, ctrl = wp.zeros((COPIES, model.na)), wp.zeros((COPIES, model.nu))
     for tick, state in enumerate(states(physics, random)):
@@ -91,13 +96,13 @@ def test_the_kernels_give_the_bits_of_the_law_on_the_host(kind: str, device: str
         assert np.array_equal(act.numpy()[:, activations], here.activations.astype(np.float32)), (
             tick
         )
-        assert np.array_equal(ctrl.numpy()[:, actuators], here.rates.astype(np.float32)), tick
+        assert np.array_equal(ctrl.numpy()[:, controls], here.rates.astype(np.float32)), tick
     assert np.ptp(here.activations, axis=0).max() > 0.0
     sim.close()
 
 
-def test_drives_sleep_and_wake_as_on_the_host(device: str):
-    sim = simulation("position")
+def test_drives_sleep_and_wake_as_on_the_host(several_controls: Path, device: str):
+    sim = simulation("position", several_controls)
     physics = sim.parts.physics
     model, start = physics.model, start_of(physics, physics.model)
     here = ServoBatch(model, physics.servo, 2)

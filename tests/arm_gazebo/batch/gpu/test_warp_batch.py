@@ -66,6 +66,15 @@ def test_copies_stay_near_those_on_the_host(robot: str, device: str):
         assert np.abs(there.qvel - here.qvel)[:, addresses[0]].max() < 1e-3
 
 
+def test_actuators_with_several_controls_are_refused_in_a_sentence(several_controls, device: str):
+    sentence = "MuJoCo Warp cannot simulate this model: .*mjTRN_SO3"
+    with (
+        Simulation("arm", world=several_controls, arguments={"camera": "none"}) as sim,
+        pytest.raises(BatchError, match=sentence),
+    ):
+        on_device(sim, device)
+
+
 def test_copies_restart_alone_and_repeat_their_run(arm: Simulation, device: str):
     batch, untouched = on_device(arm, device), on_device(arm, device)
     values = goals(arm)
