@@ -8,6 +8,7 @@ from functools import partial
 
 from arm_cli.errors import ArmCliError
 from arm_cli.launch_domain import launch_domain
+from arm_cli.launch_model import name_launch_file
 from arm_cli.output import complain
 from arm_cli.word_completion import complete_with
 from arm_node.ros_domain import NoFreeDomainError, describe_users, other_users
@@ -43,7 +44,7 @@ def run(argv: Sequence[str]) -> int:
     try:
         with launch_domain(argv) as words:
             return run_launch(
-                words,
+                name_launch_file(words),
                 program="arm launch",
                 short_names=SHORT_NAMES,
                 before_start=_check_environment,

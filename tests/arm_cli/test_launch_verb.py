@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from arm_cli import launch_verb
+from arm_cli.launch_model import name_launch_file
 from arm_cli.main import main
 from arm_node import environment
 
@@ -121,3 +122,35 @@ def test_the_emergency_stop_starts_beside_modules_of_the_user(tmp_path):
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("usage: arm stop")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("a.urdf", "", ["arm_gazebo", "sim.launch.py", "model:=FILE"]),
+        ("a.urdf.xacro", "", ["arm_gazebo", "sim.launch.py", "model:=FILE"]),
+        ("a.xml", "<?xml version='1.0'?><robot/>", ["arm_gazebo", "sim.launch.py", "model:=FILE"]),
+        ("a.xml", "<!-- <robot/> --><mujoco/>", ["world:=FILE"]),
+        ("a.sdf", "", ["world:=FILE"]),
+        ("a.launch.xml", "<launch/>", ["FILE"]),
+        ("a.launch.py", "", ["FILE"]),
+        ("a.xml", "no markup", ["FILE"]),
+    ],
+)
+def test_a_robot_or_a_world_is_launched_by_its_file(tmp_path, name, content, words):
+    path = tmp_path / name
+    path.write_text(content)
+    expected = [word.replace("FILE", str(path)) for word in words]
+    assert name_launch_file([str(path), "pose:=[0]", "-p"]) == [*expected, "pose:=[0]", "-p"]
+
+
+def test_the_plan_of_a_urdf_has_its_robot(tmp_path, capsys):
+    path = tmp_path / "my_robot.urdf"
+    path.write_text('<robot name="my_robot"><link name="base"/></robot>')
+    assert main(["launch", str(path), "--print"]) == 0
+    assert "robot_state_publisher" in capsys.readouterr().out
+
+
+def test_a_near_short_name_is_offered(capsys):
+    assert main(["launch", "mycobt"]) == 2
+    assert capsys.readouterr().err.rstrip().endswith("did you mean 'mycobot'?")

@@ -15,10 +15,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from launch_py.command.interruption import Interruption
-from launch_py.errors import LaunchError, UsageError
+from launch_py.errors import LaunchError, NotFoundError, UsageError
 from launch_py.launch_description import LaunchDescription, expand_description, survey_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.near_names import describe_known
+from launch_py.near_names import describe_known, did_you_mean, near_names
 from launch_py.printable import printable_message
 from launch_py.system.packages import (
     LAUNCH_ENDING,
@@ -142,7 +142,7 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
 
     Raises:
         UsageError: the words are none of these.
-        NotFoundError: there is no such package or launch file.
+        NotFoundError: there is no such package, short name or launch file.
     """
     packages = Packages(os.environ)
     for word in words:
@@ -165,7 +165,7 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
                 raise UsageError(f"no launch file {word[:LONGEST_SHOWN]!r}: {error}") from error
             raise UsageError(sentence)
         case [word]:
-            share = packages.share_folder(word)
+            share = _share_folder(packages, word, short_names)
             names = launch_files(share / "launch")
             raise UsageError(
                 f"which launch file of package {word!r}? It has {', '.join(names) or 'none'}"
@@ -176,6 +176,17 @@ def find_launch_file(words: Sequence[str], short_names: Mapping[str, PackagedFil
         f"too many words: {' '.join(words)}; launch arguments are written name:=value, "
         "without spaces around ':='"
     )
+
+
+def _share_folder(packages: Packages, word: str, short_names: Mapping[str, PackagedFile]) -> Path:
+    try:
+        return packages.share_folder(word)
+    except NotFoundError as error:
+        near = near_names(word, filter(None, short_names))
+        if not near:
+            raise
+        near += near_names(word, packages.names())
+        raise NotFoundError(f"no package or short name {word!r}; {did_you_mean(near)}") from error
 
 
 def _execute(
