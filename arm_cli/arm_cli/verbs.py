@@ -166,6 +166,7 @@ SIM = VerbFamily(
         Verb("info", "show a simulation's entities, state and time", "arm_cli.sim.info"),
         Verb("stats", "show pace, cost of a tick, contacts, camera rates", "arm_cli.sim.stats"),
         Verb("spawn", "add an entity to the world", "arm_cli.sim.changing:SPAWN"),
+        Verb("move", "move an entity of the world", "arm_cli.sim.changing:MOVE"),
         Verb("delete", "remove entities from the world", "arm_cli.sim.changing:DELETE"),
         Verb("pause", "pause the simulation", "arm_cli.sim.changing:PAUSE"),
         Verb("play", "resume the simulation", "arm_cli.sim.changing:PLAY"),

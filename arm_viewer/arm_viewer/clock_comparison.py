@@ -42,6 +42,6 @@ class ClockComparison:
         return SimulationTime(
             time_s=last_s,
             factor=(last_s - recent_s) / passed_s if passed_s > 0.0 else 0.0,
-            lag_s=(last_wall_s - first_wall_s) - (last_s - first_s),
+            lag_s=max(0.0, (last_wall_s - first_wall_s) - (last_s - first_s)),
             measured_s=last_wall_s - first_wall_s,
         )

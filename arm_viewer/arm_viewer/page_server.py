@@ -13,7 +13,7 @@ import rich
 import viser
 import websockets.asyncio.server
 from websockets.asyncio.server import ServerConnection, serve
-from websockets.exceptions import InvalidHandshake
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
@@ -152,6 +152,9 @@ def _viser_serves_on(listener: socket.socket, take: Take) -> Iterator[list[socke
                     await serve_typed_numbers(connection, take)
                 else:
                     await handler(connection)
+            except ConnectionClosed as error:
+                # For example a browser that answers no ping: it connects again by itself.
+                logger.warning("lost the connection to a browser: %s", error)
             except Exception as error:
                 # The connection's top-level handler: viser raises any kind of error if a client
                 # sends anything but a message of the page.
@@ -169,9 +172,10 @@ def _viser_serves_on(listener: socket.socket, take: Take) -> Iterator[list[socke
 
 
 def _as_sentence(record: logging.LogRecord) -> bool:
-    """Replace the traceback of an invalid request, which is the client's fault, by a sentence."""
+    """Make an invalid request, which is the client's fault, a sentence and no error of the page."""
     error = record.exc_info[1] if record.exc_info else None
     if isinstance(error, InvalidHandshake):
+        record.levelno, record.levelname = logging.WARNING, "WARNING"
         record.msg = f"{record.getMessage()}: {error.__cause__ or error}"
         record.args = ()
         record.exc_info = None

@@ -165,8 +165,9 @@ class SimulationTime:
     Attributes:
         time_s: simulation time.
         factor: real-time factor over the last two seconds; 0 while the simulation is paused.
-        lag_s: how far simulation time fell behind wall time within `measured_s`.
-        measured_s: length of the measurement in wall time: ten seconds, less at first.
+        lag_s: how far simulation time fell behind wall time within `measured_s`, at least 0.
+        measured_s: length of the measurement in wall time: ten seconds, less at first and after a
+            pause.
     """
 
     time_s: float

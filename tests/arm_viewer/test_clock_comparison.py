@@ -27,11 +27,11 @@ def test_factor_and_lag(factor):
     result = compare((100.0 + t, 5.0 + factor * t) for t in np.arange(0.0, 4.01, 0.125))
     assert result.time_s == pytest.approx(5.0 + factor * 4.0)
     assert result.factor == pytest.approx(factor)
-    assert result.lag_s == pytest.approx(4.0 * (1.0 - factor))
+    assert result.lag_s == pytest.approx(max(0.0, 4.0 * (1.0 - factor)))
     assert result.measured_s == 4.0
 
 
-def test_a_pause_shows_in_the_factor_soon_and_in_the_lag_for_long():
+def test_a_stall_shows_in_the_factor_soon_and_in_the_lag_for_long():
     runs = [(t, t) for t in np.arange(0.0, 5.0, 0.5)]
     stands = [(t, 5.0) for t in np.arange(5.0, 8.01, 0.5)]
     result = compare([*runs, *stands])

@@ -16,6 +16,7 @@ from websockets.sync.client import connect
 
 from arm_viewer.errors import PageError
 from arm_viewer.page_server import HOST, PageServer, page_server
+from arm_viewer.typed_numbers import PATH
 
 TIMEOUT_S = 30.0
 FOREIGN = "http://evil.example"
@@ -110,6 +111,15 @@ def test_an_invalid_request_is_logged_as_a_sentence(server, said, request_line, 
     assert reason in record.getMessage()
     assert "\n" not in record.getMessage()
     assert record.exc_info is None
+    assert (record.levelno, record.levelname) == (logging.WARNING, "WARNING")
+
+
+def test_a_connection_that_breaks_is_not_called_an_unreadable_message(server, said):
+    address = server.url.replace("http", "ws", 1) + PATH
+    with connect(address, origin=server.url) as browser:
+        browser.close(1011, "keepalive ping timeout")
+    said_of_it = said.get(timeout=TIMEOUT_S).getMessage()
+    assert said_of_it.startswith("lost the connection to a browser: received 1011")
 
 
 @pytest.mark.parametrize("length", [300, 7000])

@@ -263,6 +263,7 @@ def test_invalid_requests_are_refused_with_a_sentence(simulator):
         ("GetEntities", {"filters": EntityFilters(filter="(")}),
         ("SetEntityState", {"entity": "cone", "state": nowhere(), "set_pose": True}),
         ("SetEntityState", {"entity": "cone", "state": EntityState(), "set_acceleration": True}),
+        ("SetEntityState", {"entity": "cone", "state": EntityState()}),
         ("LoadWorld", {"world_resource": Resource(uri="nowhere")}),
     ):
         answer = simulator(service, **fields)

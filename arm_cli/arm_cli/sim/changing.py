@@ -1,11 +1,17 @@
 """The verbs of `arm sim` that change a running simulation."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from arm_cli.errors import CommandUsageError
 from arm_cli.output import say
 from arm_cli.sim.simulation import PAUSED, PLAYING, add_namespace_argument, ask_simulation
 from arm_cli.verb import VerbFunctions
+
+if TYPE_CHECKING:
+    from geometry_msgs.msg import Pose
 
 SCOPE_TIME, SCOPE_STATE, SCOPE_SPAWNED, SCOPE_ALL = 1, 2, 4, 255
 
@@ -37,16 +43,11 @@ def spawn(options: argparse.Namespace) -> None:
         SimulationRefusedError: the entity cannot be spawned.
     """
     with ask_simulation(options) as simulation:
-        from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
+        from geometry_msgs.msg import PoseStamped
         from simulation_interfaces.msg import Resource
 
-        from arm_description.transforms import quaternion_from_rpy
-
         x, y, z, *rpy = options.pose
-        qx, qy, qz, qw = quaternion_from_rpy(rpy).tolist()
-        pose = PoseStamped(
-            pose=Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
-        )
+        pose = PoseStamped(pose=_pose(x, y, z, rpy))
         pose.header.frame_id = options.frame
         # A relative path is relative to this process, not to the simulation's working folder.
         uri = options.file if "://" in options.file else str(Path(options.file).absolute())
@@ -78,6 +79,54 @@ def delete(options: argparse.Namespace) -> None:
     with ask_simulation(options) as simulation:
         for entity in options.entities:
             simulation.ask("DeleteEntity", "delete_entity", entity=entity)
+
+
+def add_move_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("entity", metavar="ENTITY", help="name, as listed by arm sim info")
+    for axis in "xyz":
+        parser.add_argument(axis, metavar=axis.upper(), type=float, help="in m")
+    parser.add_argument(
+        "rpy",
+        nargs="*",
+        type=float,
+        metavar="ROLL PITCH YAW",
+        help="in rad (default: as it is turned now)",
+    )
+    add_namespace_argument(parser)
+
+
+def move(options: argparse.Namespace) -> None:
+    """Move an entity, which is at rest afterwards.
+
+    Raises:
+        CommandUsageError: there are one or two angles, or more than three.
+        SimulationRefusedError: there is no such entity, or it cannot be moved.
+    """
+    if len(options.rpy) not in (0, 3):
+        raise CommandUsageError("a pose is X Y Z, or X Y Z ROLL PITCH YAW")
+    with ask_simulation(options) as simulation:
+        found = simulation.ask("GetEntityState", "get_entity_state", entity=options.entity)
+        pose = _pose(options.x, options.y, options.z, options.rpy or [0.0] * 3)
+        if not options.rpy:
+            pose.orientation = found.state.pose.orientation
+        found.state.pose = pose
+        simulation.ask(
+            "SetEntityState",
+            "set_entity_state",
+            entity=options.entity,
+            state=found.state,
+            set_pose=True,
+        )
+
+
+def _pose(x: float, y: float, z: float, rpy: Sequence[float]) -> "Pose":
+    from geometry_msgs.msg import Point, Pose, Quaternion
+
+    from arm_description.transforms import quaternion_from_rpy
+
+    qx, qy, qz, qw = quaternion_from_rpy(rpy).tolist()
+    return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 
 
 def add_pause_arguments(parser: argparse.ArgumentParser) -> None:
@@ -136,6 +185,7 @@ def reset(options: argparse.Namespace) -> None:
 
 SPAWN = VerbFunctions(add_spawn_arguments, spawn)
 DELETE = VerbFunctions(add_delete_arguments, delete)
+MOVE = VerbFunctions(add_move_arguments, move)
 PAUSE = VerbFunctions(add_pause_arguments, pause)
 PLAY = VerbFunctions(add_play_arguments, play)
 RESET = VerbFunctions(add_reset_arguments, reset)

@@ -116,6 +116,10 @@ class EntityServices:
                 raise RequestError(
                     Refusal.UNSUPPORTED, "accelerations follow from forces and cannot be set"
                 )
+            if not (request.set_pose or request.set_twist):
+                raise RequestError(
+                    Refusal.FAILED, "nothing to set: set_pose and set_twist are both false"
+                )
             pose = matrix_of(state.pose) if request.set_pose else None
             twist = twist_of(state.twist) if request.set_twist else None
             self._editor.place(request.entity, pose, state.header.frame_id, twist)

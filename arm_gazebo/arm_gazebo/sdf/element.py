@@ -53,6 +53,7 @@ class SdfElement:
         self._owner = owner
         self._children: dict[str, list[SdfElement]] = {}
         self._read_attributes: set[str] = set()
+        self._left_out = ""
         self.source = source
         self.includers = includers
         """The chain of files that led here by <include>, the outermost first."""
@@ -122,6 +123,10 @@ class SdfElement:
     def error(self, problem: str) -> WorldError:
         """Return an error that names file, line and element."""
         return WorldError(f"{self.source}, line {self.line}: {self.label} {problem}")
+
+    def leave_out(self, reason: str) -> None:
+        """Report this element as left out, for a reason, instead of what is unread in it."""
+        self._left_out = reason
 
     def children(self, tag: str) -> "list[SdfElement]":
         """Return the children with this tag."""
@@ -230,6 +235,9 @@ class SdfElement:
 
     def unread(self) -> "Iterator[Unread]":
         """Yield the elements and attributes that have not been read."""
+        if self._left_out:
+            yield Unread(self, BuildOutcome.LEFT_OUT, self._left_out)
+            return
         # Old SDF versions write empty attributes; "{...}" is a namespace.
         for key, value in self._element.attrib.items():
             name = str(key)

@@ -18,7 +18,8 @@ MAX_INCLUDE_DEPTH = 50
 def included_file(include: SdfElement) -> SdfElement | None:
     """Return the root of the file that an <include> refers to.
 
-    None stands for Gazebo's own ground or sun if no folder has a file of that name.
+    None stands for Gazebo's own ground or sun if no folder has a file of that name, and for a model
+    on the web, which is left out.
 
     Raises:
         WorldError: the file does not exist, is not SDF, or includes itself.
@@ -27,12 +28,15 @@ def included_file(include: SdfElement) -> SdfElement | None:
     if not uri:
         raise include.error("needs a <uri>")
     folder = include.source.parent.resolve()
+    is_builtin = is_ground(include) or is_sun(include)
+    if uri.startswith(("http://", "https://")):
+        if not is_builtin:
+            include.leave_out(f"'{uri}' is on the web, and nothing is downloaded")
+        return None
     try:
-        if uri.startswith(("http://", "https://")):
-            raise ResourceNotFoundError(f"'{uri}' is on the web, and nothing is downloaded")
         found = resolve_uri(uri, [folder, folder.parent])
     except ResourceNotFoundError as error:
-        if is_ground(include) or is_sun(include):
+        if is_builtin:
             return None
         hint = "is GZ_SIM_RESOURCE_PATH the folder of the models?"
         raise include.error(f"is not available: {error}\n  {hint}") from error

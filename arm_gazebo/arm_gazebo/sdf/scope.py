@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames
-from arm_gazebo.sdf.include import included_file
+from arm_gazebo.sdf.include import included_file, is_ground, is_sun
 
 PLACEMENT = "placement_frame"
 """Names the frame of a model that its pose places, if that is not the model's own frame."""
@@ -102,7 +102,8 @@ class SdfScope:
         for include in self.element.children("include"):
             root = included_file(include)
             if root is None:
-                self._gazebos.append(include)
+                if is_ground(include) or is_sun(include):
+                    self._gazebos.append(include)
                 continue
             self._files.append(root)
             model = root.child("model")

@@ -1,6 +1,7 @@
 """Observe /clock and compare it with wall time."""
 
 import time
+from dataclasses import replace
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -41,9 +42,11 @@ class ClockObserver:
         for data, information in self._polled.take(self._subscription, 1):
             clock = deserialize_message(data, Clock).clock  # pyright: ignore[reportAttributeAccessIssue]
             # It arrived up to one collection period ago, which would be visible in the factor.
+            before_s = self._arrived_s
             self._arrived_s = now_s - 1e-9 * (time.time_ns() - information["received_timestamp"])
+            if self._arrived_s - before_s > PAUSED_AFTER_S:
+                self._comparison.clear()  # A pause is not lag.
             self._comparison.add(self._arrived_s, clock.sec + 1e-9 * clock.nanosec)
             self.time = self._comparison.result()
         if self.time is not None and now_s - self._arrived_s > PAUSED_AFTER_S:
-            self._comparison.add(now_s, self.time.time_s)
-            self.time = self._comparison.result()
+            self.time = replace(self.time, factor=0.0)

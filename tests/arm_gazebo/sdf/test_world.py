@@ -280,6 +280,16 @@ def test_sun_and_ground_of_gazebo_need_no_files(world, monkeypatch):
     assert sorted(compiled.geom_contype) == [0, 1]
 
 
+def test_models_on_the_web_are_left_out_and_counted(world):
+    fuel = "https://fuel.gazebosim.org/1.0/OpenRobotics/models"
+    cans = (f"<include><uri>{fuel}/{name}</uri><pose>1 0 0 0 0 0</pose></include>" for name in "AB")
+    compiled, _, report = world(*cans, model("block", head=STATIC))
+    assert compiled.body("block").id > 0
+    assert [(f.outcome, f.count, f.message) for f in report.findings] == [
+        (BuildOutcome.LEFT_OUT, 2, f"'{fuel}/A' is on the web, and nothing is downloaded")
+    ]
+
+
 def test_lights(world):
     compiled, _, _ = world(
         '<light name="lamp" type="point"><pose>0 0 2 0 0 0</pose><diffuse>0.5 0.4 0.3 1</diffuse>'

@@ -28,6 +28,11 @@ def test_an_entity_is_spawned_and_deleted(run_until, tmp_path):
     assert report["sensors"]["/videocamera"] == "sensor_msgs/msg/Image"
     assert entities(text)["arm"]["category"] == "robot"
     assert entities(text)["can"]["position"] == pytest.approx([0.3, 0.0, 0.5], abs=1e-6)
+    move = "arm sim move can -0.3 0.1 0.4 0 0 1.57 && arm sim move can -0.3 0.2 0.4 && "
+    moved = entities(run_until(f"{move}arm sim info --json", lambda text: "can" in text))["can"]
+    assert moved["position"] == pytest.approx([-0.3, 0.2, 0.4], abs=1e-6)
+    assert moved["orientation"] == pytest.approx([0.0, 0.0, 0.7068, 0.7074], abs=1e-3)
+    run_until("arm sim move can 1 2 3 4", lambda text: "X Y Z ROLL PITCH YAW" in text, code=2)
     delete = "arm sim delete can; arm sim info --json"
     run_until(delete, lambda text: entities(text).keys() == {"arm"})
     run_until("arm sim delete can", lambda text: "'can'" in text, code=1)
