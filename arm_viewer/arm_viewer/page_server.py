@@ -3,6 +3,7 @@
 import errno
 import http
 import logging
+import os
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
@@ -29,6 +30,9 @@ MAX_PATH = 255
 MAX_REASON = 200
 
 PAGES = ("/", "/index.html")
+
+OWNER_HEADER = "Arm-Suite-Page"
+"""A header of responses: the user id and the ROS domain of the page, for `arm doctor`."""
 
 Handler = Callable[[ServerConnection], Awaitable[None]]
 Answer = Callable[[ServerConnection, Request], Response | None]
@@ -201,4 +205,5 @@ def _answer(inner: Answer, connection: ServerConnection, request: Request) -> Re
             del response.headers["Content-Length"]
             response.headers["Content-Length"] = str(len(response.body))
         response.headers.update(SECURITY_HEADERS)
+        response.headers[OWNER_HEADER] = f"{os.getuid()} {os.environ.get('ROS_DOMAIN_ID') or 0}"
     return response

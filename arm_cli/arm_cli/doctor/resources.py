@@ -9,6 +9,7 @@ from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 from arm_cli.doctor.diagnosis import Diagnosis
+from arm_cli.names import this_domain
 
 SHARED_MEMORY = Path("/dev/shm")
 NEEDED_BYTES = 8 << 20
@@ -19,8 +20,8 @@ LEAST_AGE_S = 30.0
 PREFIX, LOCK_SUFFIX = "fastrtps_", "_el"
 HOST, PORT = "127.0.0.1", 8080
 HTTP_TIMEOUT_S = 2.0
-MARK = b"viser"
-"""Every page of the arm suite contains the name of its library."""
+OWNER_HEADER = "Arm-Suite-Page"
+"""A header of the page's answers: its user id and ROS domain."""
 
 
 def check_shared_memory(folder: Path = SHARED_MEMORY) -> Diagnosis:
@@ -81,17 +82,29 @@ def _is_abandoned(lock: Path) -> bool:
 
 
 def check_page_port(port: int = PORT) -> Diagnosis:
-    """Check that the TCP port of the page is free on this machine, or that a page uses it."""
+    """Check that the page's TCP port is free, or taken by a page of this user and domain."""
     if _is_free(port):
         return Diagnosis.ok("page", f"port {port} is free for the page")
-    if _serves_a_page(port):
-        return Diagnosis.ok("page", f"a page is running on http://{HOST}:{port}")
-    return Diagnosis.warning(
-        "page",
-        f"port {port} is taken by another program",
-        f"ss -tlpn 'sport = :{port}' shows which; end it, or use another port for the page: "
-        "arm view --port 8081, arm launch viewer:=true viewer_port:=8081",
-    )
+    other = "arm view --port 8081, arm launch viewer:=true viewer_port:=8081"
+    owner = _page_owner(port)
+    if owner is None:
+        return Diagnosis.warning(
+            "page",
+            f"port {port} is taken by another program",
+            f"ss -tlpn 'sport = :{port}' shows which; end it, or use another port for the page: "
+            f"{other}",
+        )
+    user, _, domain = owner.partition(" ")
+    strange = [f"user {user}"] * (user != str(os.getuid()))
+    strange += [f"ROS_DOMAIN_ID={domain}"] * (f"ROS_DOMAIN_ID={domain}" != this_domain())
+    if strange:
+        return Diagnosis.warning(
+            "page",
+            f"the page on http://{HOST}:{port} is that of {' and '.join(strange)}, not of "
+            f"user {os.getuid()} on {this_domain()}",
+            f"use another port for a page of your own: {other}",
+        )
+    return Diagnosis.ok("page", f"a page is running on http://{HOST}:{port}")
 
 
 def _is_free(port: int) -> bool:
@@ -105,12 +118,13 @@ def _is_free(port: int) -> bool:
         return True
 
 
-def _serves_a_page(port: int) -> bool:
+def _page_owner(port: int) -> str | None:
+    """Return the user id and the ROS domain of a page, or None if there is no page."""
     connection = HTTPConnection(HOST, port, timeout=HTTP_TIMEOUT_S)
     try:
         connection.request("GET", "/")
-        return MARK in connection.getresponse().read().lower()
+        return connection.getresponse().getheader(OWNER_HEADER)
     except (OSError, HTTPException):
-        return False
+        return None
     finally:
         connection.close()

@@ -31,9 +31,9 @@ def run(options: argparse.Namespace) -> None:
     """Print the simulation's state and contents.
 
     Raises:
-        UnansweredError: no simulation answers.
+        NoSuchNameError: no simulation runs.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options, must_run=True) as simulation:
         report = _report(simulation)
     if options.json:
         print_json(report)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.errors import SimulationRefusedError
-from arm_cli.names import absolute_name
+from arm_cli.errors import NoSuchNameError, SimulationRefusedError
+from arm_cli.names import absolute_name, this_domain
 from arm_cli.ros.connection import connect
 
 if TYPE_CHECKING:
@@ -17,6 +17,8 @@ NODE = "arm_gazebo"
 """The node with the simulation's parameters."""
 SERVING_NODE = "simulation"
 """The node that serves its figures."""
+STATE_SERVICE = "get_simulation_state"
+"""Each simulation has this service."""
 RESULT_OK = 1
 PLAYING, PAUSED = 1, 2
 """States of SimulationState."""
@@ -127,7 +129,39 @@ class SimulationClient:
 
 
 @contextmanager
-def ask_simulation(options: argparse.Namespace) -> Iterator[SimulationClient]:
-    """Yield a client of the simulation's services."""
+def ask_simulation(
+    options: argparse.Namespace, *, must_run: bool = False
+) -> Iterator[SimulationClient]:
+    """Yield a client of the simulation's services.
+
+    Args:
+        options: the verb's, with the namespace.
+        must_run: whether to give up as soon as discovery finds no simulation, instead of waiting
+            for one that is starting.
+
+    Raises:
+        NoSuchNameError: no simulation is found.
+    """
     with connect() as session:
+        if must_run:
+            _find_simulation(session, options.namespace)
         yield SimulationClient(session, options.namespace)
+
+
+def _find_simulation(session: "CommandSession", namespace: str) -> None:
+    from arm_cli.ros.graph import Graph
+
+    graph = Graph(session)
+    try:
+        graph.find_service(f"{absolute_name(namespace).rstrip('/')}/{STATE_SERVICE}")
+    except NoSuchNameError as error:
+        others = [
+            name.removesuffix(STATE_SERVICE).rstrip("/") or "/"
+            for name in graph.services()
+            if name.endswith(f"/{STATE_SERVICE}")
+        ]
+        advice = (
+            f"there is one in -n {' or '.join(others)}" if others else "start one with arm launch"
+        )
+        where = "" if namespace == "/" else f" in {namespace}"
+        raise NoSuchNameError(f"no simulation runs{where} on {this_domain()}; {advice}") from error

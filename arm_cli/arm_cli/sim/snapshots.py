@@ -52,9 +52,9 @@ def list_snapshots(options: argparse.Namespace) -> None:
     """Print the snapshots with names.
 
     Raises:
-        UnansweredError: no simulation answers.
+        NoSuchNameError: no simulation runs.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options, must_run=True) as simulation:
         found = simulation.ask("GetAvailableWorlds", "list_snapshots").worlds
     named = {snapshot.world_resource.uri: snapshot.description for snapshot in found}
     if options.json:

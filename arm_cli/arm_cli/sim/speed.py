@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> None:
         UnansweredError: no simulation answers.
         SimulationRefusedError: it refuses the factor.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options, must_run=options.factor is None) as simulation:
         if options.factor is None:
             from arm_cli.parameter_values import content_of
 

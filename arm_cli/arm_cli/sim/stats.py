@@ -16,9 +16,9 @@ def run(options: argparse.Namespace) -> None:
     """Print the figures of the last second or two.
 
     Raises:
-        UnansweredError: no simulation answers.
+        NoSuchNameError: no simulation runs.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options, must_run=True) as simulation:
         parts = simulation.statistics()
     if options.json:
         print_json(parts)

@@ -119,6 +119,9 @@ WATCH_AFTER_START_S = 3.0
 """How long the graph is watched after the start-up: a participant with the default settings of
 Fast DDS announces itself every 3 s."""
 
+PAGE = "/arm_viewer"
+PAGE_ALONE = "for the page alone, of what runs already: arm view"
+
 RANGE, PEERS = "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS"
 Census = Mapping[str, Sequence[int | None]]
 
@@ -259,7 +262,8 @@ class NameGuard:
         if not taken:
             return
         if not self._replace:
-            self._refuse(_names_taken(taken, domain))
+            page = any(name.endswith(PAGE) for name in self._wanted[domain] - census.keys())
+            self._refuse(_names_taken(taken, domain) + f"; {PAGE_ALONE}" * page)
             return
         pids: dict[int, list[str]] = {}
         for name, holders in taken.items():

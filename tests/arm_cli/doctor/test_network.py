@@ -13,7 +13,8 @@ import pytest
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.discovery import check_discovery, check_ports
 from arm_cli.doctor.listening import check_listening, check_users
-from arm_cli.doctor.resources import check_page_port
+from arm_cli.doctor.resources import OWNER_HEADER, check_page_port
+from arm_viewer.page_server import page_server
 from launch_py.fast_dds.participants import LAST_DOMAIN
 
 
@@ -106,10 +107,12 @@ def serve():
     """Return a function that serves a text by HTTP and returns the port."""
     with contextlib.ExitStack() as servers:
 
-        def start(text: str) -> int:
+        def start(text: str, owner: str = "") -> int:
             class Page(BaseHTTPRequestHandler):
                 def do_GET(self) -> None:
                     self.send_response(200)
+                    if owner:
+                        self.send_header(OWNER_HEADER, owner)
                     self.end_headers()
                     self.wfile.write(text.encode())
 
@@ -131,9 +134,26 @@ def test_the_page_s_port_is_free_or_used_by_a_page(serve):
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     assert check_page_port(port).sentence == f"port {port} is free for the page"
-    page = check_page_port(serve("<title>Viser</title>"))
-    assert page.severity is Severity.OK
-    assert "a page is running on http://127.0.0.1:" in page.sentence
+    with page_server(0) as page:
+        found = check_page_port(page.get_port())
+    assert found.severity is Severity.OK
+    assert "a page is running on http://127.0.0.1:" in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("owner", "whose"),
+    [
+        (f"{os.getuid()} 7", "that of ROS_DOMAIN_ID=7, not of"),
+        (f"{os.getuid() + 1} 42", f"that of user {os.getuid() + 1}, not of"),
+        (f"{os.getuid() + 1} 7", f"that of user {os.getuid() + 1} and ROS_DOMAIN_ID=7, not of"),
+    ],
+)
+def test_a_page_of_another_user_or_domain_is_a_warning(serve, monkeypatch, owner, whose):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "42")
+    finding = check_page_port(serve("<title>Arm suite</title>", owner))
+    assert finding.severity is Severity.WARNING
+    assert whose in finding.sentence
+    assert "viewer_port:=8081" in finding.fix
 
 
 def test_a_page_port_taken_by_another_program_is_a_warning(serve):

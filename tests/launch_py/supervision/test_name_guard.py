@@ -141,6 +141,13 @@ def test_a_name_on_the_graph_is_refused_with_its_process(trial, participant):
     ]
 
 
+def test_a_launch_with_a_page_names_what_opens_the_page_alone(trial, participant):
+    one = trial()
+    one.look("/arm", "/arm_viewer")
+    one.tell(arm=[participant.pid & PID_BITS])
+    assert one.refusals[0].endswith("; for the page alone, of what runs already: arm view")
+
+
 def test_all_taken_names_are_in_one_sentence(trial, participant):
     one = trial()
     one.look("/b", "/a")

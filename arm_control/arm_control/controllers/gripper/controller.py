@@ -115,19 +115,21 @@ class GripperController(Controller[ParametersT], Generic[ParametersT]):
 
     Attributes:
         sink: receives the results; None drops them. Set it before activation.
-        deprecated_type: its type string if that type is deprecated; else empty.
+        older_type: its type string if upstream has a newer one; else empty.
     """
 
-    deprecated_type: ClassVar[str] = ""
+    older_type: ClassVar[str] = ""
     transient = ("_requests", "_joint")
 
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
-        if self.deprecated_type:
-            self.logger.warning(
-                "[Deprecated] %s: use parallel_gripper_action_controller/GripperActionController, "
-                "whose action is control_msgs/action/ParallelGripperCommand",
-                self.deprecated_type,
+        if self.older_type:
+            # Upstream warns; here both types stay, and the tutorials' clients need this one.
+            self.logger.info(
+                "%s serves control_msgs/action/GripperCommand; upstream's newer type is "
+                "parallel_gripper_action_controller/GripperActionController, which serves "
+                "control_msgs/action/ParallelGripperCommand",
+                self.older_type,
             )
         self.sink: GripperSink | None = None
         self._requests: RequestQueue[GripperRequest | GripperCancel] = RequestQueue()

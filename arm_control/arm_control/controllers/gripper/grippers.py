@@ -23,7 +23,7 @@ class PositionGripperController(GripperController[PositionGripperParameters]):
 
     parameters_type: ClassVar[type[Any]] = PositionGripperParameters
     adapter = "arm_control.controllers.gripper.ros:GripperCommandAdapter"
-    deprecated_type = "position_controllers/GripperActionController"
+    older_type = "position_controllers/GripperActionController"
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
         """Claim the joint's position and the interface of the effort limit."""
@@ -106,7 +106,7 @@ class EffortGripperController(GripperController[EffortGripperParameters]):
 
     parameters_type: ClassVar[type[Any]] = EffortGripperParameters
     adapter = "arm_control.controllers.gripper.ros:GripperCommandAdapter"
-    deprecated_type = "effort_controllers/GripperActionController"
+    older_type = "effort_controllers/GripperActionController"
 
     def fingerprint(self) -> bytes:
         """Return the numbers of the set-point, of the goal's progress and of the integral."""

@@ -184,11 +184,14 @@ def test_parallel_needs_position_and_velocity(make_rig: Any) -> None:
 
 
 @pytest.mark.parametrize("type_name", [POSITION, EFFORT])
-def test_the_older_types_say_at_load_what_to_use_instead(
+def test_the_older_types_say_at_load_which_is_newer_without_a_warning(
     make_rig: Any, caplog: pytest.LogCaptureFixture, type_name: str
 ) -> None:
+    caplog.set_level("INFO")
     make_rig(type_name, activate=False)
-    assert f"[Deprecated] {type_name}: use parallel_gripper_action_controller" in caplog.text
+    (said,) = (r for r in caplog.records if r.getMessage().startswith(f"{type_name} serves"))
+    assert "newer type is parallel_gripper_action_controller" in said.getMessage()
+    assert said.levelname == "INFO"
 
 
 def test_the_newer_type_logs_nothing(caplog: pytest.LogCaptureFixture) -> None:

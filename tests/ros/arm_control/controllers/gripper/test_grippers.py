@@ -37,7 +37,7 @@ def test_the_action_is_there_from_the_first_activation_on(
     control.load(GRIPPER)
     control.configure(GRIPPER)
     assert count_actions(client) == 0
-    manager.wait_for_line("[Deprecated] position_controllers/GripperActionController")
+    manager.wait_for_line("position_controllers/GripperActionController serves")
 
     assert control.switch([GRIPPER]).ok
     client.wait_until(lambda: count_actions(client) == 1, "the action")
