@@ -48,7 +48,9 @@ class Magnetometer(LinkSensor):
         sensor, site = mujoco.mjtSensor.mjSENS_MAGNETOMETER, mujoco.mjtObj.mjOBJ_SITE
         return [Measurement("field", sensor, site, self.key)]
 
-    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reading(
+        self, measured: NDArray[np.float64], state: mujoco.MjData
+    ) -> NDArray[np.float64]:
         """Return the channels."""
         return measured
 '''

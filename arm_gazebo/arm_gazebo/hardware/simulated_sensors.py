@@ -52,7 +52,7 @@ class SimulatedSensor:
             # The world has changed, and so have the indices of its sensors.
             self._model, self._addresses = model, self.description.addresses(model)
         state = self._simulation.observe()
-        reading = self.description.reading(state.sensordata[self._addresses])
+        reading = self.description.reading(state.sensordata[self._addresses], state)
         if self._noise is not None:
             self._noise.add_to(reading, self._simulation.probe.number)
         self._simulation.faults.apply(self.channels, reading, self._simulation.probe.number)

@@ -10,6 +10,7 @@ from arm_description.errors import XmlError
 from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.launching.world_path import find_world
 from arm_gazebo.sdf.world import read_sdf_world
+from arm_gazebo.spec.contact_margins import report_margins
 from arm_gazebo.spec.mjcf_references import check_readable
 from arm_gazebo.spec.mjcf_size import WORLD_LIMIT, MemoryLimit, check_mjcf_size
 from arm_gazebo.spec.report import BuildReport
@@ -42,6 +43,7 @@ def load_world(
         spec = mujoco.MjSpec.from_file(str(path))
         if report is not None:
             _report_unused(spec, path.name, report)
+            report_margins(spec, path.name, report)
         return spec
     except OSError as error:
         raise WorldError(f"cannot read the world {path}: {error}") from error

@@ -47,11 +47,12 @@ def floor_clearance(model: mujoco.MjModel, data: mujoco.MjData, period_s: float)
     """
     ticks = max(1, round(CHECK_EVERY_S / period_s))
     moving = _moving_geoms(model)
-    margin = FASTEST_M_S * ticks * period_s
+    # Forces begin at the sum of both margins.
+    way = FASTEST_M_S * ticks * period_s + model.geom_margin[moving]
     return Clearance(
         useful=not model.opt.disableflags & int(CONTACT) and _only_floor_below(model, data),
         moving=moving,
-        needed=model.geom_rbound[moving] + _floor_height(model, data) + margin,
+        needed=model.geom_rbound[moving] + _floor_height(model, data) + way,
         free=model.jnt_dofadr[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE] + 2,
         ticks=ticks,
     )
@@ -133,7 +134,9 @@ def _floor_geoms(model: mujoco.MjModel) -> np.ndarray:
 
 
 def _floor_height(model: mujoco.MjModel, data: mujoco.MjData) -> float:
-    return float(data.geom_xpos[_floor_geoms(model), 2].max(initial=-math.inf))
+    """Return the height up to which the floor pushes things away."""
+    floor = _floor_geoms(model)
+    return float((data.geom_xpos[floor, 2] + model.geom_margin[floor]).max(initial=-math.inf))
 
 
 def _only_floor_below(model: mujoco.MjModel, data: mujoco.MjData) -> bool:

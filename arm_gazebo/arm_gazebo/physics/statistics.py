@@ -135,6 +135,8 @@ class SimulationStatistics:
     def _physics(self) -> StatusReport:
         simulation = self._simulation
         model, data = simulation.model, simulation.data
+        # In the gap of a geom MuJoCo lists shapes that are only near each other, too.
+        contacts = int((data.contact.efc_address >= 0).sum())
         islands = max(int(data.nisland), 1)
         iterations = int(data.solver_niter[:islands].sum())
         # A copy of the state: the quantities derived here never reach the simulation.
@@ -144,9 +146,9 @@ class SimulationStatistics:
         potential, kinetic = seen.energy.tolist()
         return StatusReport(
             "physics",
-            f"{int(data.ncon)} contacts, {iterations} solver iterations",
+            f"{contacts} contacts, {iterations} solver iterations",
             {
-                "contacts": str(int(data.ncon)),
+                "contacts": str(contacts),
                 "constraints": str(int(data.nefc)),
                 "solver iterations": str(iterations),
                 "potential energy (J)": f"{potential:.6g}",

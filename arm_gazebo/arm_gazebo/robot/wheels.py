@@ -176,7 +176,8 @@ def _add_pair(
         solref=_contact_values(model, both, model.geom_solref, np.mean),
         solimp=_contact_values(model, both, model.geom_solimp, np.mean),
         solreffriction=[NO_STIFFNESS, -SLIDING_DAMPING],
-        margin=float(model.geom_margin[both].max()),
+        margin=float(model.geom_margin[both].sum()),
+        gap=float(model.geom_gap[both].sum()),
     )
 
 

@@ -14,7 +14,7 @@ from arm_gazebo.sensors.link_sensor import WRENCH_FIELDS, LinkSensor, Measuremen
 from arm_gazebo.sensors.tags import SensorTags
 
 DATA = mujoco.mjtConDataField
-WANTED = (DATA.mjCONDATA_FOUND, DATA.mjCONDATA_FORCE, DATA.mjCONDATA_TORQUE, DATA.mjCONDATA_POS)
+WANTED = (DATA.mjCONDATA_FORCE, DATA.mjCONDATA_TORQUE, DATA.mjCONDATA_POS)
 NET_FORCE = 3
 """MuJoCo's reduction of all contacts to one: the summed force at the contacts' centre."""
 
@@ -23,8 +23,8 @@ NET_FORCE = 3
 class ContactSensor(LinkSensor):
     """A contact sensor that covers all collision shapes of a link.
 
-    A reading is the number of contact points, and the force and torque that other bodies exert on
-    the link, about its origin and in its axes.
+    A reading is the number of contact points that carry force, and the force and torque that
+    other bodies exert on the link, about its origin and in its axes.
     """
 
     type: ClassVar[str] = "contact"
@@ -64,14 +64,23 @@ class ContactSensor(LinkSensor):
             Measurement("orientation", sensor.mjSENS_FRAMEQUAT, site, self.key),
         ]
 
-    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reading(self, measured: NDArray[np.float64], state: mujoco.MjData) -> NDArray[np.float64]:
         """Return the channels. MuJoCo's force is the one that the link exerts on other bodies."""
         reading = np.zeros(len(self.channels))
-        reading[0] = measured[0]
-        if measured[0]:
-            force, torque, where = 0.0 - measured[1:4], 0.0 - measured[4:7], measured[7:10]
-            origin, inverse = measured[10:13], measured[13:17] * (1.0, -1.0, -1.0, -1.0)
+        reading[0] = self._touching(state)
+        if reading[0]:
+            force, torque, where = 0.0 - measured[:3], 0.0 - measured[3:6], measured[6:9]
+            origin, inverse = measured[9:12], measured[12:16] * (1.0, -1.0, -1.0, -1.0)
             mujoco.mju_rotVecQuat(reading[1:4], force, inverse)
             torque = torque + np.cross(where - origin, force)
             mujoco.mju_rotVecQuat(reading[4:7], torque, inverse)
         return reading
+
+    def _touching(self, state: mujoco.MjData) -> int:
+        """Return the number of contacts that press on the link.
+
+        MuJoCo's own count has those in a gap, too, where shapes are only near each other.
+        """
+        contacts, model = state.contact, state.model
+        bodies = model.geom_bodyid[contacts.geom[contacts.efc_address >= 0]]
+        return int((bodies == model.site(self.key).bodyid).any(axis=1).sum())

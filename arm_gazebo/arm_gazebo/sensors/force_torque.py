@@ -90,7 +90,7 @@ class ForceTorqueSensor(LinkSensor):
         kind = sensor.mjSENS_FRAMEQUAT
         return [*wrench, Measurement("orientation", kind, site, self.key, self.parent)]
 
-    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reading(self, measured: NDArray[np.float64], state: mujoco.MjData) -> NDArray[np.float64]:
         """Return force and torque. MuJoCo measures what the parent exerts on the child."""
         wrench = measured[:6].copy()
         if self.frame == "parent":

@@ -91,7 +91,7 @@ class ImuSensor(LinkSensor):
         site = mujoco.mjtObj.mjOBJ_SITE
         return [Measurement(name, kind, site, self.key) for name, kind in kinds.items()]
 
-    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
+    def reading(self, measured: NDArray[np.float64], state: mujoco.MjData) -> NDArray[np.float64]:
         """Return the channels."""
         return measured[XYZW]
 

@@ -118,8 +118,13 @@ class LinkSensor(ABC):
         """Return the MuJoCo sensors that it needs."""
 
     @abstractmethod
-    def reading(self, measured: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the channels, computed from the concatenated measurements."""
+    def reading(self, measured: NDArray[np.float64], state: mujoco.MjData) -> NDArray[np.float64]:
+        """Return the channels.
+
+        Args:
+            measured: the concatenated measurements.
+            state: the state that they were made in.
+        """
 
     def add_to(self, spec: mujoco.MjSpec, bodies: Mapping[str, mujoco.MjsBody]) -> None:
         """Add a site to the link, and the measurements."""

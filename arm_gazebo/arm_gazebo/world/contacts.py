@@ -15,14 +15,15 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A point at which two bodies touch.
+    """A point at which two bodies touch, so that forces act there.
 
     Attributes:
         body: name of the body; the requested one, if there is one.
         other: name of the body that it touches; "world" for the world.
         position: of the point in the world, in m, shape (3,).
         normal: unit vector away from `other`, shape (3,).
-        depth: how deep the shapes overlap, in m; negative for a gap.
+        depth: how deep the shapes overlap, in m; negative within the margin of a geom, in which
+            forces act already.
         force: on `body` in the world, in N, shape (3,).
     """
 
@@ -53,6 +54,9 @@ def contacts_of(
     wrench = np.zeros(6)
     for index in range(data.ncon):
         contact = data.contact[index]
+        # MuJoCo lists shapes that are near each other, too: in the gap of a geom.
+        if contact.efc_address < 0:
+            continue
         first, second = (int(model.geom_bodyid[geom]) for geom in contact.geom)
         if bodies is not None and not bodies.intersection((first, second)):
             continue

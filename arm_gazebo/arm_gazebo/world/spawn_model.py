@@ -28,6 +28,7 @@ from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.include import sdf_file_in
 from arm_gazebo.sdf.model import read_model
 from arm_gazebo.sdf.scope import SdfScope
+from arm_gazebo.spec.contact_margins import report_margins
 from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, MemoryLimit, check_mjcf_size
 from arm_gazebo.spec.names import name_elements
 from arm_gazebo.spec.report import BuildReport, Finding
@@ -186,6 +187,7 @@ class ModelSource:
             spec = mujoco.MjSpec.from_file(str(path))
         for key in list(spec.keys):
             spec.delete(key)
+        report_margins(spec, "the model" if path is None else path.name, report)
         return SpawnModel(spec, _only_body(spec, "MJCF"), "mjcf", report.findings)
 
     def _empty(self, resources: ResourceFinder) -> tuple[mujoco.MjSpec, MeshLibrary]:

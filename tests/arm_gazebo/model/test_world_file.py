@@ -49,6 +49,25 @@ def test_what_an_mjcf_world_has_in_vain_is_reported(tmp_path):
     ]
 
 
+def test_a_margin_with_a_gap_is_reported(tmp_path):
+    world = tmp_path / "mine.xml"
+    world.write_text(
+        "<mujoco><default><geom margin='0.1'/></default><worldbody>"
+        "<geom name='a' size='.1' gap='0.1'/><geom name='b' size='.1' gap='0.02'/>"
+        "<geom name='c' size='.1'/><body name='d'><geom name='d' size='.1' margin='0' gap='1'/>"
+        "</body></worldbody><contact><pair geom1='a' geom2='d' margin='0.3' gap='0.1'/></contact>"
+        "</mujoco>"
+    )
+    report = BuildReport()
+    load_world(world, report)
+    geoms, pair = report.findings
+    assert geoms.element == "geom 'a' of mine.xml and 1 more"
+    assert "pushes at 0.1 m" in geoms.message
+    assert "write margin='0'" in geoms.message
+    assert pair.element == "pair of mine.xml"
+    assert "write margin='0.2'" in pair.message
+
+
 def test_a_shipped_world_has_nothing_in_vain():
     for name in shipped_worlds():
         report = BuildReport()

@@ -3,6 +3,8 @@ import numpy as np
 import pytest
 
 from arm_description.urdf.robot import Pose
+from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.spec.physics_timing import physics_timing
 
 FLOOR = '<geom type="plane" size="0 0 1"/>'
 FAR_AWAY = '<geom type="box" size="0.1 0.1 0.1" pos="50 0 0.1"/>'
@@ -67,6 +69,31 @@ def test_falling_robot_hits_the_floor_as_if_they_were_always_on(
             heights.append(falling.simulation.data.qpos[2])
         runs.append(heights)
     assert runs[0][0] > height - 0.1
+    assert np.array_equal(*runs)
+
+
+@pytest.mark.parametrize("shape", ["plane", "ball"])
+def test_a_margin_pushes_as_if_they_were_always_on(bench, parts, world, shape):
+    """Forces begin where the margins meet, far above the floor here."""
+    ball = parts.link("ball", 1.0).replace(
+        "</link>", '<collision><geometry><sphere radius="0.02"/></geometry></collision></link>'
+    )
+    urdf, runs = parts.robot(ball, parts.ros2_control([])), []
+    for things in ((FLOOR,), (FLOOR, FAR_AWAY)):
+        file = world(*things)
+        if shape == "plane":
+            file.write_text(file.read_text().replace("<geom ", '<geom margin="0.3" ', 1))
+        built = parts.build(urdf, file, base="free", spawn=Pose((0.0, 0.0, 1.0)))
+        if shape == "ball":
+            built.model.geom_margin[built.model.geom_bodyid > 0] = 0.3
+            mujoco.mj_setConst(built.model, mujoco.MjData(built.model))
+        simulation = Simulation(built, physics_timing(100.0))
+        heights = []
+        for _ in range(150):
+            simulation.advance()
+            heights.append(simulation.data.qpos[2])
+        runs.append(heights)
+    assert min(runs[1][50:]) > 0.25
     assert np.array_equal(*runs)
 
 

@@ -88,6 +88,17 @@ def test_a_pair_has_the_friction_that_its_shapes_would_have(cart):
     assert model.pair_solref[pair] == pytest.approx(model.geom_solref[ball])
 
 
+def test_a_pair_has_the_margin_and_gap_of_both_shapes(cart, tmp_path):
+    world = tmp_path / "world.xml"
+    world.write_text(
+        '<mujoco><worldbody><geom type="plane" size="0 0 1" margin="0.01" gap="0.02"/></worldbody>'
+        "</mujoco>"
+    )
+    model = cart(world=world).model
+    assert model.pair_margin.tolist() == pytest.approx([0.01])
+    assert model.pair_gap.tolist() == pytest.approx([0.02])
+
+
 def test_pairs_go_with_what_is_taken_out_of_the_world(cart):
     built = cart(world="pick_and_place_demo")
     spec = built.spec

@@ -188,6 +188,24 @@ def test_a_box_in_the_air_touches_nothing_and_on_the_floor_bears_its_weight(box)
     assert lab.sensors["s"].description.topic == "bumper"
 
 
+def test_what_is_only_near_is_no_contact(box, tmp_path):
+    """MuJoCo lists the shapes in the gap of a geom among its contacts, and counts them."""
+    world = tmp_path / "near.xml"
+    world.write_text(
+        '<mujoco><option gravity="0 0 0"/><worldbody>'
+        '<geom type="plane" size="0 0 1" gap="0.05"/></worldbody></mujoco>'
+    )
+    lab = Lab(box, base="free", world=world)
+    data = lab.simulation.data
+    data.qpos[2] = 0.07
+    lab.run(0.05)
+    assert data.ncon == 4
+    assert not any(value.any() for value in lab.read().values())
+    data.qpos[2] = 0.049
+    lab.run(0.01)
+    assert lab.read()["contacts"] == 4
+
+
 def test_contact_forces_are_in_the_links_axes(box):
     lab = Lab(box, base="free")
     half = math.sqrt(0.5)

@@ -50,6 +50,27 @@ def test_a_contact_is_seen_from_both_sides(tower):
     assert below.depth == above.depth > 0.0
 
 
+def test_a_gap_is_no_contact_and_a_margin_is_one():
+    spec = mujoco.MjSpec.from_string(TOWER)
+    spec.body("low").geoms[0].gap = 0.05
+    spec.body("high").geoms[0].margin = 0.03
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    built = BuiltModel(model, spec, {}, {}, data.qpos.copy(), BuildReport(), {})
+    entities = Entities(built, NOTHING, {})
+    data.qpos[[2, 9]] = 0.12, 0.3
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 2
+    (between,) = contacts_of(None, model, data, entities)
+    assert {between.body, between.other} == {"low", "high"}
+    assert between.depth == pytest.approx(0.02)
+    data.qpos[[2, 9]] = 0.5, 0.72
+    mujoco.mj_forward(model, data)
+    (between,) = contacts_of(None, model, data, entities)
+    assert between.depth == pytest.approx(-0.02)
+    assert np.linalg.norm(between.force) > 1.0
+
+
 def test_all_contacts_and_those_of_a_link(tower):
     assert {frozenset((c.body, c.other)) for c in contacts_of(None, *tower)} == {
         frozenset(("world", "low")),

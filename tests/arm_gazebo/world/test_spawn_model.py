@@ -49,6 +49,14 @@ def test_a_model_in_a_model_is_spawned_as_one_or_refused(things):
     assert tied.root == "outer"
 
 
+def test_a_margin_with_a_gap_is_reported():
+    puck = (
+        '<mujoco><worldbody><body><geom size="1" margin="1" gap="0.5"/></body></worldbody></mujoco>'
+    )
+    (finding,) = SOURCE.read("", puck).findings
+    assert "write margin='0.5'" in finding.message
+
+
 def test_joints_of_a_urdf_move(things):
     model = SOURCE.read("", things.chest).spec.copy().compile()
     assert model.joint("hinge").range == pytest.approx([-1.5, 1.5])
