@@ -14,6 +14,7 @@ from launch_py.launch_context import LaunchContext
 from launch_py.names import join_names
 from launch_py.plan.steps import GeneratedFile
 from launch_py.ros.parameter_descriptions import ParameterFile
+from launch_py.ros.parameter_order import ParameterSource, files_in_order, source_of_values
 from launch_py.ros.parameters import (
     ParameterValue,
     evaluate_parameters,
@@ -111,8 +112,8 @@ class Node(ExecuteProcess):
             ros += ["-r", f"__node:={name}"]
         if namespace:
             ros += ["-r", f"__ns:={namespace}"]
-        for parameters in self._parameter_files(context, namespace, name):
-            ros += ["--params-file", parameters]
+        for file in self._parameter_files(context, namespace, name):
+            ros += ["--params-file", file]
         remappings = perform_pairs(context, self.remappings, "remappings=")
         for old, new in [*context.remappings, *remappings]:
             ros += ["-r", f"{old}:={new}"]
@@ -147,32 +148,33 @@ class Node(ExecuteProcess):
 
     def _parameter_files(
         self, context: LaunchContext, namespace: str, name: str
-    ) -> Iterator[str | GeneratedFile]:
-        for parameters in [*context.parameters, *self.parameters]:
-            try:
+    ) -> Sequence[str | GeneratedFile]:
+        sources: list[ParameterSource] = []
+        try:
+            for parameters in [*context.parameters, *self.parameters]:
                 if isinstance(parameters, Mapping):
-                    file = _generated_file(context, namespace, name, parameters)
-                elif isinstance(parameters, ParameterFile):
-                    file = parameters.evaluate(context)
-                else:
-                    file = ParameterFile(parameters).evaluate(context)
-            except NodeParameterError as error:
-                raise NodeParameterError(f"{self.process_name(context)}: {error}") from None
-            if file is not None:
-                yield file
+                    sources += _source(context, namespace, name, parameters)
+                    continue
+                if not isinstance(parameters, ParameterFile):
+                    parameters = ParameterFile(parameters)
+                sources.append(ParameterSource(parameters.evaluate(context)))
+            return files_in_order(sources, _full_name(namespace, name) if name else "")
+        except NodeParameterError as error:
+            raise NodeParameterError(f"{self.process_name(context)}: {error}") from None
 
 
-def _generated_file(
+def _source(
     context: LaunchContext, namespace: str, name: str, parameters: Mapping[Any, Any]
-) -> GeneratedFile | None:
-    texts = [
-        parameter_file_text(
-            _full_name(namespace, node) if node else "/**", evaluate_parameters(context, values)
-        )
+) -> Iterator[ParameterSource]:
+    """Yield the source of the parameters in a dict, if it has any."""
+    by_node = {
+        _full_name(namespace, node) if node else "/**": evaluate_parameters(context, values)
         for node, values in parameters_by_node(parameters, name).items()
         if values
-    ]
-    return GeneratedFile(".yaml", "".join(texts)) if texts else None
+    }
+    if by_node:
+        texts = [parameter_file_text(node, values) for node, values in by_node.items()]
+        yield source_of_values(by_node, "".join(texts))
 
 
 def _full_name(namespace: str, node: str) -> str:

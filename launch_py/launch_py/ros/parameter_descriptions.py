@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from launch_py.errors import LaunchError, NodeParameterError
 from launch_py.near_names import describe_missing_file
@@ -60,25 +60,51 @@ def _performed(context: LaunchScope, path: str) -> str:
     """
     import yaml  # Imported late, because the import takes as long as starting a process.
 
+    roots = compose_documents(read_file(path), yaml.SafeLoader, path)
+    try:
+        roots = [_node(context, root, {}) for root in roots]
+    except LaunchError as error:
+        raise NodeParameterError(f"parameter file {path}: {error}") from error
+    return yaml.serialize_all(roots, Dumper=yaml.SafeDumper, width=float("inf"), allow_unicode=True)
+
+
+def read_file(path: str) -> str:
+    """Return the text of a parameter file.
+
+    Raises:
+        NodeParameterError: it cannot be read, or is too long.
+    """
     try:
         with open(path, encoding="utf-8") as file:
             text = file.read(MAX_CHARACTERS + 1)
-        if len(text) > MAX_CHARACTERS:
-            raise NodeParameterError(
-                f"parameter file {path} has more than {MAX_CHARACTERS} characters"
-            )
+    except (OSError, UnicodeError) as error:
+        raise NodeParameterError(f"parameter file {path} cannot be read: {error}") from error
+    if len(text) > MAX_CHARACTERS:
+        raise NodeParameterError(f"parameter file {path} has more than {MAX_CHARACTERS} characters")
+    return text
+
+
+def compose_documents(text: str, loader: Any, path: str) -> list[yaml.Node]:
+    """Return the nodes of the documents in a parameter file.
+
+    Args:
+        text: the file's text.
+        loader: the YAML loader to read it with.
+        path: the file, for messages.
+
+    Raises:
+        NodeParameterError: it is not YAML, or nested too deep.
+    """
+    import yaml
+
+    try:
         check_depth(text)
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
-    except (OSError, UnicodeError, yaml.YAMLError) as error:
+        return list(yaml.compose_all(text, Loader=loader))
+    except NodeParameterError as error:
+        raise NodeParameterError(f"parameter file {path}: {error}") from None
+    except yaml.YAMLError as error:
         reason = str(error).replace("\n", " ")
         raise NodeParameterError(f"parameter file {path} cannot be read: {reason}") from error
-    if root is None:
-        return ""
-    try:
-        root = _node(context, root, {})
-    except LaunchError as error:
-        raise NodeParameterError(f"parameter file {path}: {error}") from error
-    return yaml.serialize(root, Dumper=yaml.SafeDumper, width=float("inf"), allow_unicode=True)
 
 
 def _node(context: LaunchScope, node: yaml.Node, done: dict[int, yaml.Node]) -> yaml.Node:
@@ -107,10 +133,10 @@ def _node(context: LaunchScope, node: yaml.Node, done: dict[int, yaml.Node]) -> 
 
 
 def _read(text: str) -> yaml.Node:
-    """Return the YAML node of a text: a list or a dict in brackets, else one value."""
+    """Return the YAML node of a text: a list, a dict, a text in quotes, else one value."""
     import yaml
 
-    if text.strip()[:1] in ("[", "{"):
+    if text.strip()[:1] in ("[", "{", "'", '"'):
         try:
             return yaml.compose(text, Loader=yaml.SafeLoader)
         except yaml.YAMLError as error:

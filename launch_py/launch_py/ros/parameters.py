@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from os import PathLike
 from typing import Any, get_args, get_origin
 
@@ -16,22 +15,33 @@ from launch_py.typed_values import parse_boolean
 MAX_DEPTH = 64
 """How deep lists and dicts may be nested."""
 LONGEST_SHOWN = 100
+LONGEST_SCALAR = 1000
+"""A longer text than this, such as a robot description, is not read as YAML."""
 UNPRINTABLE = re.compile("[\x7f-\x9f\ufffe\uffff]")
 """Characters that JSON does not escape and YAML does not allow unescaped."""
 
-YAML_WORDS = {
-    spelling: value
-    for words, value in {"true yes on": True, "false no off": False, "null ~": ""}.items()
-    for word in words.split()
-    for spelling in (word, word.capitalize(), word.upper())
-}
-"""Words that YAML does not read as text. A parameter cannot be null, so ROS uses '' for it."""
-
-YAML_SPECIAL_FLOATS = (".nan", ".inf", "+.inf", "-.inf")
-"""YAML's notation of floats without digits; a bare nan or infinity is a text."""
+SAME_IN_YAML = re.compile(r"[A-Za-z/][\w/-]*(\.[A-Za-z]\w*)?|-?(0|[1-9]\d*)(\.\d+)?", re.ASCII)
+"""Names, paths and plain numbers: all YAML readers agree on them, but for `WORDS`."""
+WORD_LIST = "y n yes no on off true false null nan inf infinity"
+WORDS = frozenset(WORD_LIST.split())
+"""Words that a YAML reader may take for something else than a text."""
+BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+BARE = re.compile(r"[\w.+()-]+", re.ASCII)
+"""Texts that rcl may read as something else if they have no quotes around them."""
 
 NODE_KEY = "ros__parameters"
 """The key between a node's name and its parameters in a parameter file."""
+
+
+class BareText(str):
+    """A text that is written without quotes, so that rcl decides its type.
+
+    In ROS a launch file writes the text of a substitution so: `1e3`, which is a text to PyYAML,
+    becomes a double, and `y` a boolean.
+    """
+
+    __slots__ = ()
+
 
 Value = bool | int | float | str | list[Any] | dict[str, Any]
 
@@ -58,7 +68,8 @@ class ParameterValue:
         origin = get_origin(self.value_type)
         if origin is list:
             value = self.value
-            items = read_yaml(value) if isinstance(value, str) else evaluate_value(context, value)
+            text = perform_text(context, value) if isinstance(value, Substitution) else value
+            items = load_value(text) if isinstance(text, str) else evaluate_value(context, value)
             if not isinstance(items, list):
                 raise NodeParameterError(f"a list is needed, not {items!r}")
             item_type = get_args(self.value_type)[0]
@@ -116,17 +127,31 @@ def evaluate_value(context: LaunchScope, value: Any) -> Value:
 
 
 def read_yaml(text: str) -> Value:
-    """Return a text's value in YAML; a text that is not a YAML scalar or list stays as it is."""
+    """Return the value that the text of a substitution has, as in ROS.
+
+    It is read as YAML; what is not a YAML scalar or list stays as it is. A text without quotes, or
+    with needless ones, becomes a `BareText`.
+
+    Raises:
+        NodeParameterError: it begins like a list or a dict and is not YAML, or a list mixes types.
+    """
+    value = load_value(text)
+    if isinstance(value, list):
+        return [_bare(item) for item in _one_type(value)]
+    return _bare(value)
+
+
+def load_value(text: str) -> Any:
+    """Return the value of a text as PyYAML reads it; see `read_yaml`."""
     word = text.strip()
-    if word in YAML_WORDS:
-        return YAML_WORDS[word]
-    if word.lower() in YAML_SPECIAL_FLOATS:
-        return float(word.replace(".", ""))
-    if any(map(str.isdigit, word)):
-        for number in (int, lambda digits: int(digits, base=0), float):
-            with suppress(ValueError):
-                return number(word)
-    if word[:1] not in ("[", "{", "'", '"'):
+    if word in BOOLEANS:
+        return BOOLEANS[word]
+    if _is_same_in_yaml(word):
+        if word[0].isalpha() or word[0] == "/":
+            return word
+        return float(word) if "." in word else int(word)
+    begins_collection = word[:1] in ("[", "{", "'", '"')
+    if not begins_collection and ("\n" in word or len(word) > LONGEST_SCALAR):
         return text
     import yaml  # Imported late, because the import takes as long as starting a process.
 
@@ -140,9 +165,27 @@ def read_yaml(text: str) -> Value:
         value = yaml.safe_load(word)
     # PyYAML's constructors raise any of these, for an invalid date or `!!bool x`.
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, TypeError) as error:
+        if not begins_collection:
+            return text
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise NodeParameterError(f"{_shortened(text)} is not YAML: {reason}") from None
-    return _one_type(value) if isinstance(value, list) else value
+    if value is None:
+        return ""
+    return value if begins_collection or isinstance(value, bool | int | float | str) else text
+
+
+def _is_same_in_yaml(word: str) -> bool:
+    return bool(SAME_IN_YAML.fullmatch(word)) and word.lower() not in WORDS
+
+
+def _bare(value: Any) -> Any:
+    """Return a `BareText` for a text that ROS writes without quotes and that may not stay one."""
+    if not isinstance(value, str) or _is_same_in_yaml(value) or not BARE.fullmatch(value):
+        return value
+    import yaml
+
+    tag = yaml.SafeLoader("").resolve(yaml.ScalarNode, value, (True, False))
+    return BareText(value) if tag == "tag:yaml.org,2002:str" else value
 
 
 def check_depth(text: str) -> None:
@@ -187,20 +230,23 @@ def parameter_file_text(node_name: str, parameters: Mapping[str, Value]) -> str:
 
     The text is JSON, a subset of YAML that quotes strings, so 'yes' stays a string.
     """
-    return f"{json.dumps(node_name)}: {_dump({NODE_KEY: parameters})}\n"
+    return f"{json.dumps(node_name)}: {dump_value({NODE_KEY: parameters})}\n"
 
 
-def _dump(value: Value | Mapping[str, Any]) -> str:
+def dump_value(value: Value | Mapping[str, Any]) -> str:
+    """Return a value as YAML in one line, with quotes around texts."""
     match value:
         case Mapping():
-            pairs = (f"{json.dumps(str(k))}: {_dump(v)}" for k, v in value.items())
+            pairs = (f"{json.dumps(str(k))}: {dump_value(v)}" for k, v in value.items())
             return "{" + ", ".join(pairs) + "}"
         case list():
-            return "[" + ", ".join(_dump(item) for item in value) + "]"
+            return "[" + ", ".join(dump_value(item) for item in value) + "]"
         case bool():
             return "true" if value else "false"
         case float():
             return _dump_float(value)
+        case BareText():
+            return value
         case str():
             return UNPRINTABLE.sub(_escape, json.dumps(value, ensure_ascii=False))
     return str(value)
@@ -223,7 +269,7 @@ def _escape(match: re.Match[str]) -> str:
 def _one_type(items: list[Any]) -> list[Any]:
     if not items:
         raise NodeParameterError("an empty list has no type that a node could read; leave it out")
-    types = {type(item) for item in items}
+    types = {str if isinstance(item, str) else type(item) for item in items}
     if types == {int, float}:
         return [float(item) for item in items]
     if len(types) > 1 or types & {list, dict, type(None)}:

@@ -25,7 +25,7 @@ URDF = '<?xml version="1.0"?>\n<robot name="a:b">\n  <link name="Ärm \'1\'" # {
 
 @pytest.fixture
 def context():
-    names = {"flag": "true", "rate": "100", "gain": "1e-2", "text": "3.x", "list": "[1, 2.5]"}
+    names = {"flag": "true", "rate": "100", "gain": "1.0e-2", "text": "3.x", "list": "[1, 2.5]"}
     return LaunchContext(launch_configurations={**names, "urdf": URDF})
 
 
@@ -93,7 +93,8 @@ def test_the_text_of_a_substitution_is_read_as_yaml(context, name, expected):
 def test_texts_are_read_as_pyyaml_reads_them(context, text):
     context.launch_configurations["t"] = text
     value = evaluated(context, LaunchConfiguration("t"))
-    assert (value, type(value)) == (yaml.safe_load(text), type(yaml.safe_load(text)))
+    assert value == yaml.safe_load(text)
+    assert isinstance(value, type(yaml.safe_load(text)))
 
 
 def test_not_a_number_is_written_as_in_yaml(context):
