@@ -124,7 +124,7 @@ def cost(name: str, message: object, count: int, compression: str) -> harness.Ro
     data = serialize_message(message)
     with tempfile.TemporaryDirectory() as folder:
         writer = BagWriter(Path(folder) / "bag", BagSettings(compression=compression))
-        writer.add_topic(BagTopic("/x", "x/msg/X"), TypeDefinition("x/msg/X", ""))
+        writer.add_topic(BagTopic("/x", "x/msg/X"), TypeDefinition("x/msg/X", b""))
         started = time.process_time()
         for number in range(count):
             writer.write(BagMessage("/x", number, number, data))

@@ -1,5 +1,6 @@
 """The content of a bag's metadata.yaml."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,7 +65,9 @@ class BagMetadata:
         topics: the topics, each with its number of messages.
         ros_distro: the ROS distribution that recorded the bag.
         storage: the format of the files.
-        compression_mode: how rosbag2 compressed whole files; empty if it did not.
+        compression_mode: what rosbag2 compressed, FILE or MESSAGE; empty for neither.
+        compression_format: how it did.
+        custom_data: what its users added.
     """
 
     files: tuple[BagFileInfo, ...]
@@ -72,6 +75,8 @@ class BagMetadata:
     ros_distro: str = ""
     storage: str = STORAGE
     compression_mode: str = ""
+    compression_format: str = ""
+    custom_data: Mapping[str, Any] | None = None
 
     @property
     def span(self) -> TimeSpan:
@@ -101,7 +106,7 @@ class BagMetadata:
                 {"topic_metadata": _topic_to_plain(topic), "message_count": count}
                 for topic, count in self.topics
             ],
-            "compression_format": "",
+            "compression_format": self.compression_format,
             "compression_mode": self.compression_mode,
             "relative_file_paths": [file.name for file in self.files],
             "files": [
@@ -112,7 +117,7 @@ class BagMetadata:
                 }
                 for file in self.files
             ],
-            "custom_data": None,
+            "custom_data": self.custom_data,
             "ros_distro": self.ros_distro,
         }
 
@@ -129,6 +134,7 @@ def read_metadata(text: str, where: str) -> BagMetadata:
     """
     try:
         plain = load_yaml(text)[ROOT]
+        mode = str(plain.get("compression_mode") or "")
         files = plain.get("files") or [{"path": p} for p in plain["relative_file_paths"]]
         return BagMetadata(
             files=tuple(_file(file) for file in files),
@@ -138,11 +144,19 @@ def read_metadata(text: str, where: str) -> BagMetadata:
             ),
             ros_distro=str(plain.get("ros_distro") or ""),
             storage=str(plain["storage_identifier"]),
-            compression_mode=str(plain.get("compression_mode") or "").lower(),
+            compression_mode="" if mode.upper() == "NONE" else mode,
+            compression_format=str(plain.get("compression_format") or ""),
+            custom_data=read_custom_data(plain),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{type(error).__name__}: {error}".splitlines()[0]
         raise BagError(f"{where} does not hold a bag's metadata ({reason})") from error
+
+
+def read_custom_data(plain: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return what users added to metadata, given below its root key."""
+    custom = plain.get("custom_data")
+    return dict(custom) if isinstance(custom, dict) and custom else None
 
 
 def _span_to_plain(span: TimeSpan) -> dict[str, Any]:

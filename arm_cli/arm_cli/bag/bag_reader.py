@@ -2,12 +2,19 @@
 
 import os
 from collections.abc import Collection, Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from dataclasses import replace
 from pathlib import Path
 
-from arm_cli.bag.bag_metadata import FILE_NAME, STORAGE, BagMetadata, read_metadata
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
+from arm_cli.bag import message_compression
+from arm_cli.bag.bag_metadata import (
+    FILE_NAME,
+    STORAGE,
+    BagMetadata,
+    read_custom_data,
+    read_metadata,
+)
+from arm_cli.bag.bag_topic import CDR, BagMessage, BagTopic, RecordedTopic
 from arm_cli.bag.mcap_file_reader import McapFileReader
 from arm_cli.errors import BagError
 from arm_cli.output import complain
@@ -23,6 +30,7 @@ class BagReader:
     Attributes:
         path: the path of the folder or file.
         metadata: everything about the bag except its messages.
+        recorded_topics: the topics; one of several types or definitions is there for each.
         unfinished: the names of the files that their writer did not finish.
         size_bytes: the total size of the files.
     """
@@ -38,7 +46,7 @@ class BagReader:
             BagError: there is no bag, or it cannot be read; the message says why.
         """
         self.path = path
-        paths, ros_distro = _parts(path, by_metadata)
+        paths, known = _parts(path, by_metadata)
         with ExitStack() as opening:
             files = [opening.enter_context(closing(McapFileReader(part))) for part in paths]
             self._open_files = opening.pop_all()
@@ -46,35 +54,91 @@ class BagReader:
         self._files = files
         self.unfinished = [file.info.name for file in files if not file.is_finished]
         self.size_bytes = sum(file.path.stat().st_size for file in files)
+        self.recorded_topics = _joined(files)
+        embedded = {} if known and known.ros_distro else files[0].embedded_metadata()
         self.metadata = BagMetadata(
             files=tuple(file.info for file in files),
-            topics=_joined(files),
-            ros_distro=ros_distro or files[0].ros_distro(),
+            topics=tuple((one.topic, one.count) for one in self.recorded_topics),
+            ros_distro=(known and known.ros_distro) or str(embedded.get("ros_distro") or ""),
+            custom_data=known.custom_data if known else read_custom_data(embedded),
         )
+        self.metadata = replace(self.metadata, **self._compression(known))
+
+    def _compression(self, known: BagMetadata | None) -> dict[str, str]:
+        """Return the compression of the messages, as fields of the metadata."""
+        if known and known.compression_mode.upper() == message_compression.MODE:
+            if known.compression_format != message_compression.FORMAT:
+                self.close()
+                raise BagError(
+                    f"the messages of {self.path} are compressed as "
+                    f"{known.compression_format!r}; only {message_compression.FORMAT} can be read"
+                )
+            mode = known.compression_mode
+        else:
+            mode = message_compression.MODE
+        if not self._has_compressed_messages():
+            return {}
+        return {"compression_mode": mode, "compression_format": message_compression.FORMAT}
+
+    def _has_compressed_messages(self) -> bool:
+        names = {
+            one.topic.name for one in self.recorded_topics if one.topic.serialization_format == CDR
+        }
+        with suppress(BagError):  # Who reads the messages meets the damage, too.
+            for file in self._files:
+                for message in file.messages(names, 0):
+                    return message_compression.is_compressed(message.data)
+        return False
 
     @property
     def topics(self) -> list[BagTopic]:
         """All topics."""
         return [topic for topic, _ in self.metadata.topics]
 
-    def definition(self, topic: str) -> TypeDefinition | None:
-        """Return the definition of a topic's type from the bag, None if the bag has none."""
-        return next(filter(None, (file.definition(topic) for file in self._files)), None)
+    def check_topics(self, topics: Collection[str]) -> None:
+        """Check that each of some topics has one type, one definition and one format.
+
+        Raises:
+            BagError: one has several, so that its messages cannot be told apart.
+        """
+        for name in sorted(topics):
+            found = [one for one in self.recorded_topics if one.topic.name == name and one.count]
+            if len(found) > 1:
+                kinds = ", ".join(
+                    f"{one.topic.type} in {one.topic.serialization_format} ({one.count})"
+                    for one in found
+                )
+                raise BagError(
+                    f"{name} of {self.path} has messages of several types or definitions: {kinds}; "
+                    "leave the topic out"
+                )
 
     def messages(self, topics: Collection[str], start_ns: int = 0) -> Iterator[BagMessage]:
-        """Yield the messages of some topics in the order of their time.
+        """Return the messages of some topics in the order of their time.
 
         Args:
             topics: the names of the topics.
             start_ns: the time of the earliest message.
 
         Raises:
-            BagError: the bag is damaged.
+            BagError: the bag is damaged, or `check_topics` refuses a topic.
         """
+        self.check_topics(topics)
+        return self._messages(topics, start_ns)
+
+    def _messages(self, topics: Collection[str], start_ns: int) -> Iterator[BagMessage]:
+        formats = {one.topic.name: one.topic.serialization_format for one in self.recorded_topics}
         for file in self._files:
             end_ns = file.info.span.end_ns
-            if end_ns is not None and end_ns >= start_ns:
-                yield from file.messages(topics, start_ns)
+            if end_ns is None or end_ns < start_ns:
+                continue
+            for message in file.messages(topics, start_ns):
+                name = message.topic
+                if formats[name] == CDR and message_compression.is_compressed(message.data):
+                    data = message_compression.decompressed(message.data, f"{name} of {self.path}")
+                    yield message._replace(data=data)
+                else:
+                    yield message
 
     def close(self) -> None:
         """Close all files."""
@@ -98,41 +162,62 @@ def warn_if_unfinished(reader: BagReader, program: str) -> None:
         )
 
 
-def _parts(path: Path, by_metadata: bool) -> tuple[list[Path], str]:
-    """Return the files of a bag, and the ROS distribution in its metadata."""
+def _parts(path: Path, by_metadata: bool) -> tuple[list[Path], BagMetadata | None]:
+    """Return the files of a bag, and its metadata.yaml if it has one that is used."""
     if os.path.isfile(path):
-        return [_checked(path)], ""
+        return [_checked(path)], None
     if not os.path.isdir(path):
         if os.path.exists(path):
             raise BagError(f"Bag path '{path}' is neither a folder nor a regular file")
         raise BagError(f"Bag path '{path}' does not exist!")
-    metadata_file = path / FILE_NAME
-    if by_metadata and os.path.isfile(metadata_file):
-        try:
-            text = read_text(metadata_file)
-        except (OSError, UnicodeDecodeError) as error:
-            raise BagError(f"cannot read {metadata_file}: {error}") from error
-        metadata = read_metadata(text, str(metadata_file))
-        if metadata.storage != STORAGE:
-            raise BagError(_other_storage(path, metadata.storage))
-        files = [_checked(path / Path(file.name).name) for file in metadata.files]
+    known = None
+    try:
+        known = recorded_metadata(path)
+    except BagError:
+        if by_metadata:
+            raise
+    if known and by_metadata:
+        if known.storage != STORAGE:
+            raise BagError(_other_storage(path, known.storage))
+        files = [_checked(path / Path(file.name).name) for file in known.files]
         if files:
-            return files, metadata.ros_distro
+            return files, known
     found = sorted(path.glob("*.mcap"))
     if found:
-        return found, ""
+        return found, known
     if any(path.glob("*.db3")):
         raise BagError(_other_storage(path, "sqlite3"))
+    for compressed in sorted(path.glob("*.zstd")):
+        _checked(compressed)
     raise BagError(
         f"the folder {path} is not a bag: it holds neither {FILE_NAME} nor an .mcap file"
     )
+
+
+def recorded_metadata(folder: Path) -> BagMetadata | None:
+    """Return the content of a bag's metadata.yaml, None without the file.
+
+    Raises:
+        BagError: the file cannot be read.
+    """
+    file = folder / FILE_NAME
+    if not os.path.isfile(file):
+        return None
+    try:
+        text = read_text(file)
+    except (OSError, UnicodeDecodeError) as error:
+        raise BagError(f"cannot read {file}: {error}") from error
+    return read_metadata(text, str(file))
 
 
 def _checked(path: Path) -> Path:
     if path.suffix == ".db3":
         raise BagError(_other_storage(path, "sqlite3"))
     if path.suffix == ".zstd":
-        raise BagError(f"{path} is compressed as a whole; decompress it first: unzstd {path}")
+        raise BagError(
+            f"{path} is compressed as a whole; decompress it first: "
+            f"unzstd {path} && arm bag reindex {path.parent}"
+        )
     return path
 
 
@@ -143,14 +228,15 @@ def _other_storage(path: Path, storage: str) -> str:
     )
 
 
-def _joined(files: list[McapFileReader]) -> tuple[tuple[BagTopic, int], ...]:
+def _joined(files: list[McapFileReader]) -> list[RecordedTopic]:
     """Return the topics of all files, each once, with the number of its messages."""
-    topics: dict[str, BagTopic] = {}
-    counts: dict[str, int] = {}
-    for file in files:
-        for topic, count in file.topics:
-            known = topics.setdefault(topic.name, topic)
-            if not known.offers and topic.offers:
-                topics[topic.name] = replace(known, offers=topic.offers)
-            counts[topic.name] = counts.get(topic.name, 0) + count
-    return tuple((topic, counts[name]) for name, topic in topics.items())
+    joined: list[RecordedTopic] = []
+    for one in (one for file in files for one in file.topics):
+        for place, known in enumerate(joined):
+            if known.is_same(one):
+                joined[place] = known.joined(one)
+                break
+        else:
+            joined.append(one)
+    filled = {one.topic.name for one in joined if one.count}
+    return [one for one in joined if one.count or one.topic.name not in filled]

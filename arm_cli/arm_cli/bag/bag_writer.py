@@ -4,7 +4,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from arm_cli.bag.bag_metadata import FILE_NAME, BagFileInfo, BagMetadata
+from arm_cli.bag.bag_metadata import FILE_NAME, BagFileInfo, BagMetadata, read_metadata
 from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag.mcap_file_writer import McapFileWriter
 from arm_cli.bag.yaml_text import dump_yaml
@@ -150,20 +150,24 @@ class BagWriter:
 def write_metadata(folder: Path, metadata: BagMetadata) -> Path:
     """Write a bag's metadata.yaml; return its path.
 
+    An older file stays until the new one has been read back.
+
     Raises:
-        BagError: the file cannot be written.
+        BagError: the file cannot be written, or does not say what it was meant to.
     """
     try:
-        return _replace_metadata(folder, metadata)
+        return _replace_metadata(folder, metadata, check=True)
     except OSError as error:
         raise _cannot_write(folder, error) from error
 
 
-def _replace_metadata(folder: Path, metadata: BagMetadata) -> Path:
+def _replace_metadata(folder: Path, metadata: BagMetadata, check: bool = False) -> Path:
     # A new file replaces the old one atomically, so that a reader always finds a complete file.
     path = folder / FILE_NAME
     new = path.with_name(f".{FILE_NAME}.new")
     new.write_text(metadata.to_yaml(), encoding="utf-8")
+    if check and read_metadata(new.read_text(encoding="utf-8"), str(new)) != metadata:
+        raise BagError(f"{new} does not read back as it was written; {path} is left as it was")
     os.replace(new, path)
     return path
 

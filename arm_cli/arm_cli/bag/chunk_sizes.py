@@ -14,6 +14,7 @@ from mcap.records import Chunk, ChunkIndex
 MAX_CHUNK_BYTES = 200_000_000
 MAX_OVERLAP_BYTES = 400_000_000
 """Limit for chunks whose times overlap: they are decompressed together to sort their messages."""
+COMPRESSIONS = ("", "lz4", "zstd")
 _HEADER = struct.Struct("<BQ")
 _CHUNK = struct.Struct("<QQQII")
 """Start, end, unpacked size, checksum, length of the compression's name."""
@@ -61,6 +62,8 @@ def _check_at(stream: BinaryIO, offset: int) -> int:
 
 def _check(size: int, compression: str, beginning: bytes, stored: int) -> int:
     """Return the larger of the sizes that a chunk's header and its data give."""
+    if compression not in COMPRESSIONS:
+        raise McapError(f"a chunk is compressed as {compression!r}; lz4 and zstd can be read")
     largest = max(size, stored, _uncompressed_size(beginning) if compression == "zstd" else 0)
     if largest > MAX_CHUNK_BYTES:
         raise ChunkTooLargeError(

@@ -15,7 +15,7 @@ from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
     from arm_cli.bag.bag_reader import BagReader
-    from arm_cli.bag.bag_topic import BagMessage, BagTopic
+    from arm_cli.bag.bag_topic import BagMessage, BagTopic, RecordedTopic
     from arm_cli.bag.bag_writer import BagSettings
     from arm_cli.bag.topic_selection import TopicSelection
 
@@ -171,10 +171,12 @@ def _write(output: Output, readers: list["BagReader"]) -> int:
     from arm_cli.bag.bag_writer import BagWriter
 
     topics = _wanted(output, readers)
+    for reader in readers:
+        reader.check_topics(topics.keys())
     writer = BagWriter(output.folder, output.settings)
     try:
-        for topic in topics.values():
-            writer.add_topic(topic, _definition(topic, readers))
+        for one in topics.values():
+            writer.add_topic(one.topic, one.definition)
         for message in _messages(readers, topics):
             writer.write(message)
         return writer.close().message_count
@@ -183,13 +185,18 @@ def _write(output: Output, readers: list["BagReader"]) -> int:
         raise
 
 
-def _wanted(output: Output, readers: list["BagReader"]) -> dict[str, "BagTopic"]:
-    found: dict[str, BagTopic] = {}
-    for topic in (topic for reader in readers for topic in reader.topics):
-        known = found.setdefault(topic.name, topic)
-        if known.type != topic.type:
-            raise BagError(f"{topic.name} is a {known.type} in one bag, a {topic.type} in another")
-    wanted = {name: topic for name, topic in found.items() if output.selection.wants(name)}
+def _wanted(output: Output, readers: list["BagReader"]) -> dict[str, "RecordedTopic"]:
+    wanted: dict[str, RecordedTopic] = {}
+    for one in (one for reader in readers for one in reader.recorded_topics):
+        name = one.topic.name
+        if not output.selection.wants(name):
+            continue
+        known = wanted.setdefault(name, one)
+        if known is one or not one.count:
+            continue
+        if known.count and not known.is_same(one):
+            raise BagError(_different(known.topic, one.topic))
+        wanted[name] = known.joined(one) if known.count else one
     if not wanted:
         raise BagError(
             f"nothing to write to {output.folder}: no topic of the bags is selected; select all "
@@ -198,17 +205,17 @@ def _wanted(output: Output, readers: list["BagReader"]) -> dict[str, "BagTopic"]
     return wanted
 
 
-def _definition(topic: "BagTopic", readers: list["BagReader"]) -> Any:
-    from arm_cli.bag.bag_topic import find_definition
-    from arm_cli.interfaces.index import InterfaceIndex
+def _different(one: "BagTopic", other: "BagTopic") -> str:
+    kinds = [f"{topic.type} in {topic.serialization_format}" for topic in (one, other)]
+    if kinds[0] != kinds[1]:
+        return f"{one.name} is {kinds[0]} in one bag, {kinds[1]} in another"
+    return (
+        f"{one.name}: the bags define {one.type} differently, so that its messages cannot be one "
+        "topic; write two bags, or leave the topic out of one with exclude_topics"
+    )
 
-    found = (reader.definition(topic.name) for reader in readers)
-    return next(filter(None, found), None) or find_definition(InterfaceIndex(), topic.type)
 
-
-def _messages(
-    readers: list["BagReader"], topics: Mapping[str, "BagTopic"]
-) -> Iterator["BagMessage"]:
+def _messages(readers: list["BagReader"], topics: Mapping[str, object]) -> Iterator["BagMessage"]:
     sources = (reader.messages(topics.keys()) for reader in readers)
     return merge(*sources, key=lambda message: message.log_time_ns)
 

@@ -11,6 +11,7 @@ from arm_cli.verb import VerbFunctions
 from arm_node.printable import printable
 
 if TYPE_CHECKING:
+    from arm_cli.bag.bag_metadata import BagMetadata
     from arm_cli.bag.bag_reader import BagReader
 
 SORTINGS = ("name", "type", "count")
@@ -23,7 +24,7 @@ PLUGINS = {
     "compressor": ("lz4", "zstd"),
     "decompressor": ("lz4", "zstd"),
 }
-"""Formats by the kinds that ros2 bag list knows. MCAP compresses chunks, not files or messages."""
+"""Formats by the kinds that ros2 bag list knows, compression being that of MCAP's chunks."""
 
 
 def existing_path(text: str) -> Path:
@@ -77,6 +78,7 @@ def describe_bag(reader: "BagReader", sort: str) -> str:
             f"Files:             {_NEXT_LINE.join(printable(f.name) for f in metadata.files)}",
             f"Bag size:          {describe_size(reader.size_bytes)}",
             f"Storage id:        {printable(metadata.storage)}",
+            *_compression_lines(metadata),
             f"ROS Distro:        {printable(metadata.ros_distro or 'unknown')}",
             f"Duration:          {_seconds(span.duration_ns)}s",
             f"Start:             {_point(span.start_ns or 0)}",
@@ -96,6 +98,8 @@ def bag_to_plain(reader: "BagReader") -> dict[str, Any]:
         "files": [file.name for file in metadata.files],
         "size_bytes": reader.size_bytes,
         "storage": metadata.storage,
+        "compression_mode": metadata.compression_mode,
+        "compression_format": metadata.compression_format,
         "ros_distro": metadata.ros_distro,
         "start_ns": metadata.span.start_ns,
         "end_ns": metadata.span.end_ns,
@@ -122,6 +126,13 @@ def describe_size(size: float) -> str:
         size /= 1024
         unit += 1
     return f"{size:.1f} {_UNITS[unit]}" if unit else f"{size:.0f} B"
+
+
+def _compression_lines(metadata: "BagMetadata") -> list[str]:
+    if not metadata.compression_mode:
+        return []
+    how = f"{metadata.compression_format} by {metadata.compression_mode.lower()}"
+    return [f"Compression:       {printable(how)}"]
 
 
 def _topic_lines(reader: "BagReader", sort: str) -> list[str]:

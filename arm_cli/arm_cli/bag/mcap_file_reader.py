@@ -1,36 +1,37 @@
 """Reads one MCAP file, finished or not."""
 
-import io
 from collections.abc import Collection, Iterator
 from contextlib import ExitStack
+from heapq import merge
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from mcap.reader import SeekingReader
-from mcap.records import Statistics
+from mcap.records import Channel, Message, Statistics
 from mcap.stream_reader import MAGIC_SIZE
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from arm_cli.bag.bag_metadata import BagFileInfo, TimeSpan
-from arm_cli.bag.bag_topic import ENCODING, BagMessage, BagTopic, TypeDefinition
-from arm_cli.bag.chunk_sizes import MAX_CHUNK_BYTES, check_chunks
-from arm_cli.bag.mcap_recovery import damage_errors, recover_summary
+from arm_cli.bag.bag_topic import BagMessage, BagTopic, RecordedTopic, TypeDefinition
+from arm_cli.bag.chunk_sizes import check_chunks
+from arm_cli.bag.mcap_index import damage_errors, read_index
 from arm_cli.bag.offered_qos import read_offers
 from arm_cli.bag.yaml_text import load_yaml
 from arm_cli.errors import BagError
 from arm_node.user_file import open_file
 
 
-class _RecoveringReader(SeekingReader):
-    """Reads a file that has no summary, with a reconstructed one."""
+class _ChunkReader(SeekingReader):
+    """Reads the messages in the chunks of a summary."""
 
-    def __init__(self, stream: BinaryIO) -> None:
+    def __init__(self, stream: BinaryIO, summary: Summary) -> None:
+        stream.seek(0)
         super().__init__(stream, validate_crcs=True)
-        self._recovered = recover_summary(stream)
+        self._given = summary
 
     def get_summary(self) -> Summary:
-        return self._recovered
+        return self._given
 
 
 class McapFileReader:
@@ -38,13 +39,13 @@ class McapFileReader:
 
     Attributes:
         path: the path of the file.
-        is_finished: whether its writer finished it and wrote the index.
+        is_finished: whether its writer finished it.
         info: its name, and the time span and number of its messages.
-        topics: its topics, each with its number of messages.
+        topics: its topics; one of several types, definitions or formats is there for each.
     """
 
     def __init__(self, path: Path) -> None:
-        """Open the file, and scan it if it has no summary.
+        """Open the file, and scan it if its summary lacks a part.
 
         Raises:
             BagError: the file cannot be opened, or is damaged.
@@ -59,39 +60,31 @@ class McapFileReader:
             if self._stream.read(MAGIC_SIZE) != MCAP0_MAGIC:
                 raise BagError(f"{path} is not an MCAP file")
             try:
-                self._reader, self._summary, self.is_finished = _open_reader(self._stream)
-                check_chunks(self._stream, self._summary.chunk_indexes)
-                self.topics = _topics(self._summary)
+                index = read_index(self._stream)
+                check_chunks(self._stream, index.summary.chunk_indexes)
+                self.topics = _topics(index.summary)
             except damage_errors() as error:
                 raise self._damaged(error) from error
             opening.pop_all()
+        self._summary, self._plain = index.summary, index.plain
+        self._reader = _ChunkReader(self._stream, index.summary)
+        self.is_finished = index.is_finished
         self.info = BagFileInfo(path.name, *_extent(self._summary.statistics))
 
     def close(self) -> None:
         """Close the file."""
         self._stream.close()
 
-    def ros_distro(self) -> str:
-        """Return the ROS distribution that recorded the file, empty if unknown."""
-        if not self.is_finished:
-            return ""
+    def embedded_metadata(self) -> dict[str, Any]:
+        """Return what rosbag2 writes of metadata.yaml into the file; empty if there is nothing."""
         try:
             for record in self._reader.iter_metadata():
-                text = record.metadata.get("serialized_metadata", "")
-                plain = load_yaml(text) if record.name == "rosbag2" else None
-                if isinstance(plain, dict):
-                    return str(plain.get("ros_distro") or "")
+                if record.name == "rosbag2":
+                    plain = load_yaml(record.metadata.get("serialized_metadata", ""))
+                    return plain if isinstance(plain, dict) else {}
         except damage_errors():
             pass
-        return ""
-
-    def definition(self, topic: str) -> TypeDefinition | None:
-        """Return the definition of a topic's type from the file, None if the file has none."""
-        for channel in self._summary.channels.values():
-            schema = self._summary.schemas.get(channel.schema_id)
-            if channel.topic == topic and schema is not None and schema.encoding == ENCODING:
-                return TypeDefinition(schema.name, schema.data.decode("utf-8", "replace"))
-        return None
+        return {}
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[BagMessage]:
         """Yield the messages of some topics in the order of their time.
@@ -103,66 +96,70 @@ class McapFileReader:
         Raises:
             BagError: the file is damaged.
         """
-        # A file without chunks has no index to sort by, so its messages come in file order.
-        sort = bool(self._summary.chunk_indexes)
-        found = self._reader.iter_messages(topics, starting_at=start_ns, log_time_order=sort)
+        wanted = set(topics)
+        expected = sum(one.count for one in self.topics if one.topic.name in wanted)
+        found = 0
         try:
-            for _, channel, message in found:
+            for channel, message in self._found(wanted, start_ns):
                 yield BagMessage(
                     channel.topic, message.log_time, message.publish_time, message.data
                 )
+                found += 1
         except damage_errors() as error:
-            if self.is_finished or sort:
-                raise self._damaged(error) from error
-            # An unfinished file may end with a torn record.
+            raise self._damaged(error) from error
+        if start_ns <= (self.info.span.start_ns or 0) and found != expected:
+            raise BagError(
+                f"{self.path} is damaged: it counts {expected} messages of these topics, and its "
+                f"index leads to {found}"
+            )
+
+    def _found(self, topics: Collection[str], start_ns: int) -> Iterator[tuple[Channel, Message]]:
+        """Yield the messages in and outside chunks in the order of their time."""
+        sources: list[Iterator[tuple[Channel, Message]]] = []
+        if self._summary.chunk_indexes:
+            chunked = self._reader.iter_messages(topics, starting_at=start_ns)
+            sources.append((channel, message) for _, channel, message in chunked)
+        sources.append(self._found_plain(topics, start_ns))
+        return merge(*sources, key=lambda one: one[1].log_time)
+
+    def _found_plain(
+        self, topics: Collection[str], start_ns: int
+    ) -> Iterator[tuple[Channel, Message]]:
+        plain, channels = self._plain, self._summary.channels
+        for index in plain.in_time_order():
+            channel = channels[plain.channels[index]]
+            if channel.topic in topics and plain.log_times_ns[index] >= start_ns:
+                yield channel, plain.read(self._stream, index)
 
     def _damaged(self, error: Exception) -> BagError:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         return BagError(f"{self.path} is damaged: {reason}")
 
 
-def _open_reader(stream: BinaryIO) -> tuple[SeekingReader, Summary, bool]:
-    """Return a reader, the summary, and whether the summary is the file's own."""
-    ends = _ends_well(stream)
-    stream.seek(0)
-    if ends:
-        reader = SeekingReader(stream, validate_crcs=True, record_size_limit=MAX_CHUNK_BYTES)
-        summary = reader.get_summary()
-        if summary is not None and summary.statistics is not None and not _hides_chunks(summary):
-            return reader, summary, True
-        stream.seek(0)
-    recovering = _RecoveringReader(stream)
-    return recovering, recovering.get_summary(), False
-
-
-def _hides_chunks(summary: Summary) -> bool:
-    """Return whether the file has chunks but no index of them, so that it must be scanned."""
-    return not summary.chunk_indexes and bool(summary.statistics and summary.statistics.chunk_count)
-
-
-def _ends_well(stream: BinaryIO) -> bool:
-    size = stream.seek(0, io.SEEK_END)
-    if size < 2 * MAGIC_SIZE:
-        return False
-    stream.seek(size - MAGIC_SIZE)
-    return stream.read(MAGIC_SIZE) == MCAP0_MAGIC
-
-
-def _topics(summary: Summary) -> list[tuple[BagTopic, int]]:
+def _topics(summary: Summary) -> list[RecordedTopic]:
     counts = summary.statistics.channel_message_counts if summary.statistics else {}
     return [
-        (
-            BagTopic(
-                name=channel.topic,
-                type=summary.schemas[channel.schema_id].name if channel.schema_id else "",
-                type_hash=channel.metadata.get("topic_type_hash", ""),
-                offers=read_offers(channel.metadata.get("offered_qos_profiles", "")),
-                serialization_format=channel.message_encoding,
-            ),
-            counts.get(channel.id, 0),
-        )
-        for channel in summary.channels.values()
+        _topic(channel, summary, counts.get(channel.id, 0)) for channel in summary.channels.values()
     ]
+
+
+def _topic(channel: Channel, summary: Summary, count: int) -> RecordedTopic:
+    schema = summary.schemas.get(channel.schema_id)
+    if schema is None and channel.schema_id:
+        raise LookupError(f"{channel.topic} has the schema {channel.schema_id}, which is missing")
+    definition = (
+        TypeDefinition("", b"")
+        if schema is None
+        else TypeDefinition(schema.name, schema.data, schema.encoding)
+    )
+    topic = BagTopic(
+        name=channel.topic,
+        type=definition.name,
+        type_hash=channel.metadata.get("topic_type_hash", ""),
+        offers=read_offers(channel.metadata.get("offered_qos_profiles", "")),
+        serialization_format=channel.message_encoding,
+    )
+    return RecordedTopic(topic, definition, count)
 
 
 def _extent(statistics: Statistics | None) -> tuple[TimeSpan, int]:

@@ -50,7 +50,7 @@ class McapFileWriter:
         self._writer = Writer(
             self._stream, chunk_size=_UNLIMITED_CHUNK, compression=COMPRESSIONS[compression]
         )
-        self._schemas: dict[str, int] = {}
+        self._schemas: dict[TypeDefinition, int] = {}
         self._channels: dict[str, int] = {}
         self._span = TimeSpan()
         self._count = 0
@@ -71,12 +71,12 @@ class McapFileWriter:
 
     def add_topic(self, topic: BagTopic, definition: TypeDefinition) -> None:
         """Add a topic, before its first message."""
-        schema = self._schemas.get(topic.type)
-        if schema is None:
-            schema = self._writer.register_schema(
-                topic.type, definition.encoding, definition.text.encode()
+        schema = self._schemas.get(definition, 0)
+        if not schema and topic.type:
+            # Two definitions of one type name are two schemas.
+            schema = self._schemas[definition] = self._writer.register_schema(
+                topic.type, definition.encoding, definition.data
             )
-            self._schemas[topic.type] = schema
         self._channels[topic.name] = self._writer.register_channel(
             topic.name,
             topic.serialization_format,

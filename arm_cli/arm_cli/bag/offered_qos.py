@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from arm_cli.bag.yaml_text import dump_yaml, load_yaml
 from arm_cli.errors import BagError
@@ -11,8 +11,25 @@ from arm_cli.names import absolute_name
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
 
-INFINITE_NS = 2**63 - 1
-"""A duration without a limit."""
+UNLIMITED_SEC = 2**31 - 1
+"""The whole seconds of "no limit" in older recordings; newer ones have more."""
+
+
+class QosDuration(NamedTuple):
+    """A duration as a bag holds it, because other readers compare the numbers."""
+
+    sec: int
+    nsec: int
+
+    @property
+    def limit_ns(self) -> int | None:
+        """The duration in nanoseconds, None for no limit, for which there are several numbers."""
+        total_ns = self.sec * 10**9 + self.nsec
+        return total_ns if self.sec < UNLIMITED_SEC and total_ns > 0 else None
+
+
+INFINITE = QosDuration(*divmod(2**63 - 1, 10**9))
+"""No limit, as Jazzy writes it."""
 
 # The position of a name is the number that metadata before version 9 hold instead of it.
 POLICIES = {
@@ -39,10 +56,10 @@ class OfferedQos:
         depth: 0 if the history is unknown.
         reliability: policy.
         durability: policy.
-        deadline_ns: INFINITE_NS means no limit, as for the other durations.
-        lifespan_ns: duration.
+        deadline: longest time between messages.
+        lifespan: time after which a message is outdated.
         liveliness: policy.
-        lease_ns: liveliness lease duration.
+        lease: liveliness lease duration.
         avoid_ros_namespace_conventions: whether the topic's DDS name has no prefix `rt/`.
     """
 
@@ -50,10 +67,10 @@ class OfferedQos:
     depth: int = 0
     reliability: str = "reliable"
     durability: str = "volatile"
-    deadline_ns: int = INFINITE_NS
-    lifespan_ns: int = INFINITE_NS
+    deadline: QosDuration = INFINITE
+    lifespan: QosDuration = INFINITE
     liveliness: str = "automatic"
-    lease_ns: int = INFINITE_NS
+    lease: QosDuration = INFINITE
     avoid_ros_namespace_conventions: bool = False
 
     def to_plain(self) -> dict[str, Any]:
@@ -63,10 +80,10 @@ class OfferedQos:
             "depth": self.depth,
             "reliability": self.reliability,
             "durability": self.durability,
-            "deadline": _duration(self.deadline_ns),
-            "lifespan": _duration(self.lifespan_ns),
+            "deadline": self.deadline._asdict(),
+            "lifespan": self.lifespan._asdict(),
             "liveliness": self.liveliness,
-            "liveliness_lease_duration": _duration(self.lease_ns),
+            "liveliness_lease_duration": self.lease._asdict(),
             "avoid_ros_namespace_conventions": self.avoid_ros_namespace_conventions,
         }
 
@@ -95,10 +112,10 @@ def _offer(item: dict[str, Any]) -> OfferedQos:
         depth=depth if isinstance(depth, int) and depth >= 0 else 0,
         reliability=_policy(item, "reliability", "reliable"),
         durability=_policy(item, "durability", "volatile"),
-        deadline_ns=_nanoseconds(item.get("deadline")),
-        lifespan_ns=_nanoseconds(item.get("lifespan")),
+        deadline=_duration(item.get("deadline")),
+        lifespan=_duration(item.get("lifespan")),
         liveliness=_policy(item, "liveliness", "automatic"),
-        lease_ns=_nanoseconds(item.get("liveliness_lease_duration")),
+        lease=_duration(item.get("liveliness_lease_duration")),
         avoid_ros_namespace_conventions=item.get("avoid_ros_namespace_conventions") is True,
     )
 
@@ -110,19 +127,13 @@ def _policy(item: dict[str, Any], key: str, default: str) -> str:
     return value if isinstance(value, str) and value in names else default
 
 
-def _duration(nanoseconds: int) -> dict[str, int]:
-    sec, nsec = divmod(nanoseconds, 10**9)
-    return {"sec": sec, "nsec": nsec}
-
-
-def _nanoseconds(value: Any) -> int:
+def _duration(value: Any) -> QosDuration:
     if not isinstance(value, dict):
-        return INFINITE_NS
+        return INFINITE
     sec, nsec = value.get("sec"), value.get("nsec")
     if not isinstance(sec, int) or not isinstance(nsec, int):
-        return INFINITE_NS
-    # Older middlewares wrote zero for "no limit".
-    return min(sec * 10**9 + nsec, INFINITE_NS) or INFINITE_NS
+        return INFINITE
+    return QosDuration(sec, nsec)
 
 
 def read_qos_overrides(path: Path | None) -> dict[str, OfferedQos]:

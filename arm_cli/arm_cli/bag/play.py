@@ -15,7 +15,7 @@ from arm_node.names import describe_known
 
 if TYPE_CHECKING:
     from arm_cli.bag.bag_reader import BagReader
-    from arm_cli.bag.bag_topic import BagTopic
+    from arm_cli.bag.bag_topic import RecordedTopic
     from arm_cli.bag.ros_player import BagPlayer
 
 CLOCK_HZ = 40.0
@@ -124,6 +124,8 @@ def run(options: argparse.Namespace) -> None:
             player = BagPlayer(session, options.clock)
             try:
                 playable = player.advertise(topics, names, overrides)
+                if topics and not playable:
+                    raise BagError(f"nothing of {reader.path} can be played")
                 while True:
                     session.spin_for(options.delay)
                     _play_once(player, reader, playable, extent_ns, options)
@@ -167,7 +169,7 @@ def _extent(reader: "BagReader", options: argparse.Namespace) -> tuple[int, int]
     return start_ns, round(end_ns)
 
 
-def _topics(reader: "BagReader", options: argparse.Namespace) -> list["BagTopic"]:
+def _topics(reader: "BagReader", options: argparse.Namespace) -> list["RecordedTopic"]:
     from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
 
     wanted = absolute_names(options.topics)
@@ -184,11 +186,12 @@ def _topics(reader: "BagReader", options: argparse.Namespace) -> list["BagTopic"
         excluded_pattern=compile_pattern(options.exclude_regex, "--exclude-regex"),
         hidden=True,
     )
-    topics = [topic for topic in reader.topics if selection.wants(topic.name)]
+    topics = [one for one in reader.recorded_topics if selection.wants(one.topic.name)]
     if known and not topics:
         raise BagError(
             f"no topic of {reader.path} is selected; it has {', '.join(known) or 'none'}"
         )
+    reader.check_topics({one.topic.name for one in topics})
     return topics
 
 

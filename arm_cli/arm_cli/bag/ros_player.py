@@ -8,7 +8,7 @@ from rclpy.publisher import Publisher
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
+from arm_cli.bag.bag_topic import BagMessage, BagTopic, RecordedTopic
 from arm_cli.bag.offered_qos import OfferedQos
 from arm_cli.bag.playback import PlaySchedule
 from arm_cli.bag.ros_qos import playing_profile
@@ -65,7 +65,7 @@ class BagPlayer:
 
     def advertise(
         self,
-        topics: Sequence[BagTopic],
+        topics: Sequence[RecordedTopic],
         names: Mapping[str, str],
         overrides: Mapping[str, OfferedQos] | None = None,
     ) -> list[str]:
@@ -82,10 +82,15 @@ class BagPlayer:
             The names of the topics that can be played.
         """
         index, node = InterfaceIndex(), self._session.node
-        for topic in topics:
+        for recorded in topics:
+            topic = recorded.topic
             name = names.get(topic.name, topic.name)
             if self._ticker is not None and name == CLOCK_TOPIC:
                 complain(f"{name} of the bag is not played: --clock publishes it")
+                continue
+            reason = recorded.unreadable_reason(index)
+            if reason is not None:
+                complain(f"{topic.name} is not played: {reason}")
                 continue
             try:
                 message_class: Any = load_class(index.find(topic.type, ("msg",)))

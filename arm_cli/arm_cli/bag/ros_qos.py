@@ -12,13 +12,15 @@ from rclpy.qos import (
 )
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from arm_cli.bag.offered_qos import INFINITE_NS, OfferedQos
+from arm_cli.bag.offered_qos import OfferedQos, QosDuration
 from arm_cli.ros.qos import matching_profile
 
 RECORDING_DEPTH = 5000
 """Ten seconds of a fast topic, in case the recorder stalls. Memory is allocated as needed."""
 PLAYING_DEPTH = 10
 """The minimum depth of a player's publisher, as in rosbag2."""
+UNLIMITED = Duration()
+"""Zero means "no limit" in rclpy."""
 
 
 def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
@@ -29,10 +31,10 @@ def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
         depth=profile.depth,
         reliability=profile.reliability.short_key,
         durability=profile.durability.short_key,
-        deadline_ns=profile.deadline.nanoseconds,
-        lifespan_ns=profile.lifespan.nanoseconds,
+        deadline=_recorded(profile.deadline),
+        lifespan=_recorded(profile.lifespan),
         liveliness=profile.liveliness.short_key,
-        lease_ns=profile.liveliness_lease_duration.nanoseconds,
+        lease=_recorded(profile.liveliness_lease_duration),
         avoid_ros_namespace_conventions=profile.avoid_ros_namespace_conventions,
     )
 
@@ -69,14 +71,19 @@ def playing_profile(offers: Sequence[OfferedQos]) -> QoSProfile:
     profile.durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     if any(offer.liveliness == "manual_by_topic" for offer in offers):
         profile.liveliness = LivelinessPolicy.MANUAL_BY_TOPIC
-    profile.deadline = _shortest(offer.deadline_ns for offer in offers)
-    profile.liveliness_lease_duration = _shortest(offer.lease_ns for offer in offers)
-    longest_ns = max(offer.lifespan_ns for offer in offers)
-    profile.lifespan = _shortest([longest_ns])
+    profile.deadline = _shortest([offer.deadline for offer in offers])
+    profile.liveliness_lease_duration = _shortest([offer.lease for offer in offers])
+    lifespans_ns = [offer.lifespan.limit_ns for offer in offers]
+    limits_ns = [limit_ns for limit_ns in lifespans_ns if limit_ns is not None]
+    unlimited = len(limits_ns) < len(offers)
+    profile.lifespan = UNLIMITED if unlimited else Duration(nanoseconds=max(limits_ns))
     return profile
 
 
-def _shortest(durations_ns: Iterable[int]) -> Duration:
-    shortest_ns = min(durations_ns)
-    # Zero means "no limit" in rclpy.
-    return Duration(nanoseconds=0 if shortest_ns >= INFINITE_NS else shortest_ns)
+def _recorded(duration: Duration) -> QosDuration:
+    return QosDuration(*divmod(duration.nanoseconds, 10**9))
+
+
+def _shortest(durations: Iterable[QosDuration]) -> Duration:
+    limits_ns = [one.limit_ns for one in durations if one.limit_ns is not None]
+    return Duration(nanoseconds=min(limits_ns)) if limits_ns else UNLIMITED

@@ -146,7 +146,12 @@ class EpisodeReader:
         return kept
 
     def _messages(self, topic: BagTopic) -> Iterator[tuple[int, Any]]:
-        kind = load_class(InterfaceIndex().find(topic.type, ("msg",)))
+        index = InterfaceIndex()
+        for one in self._reader.recorded_topics:
+            reason = one.unreadable_reason(index) if one.topic == topic else None
+            if reason is not None:
+                raise BagError(f"{topic.name} cannot be read: {reason}")
+        kind = load_class(index.find(topic.type, ("msg",)))
         for message in self._reader.messages([topic.name]):
             yield message.log_time_ns, deserialize_message(message.data, kind)
 

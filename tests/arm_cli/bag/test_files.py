@@ -230,7 +230,7 @@ def test_an_empty_bag_is_valid(tmp_path):
 
 def test_a_type_without_a_definition_is_recorded(tmp_path):
     bag = BagWriter(tmp_path / "bag", BagSettings())
-    bag.add_topic(BagTopic("/odd", "odd_msgs/msg/Odd"), TypeDefinition("odd_msgs/msg/Odd", ""))
+    bag.add_topic(BagTopic("/odd", "odd_msgs/msg/Odd"), TypeDefinition("odd_msgs/msg/Odd", b""))
     bag.write(BagMessage("/odd", START_NS, START_NS, b"\x00\x01\x00\x00"))
     bag.close()
     reader = BagReader(tmp_path / "bag")

@@ -52,7 +52,7 @@ def message(number: int, size: int = 10) -> BagMessage:
 
 def test_messages_are_written_in_order(tmp_path):
     recording = Recording(BagWriter(tmp_path / "bag", BagSettings()), 1000)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     for number in range(20):
         recording.put(message(number))
     assert recording.finish().message_count == 20
@@ -65,7 +65,7 @@ def test_messages_are_written_in_order(tmp_path):
 def test_messages_that_do_not_fit_into_the_cache_are_dropped_and_counted(tmp_path):
     writer = SlowWriter(tmp_path / "bag")
     recording = Recording(writer, 100)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     recording.put(message(0, 60))
     assert writer.begun.wait(30.0)
     for number in range(1, 6):
@@ -77,7 +77,7 @@ def test_messages_that_do_not_fit_into_the_cache_are_dropped_and_counted(tmp_pat
 
 def test_a_message_larger_than_the_cache_is_written(tmp_path):
     recording = Recording(BagWriter(tmp_path / "bag", BagSettings()), 100)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     recording.put(message(0, 5000))
     assert recording.finish().message_count == 1
 
@@ -97,7 +97,7 @@ class Listing(BagWriter):
 def test_without_a_cache_each_message_is_written_at_once(tmp_path):
     writer = Listing(tmp_path / "bag")
     recording = Recording(writer, 0)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     for number in range(200):
         recording.put(message(number))
         assert writer.written == list(range(number + 1))
@@ -107,7 +107,7 @@ def test_without_a_cache_each_message_is_written_at_once(tmp_path):
 
 def test_without_a_cache_a_full_disk_is_reported_at_once(tmp_path):
     recording = Recording(FullDisk(tmp_path / "bag", BagSettings()), 0)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     for number in range(5):
         recording.put(message(number))
         assert (recording.failure is not None) == (number >= 3)
@@ -117,7 +117,7 @@ def test_without_a_cache_a_full_disk_is_reported_at_once(tmp_path):
 
 def test_a_full_disk_ends_the_recording(tmp_path):
     recording = Recording(FullDisk(tmp_path / "bag", BagSettings()), 1000)
-    recording.add_topic(TOPIC, TypeDefinition(TYPE, ""))
+    recording.add_topic(TOPIC, TypeDefinition(TYPE, b""))
     for number in range(5):
         recording.put(message(number))
     with pytest.raises(BagError, match="No space left on device"):
@@ -137,7 +137,7 @@ from arm_cli.bag.bag_topic import TypeDefinition
 from arm_cli.errors import BagError
 resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
 recording = Recording(BagWriter(Path("bag"), BagSettings()), 10**8)
-recording.add_topic(BagTopic("/x", "t/msg/T"), TypeDefinition("t/msg/T", ""))
+recording.add_topic(BagTopic("/x", "t/msg/T"), TypeDefinition("t/msg/T", b""))
 for number in range(5):
     recording.put(BagMessage("/x", number, number, bytes(800_000)))
 try:

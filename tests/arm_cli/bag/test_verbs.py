@@ -9,8 +9,8 @@ from arm_cli.bag.bag_metadata import BagMetadata, TimeSpan, read_metadata
 from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition, find_definition
 from arm_cli.bag.bag_writer import BagSettings, BagWriter
 from arm_cli.bag.offered_qos import (
-    INFINITE_NS,
     OfferedQos,
+    QosDuration,
     offers_to_text,
     read_offers,
     read_qos_overrides,
@@ -29,7 +29,7 @@ def bag(tmp_path):
     writer = BagWriter(tmp_path / "bag", BagSettings())
     for name, type_, count in (("/b", "p/msg/A", 1), ("/a", "p/msg/B", 2)):
         writer.add_topic(
-            BagTopic(name, type_, "RIHS01_x", (OfferedQos(),)), TypeDefinition(type_, "")
+            BagTopic(name, type_, "RIHS01_x", (OfferedQos(),)), TypeDefinition(type_, b"")
         )
         for number in range(count):
             writer.write(BagMessage(name, START_NS + number * 1_500_000_000, 0, b"1234"))
@@ -126,7 +126,9 @@ def test_a_bag_without_messages_cannot_be_played(capsys, tmp_path):
 def test_qos_survives_a_round_trip_through_text():
     offers = (
         OfferedQos(),
-        OfferedQos("keep_last", 7, "best_effort", "transient_local", deadline_ns=1_500_000_000),
+        OfferedQos(
+            "keep_last", 7, "best_effort", "transient_local", deadline=QosDuration(1, 500_000_000)
+        ),
     )
     assert read_offers(offers_to_text(offers)) == offers
 
@@ -145,11 +147,29 @@ def test_qos_of_older_metadata_is_numbers_in_a_text():
             10,
             "best_effort",
             "transient_local",
-            lifespan_ns=2_000_000_005,
+            deadline=QosDuration(0, 0),
+            lifespan=QosDuration(2, 5),
             liveliness="manual_by_topic",
         ),
     )
-    assert read_offers(old)[0].deadline_ns == read_offers(old)[0].lease_ns == INFINITE_NS
+
+
+@pytest.mark.parametrize(
+    ("numbers", "limit_ns"),
+    [
+        ((0, 0), None),
+        ((2147483647, 4294967295), None),
+        ((9223372036, 854775807), None),
+        ((1, 5), 1_000_000_005),
+        ((2147483646, 0), 2147483646 * 10**9),
+    ],
+)
+def test_a_duration_keeps_its_numbers_and_tells_its_limit(numbers, limit_ns):
+    duration = QosDuration(*numbers)
+    offer = OfferedQos(deadline=duration, lifespan=duration, lease=duration)
+    (read,) = read_offers(offers_to_text([offer]))
+    assert (read.deadline, read.lifespan, read.lease) == (numbers, numbers, numbers)
+    assert read.deadline.limit_ns == limit_ns
 
 
 @pytest.mark.parametrize("value", ["", "[", None, 3, ["x"], "{}"])
@@ -164,7 +184,7 @@ def test_overrides_are_by_topic_and_the_rest_is_default(tmp_path):
     )
     assert read_qos_overrides(file) == {
         "/tf": OfferedQos(reliability="best_effort"),
-        "/x": OfferedQos(history="keep_all", deadline_ns=1_000_000_005),
+        "/x": OfferedQos(history="keep_all", deadline=QosDuration(1, 5)),
     }
     assert read_qos_overrides(None) == {}
 
