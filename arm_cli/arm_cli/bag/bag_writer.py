@@ -167,7 +167,8 @@ def _replace_metadata(folder: Path, metadata: BagMetadata, check: bool = False) 
     new = path.with_name(f".{FILE_NAME}.new")
     new.write_text(metadata.to_yaml(), encoding="utf-8")
     if check and read_metadata(new.read_text(encoding="utf-8"), str(new)) != metadata:
-        raise BagError(f"{new} does not read back as it was written; {path} is left as it was")
+        new.unlink()
+        raise BagError(f"{path} is left as it was: its new text does not read back as meant")
     os.replace(new, path)
     return path
 

@@ -1,7 +1,8 @@
 """The results of a study's runs, appended as they come, so that a kill loses none."""
 
 import json
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Self, TextIO
@@ -77,8 +78,8 @@ class Journal:
         self._file.flush()
 
     def _read(self, path: Path, study: Study) -> None:
-        lines = path.read_text(encoding="utf-8").splitlines()
-        items = list(_whole_items(lines))
+        content = path.read_bytes()
+        items, length = _whole_items(content)
         found = items[0].get("study") if items else None
         if found != study.digest:
             raise StudyError(
@@ -87,18 +88,23 @@ class Journal:
             )
         for item in items[1:]:
             self.outcomes[int(item["number"])] = Outcome(**item)
-        if len(items) < len(lines):
-            # A kill in the middle of a line: what follows must not be glued to it.
-            path.write_text("".join(json.dumps(item) + "\n" for item in items), encoding="utf-8")
+        if length < len(content):
+            # A kill in the middle of a line: what follows must not be glued to it. Cutting the end
+            # off leaves the lines before it untouched, whenever this process is killed.
+            os.truncate(path, length)
 
 
-def _whole_items(lines: list[str]) -> Iterator[dict[str, Any]]:
-    """Return the items up to the first line that is not whole."""
-    for line in lines:
+def _whole_items(content: bytes) -> tuple[list[dict[str, Any]], int]:
+    """Return the items up to the first line that is not whole, and the length of their lines."""
+    items: list[dict[str, Any]] = []
+    length = 0
+    for line in content.splitlines(keepends=True):
         try:
             item = json.loads(line)
         except ValueError:
-            return
-        if not isinstance(item, dict):
-            return
-        yield item
+            break
+        if not isinstance(item, dict) or not line.endswith(b"\n"):
+            break
+        items.append(item)
+        length += len(line)
+    return items, length

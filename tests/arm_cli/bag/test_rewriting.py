@@ -115,6 +115,17 @@ def test_reindex_rebuilds_the_metadata(tmp_path, capsys, damage):
     assert read(bag) == [("/x", 10, "one"), ("/x", 30, "three")]
 
 
+def test_metadata_stay_until_the_new_ones_are_read_back(tmp_path, capsys, monkeypatch):
+    bag = write(tmp_path / "a", ("/x", 10, "one"))
+    right = (bag / FILE_NAME).read_text()
+    half = "".join(right.splitlines(keepends=True)[:-1])
+    monkeypatch.setattr("arm_cli.bag.bag_metadata.BagMetadata.to_yaml", lambda _: half)
+    assert main(["bag", "reindex", str(bag)]) == 1
+    assert "is left as it was" in capsys.readouterr().err
+    assert (bag / FILE_NAME).read_text() == right
+    assert sorted(path.name for path in bag.iterdir()) == ["a_0.mcap", FILE_NAME]
+
+
 def test_the_formats_are_listed(capsys):
     assert main(["bag", "list", "storage"]) == 0
     assert capsys.readouterr().out == "mcap\n"

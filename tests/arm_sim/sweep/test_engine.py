@@ -87,13 +87,14 @@ def test_every_run_is_made_once_and_has_a_seed_of_its_own(study, tmp_path):
     assert sorted(map(int, (tmp_path / "made.txt").read_text().split())) == list(range(20))
 
 
-def test_an_interrupted_study_goes_on_without_losing_or_repeating_a_run(study, tmp_path):
+@pytest.mark.parametrize("cut", [20, -1], ids=["in the last line", "before its end"])
+def test_an_interrupted_study_goes_on_without_losing_or_repeating_a_run(study, tmp_path, cut):
     xs = study("square", range(10))
     made(xs, tmp_path / "out")
     path = tmp_path / "out" / FILE_NAME
     lines = path.read_text().splitlines(keepends=True)
     # As after a kill: some runs are missing, and the last line is not whole.
-    path.write_text("".join(lines[:5]) + lines[5][:20])
+    path.write_text("".join(lines[:5]) + lines[5][:cut])
     (tmp_path / "made.txt").unlink()
     outcomes = made(xs, tmp_path / "out")
     assert sorted(outcomes) == list(range(10))
