@@ -104,11 +104,11 @@ def _render(pipeline: "CameraPipeline", channel: CameraEnd, process: NodeProcess
 
 def _open_renderer(settings: CameraSettings, channel: CameraEnd) -> "Renderer":
     from arm_gazebo.rendering.backend_selection import backend_order, open_renderer
+    from arm_gazebo.rendering.pinhole_view import drawn_size
 
     return open_renderer(
         backend_order(settings.backend, settings.excluded),
-        max(sensor.width for sensor in settings.cameras),
-        max(sensor.height for sensor in settings.cameras),
+        *drawn_size(settings.cameras),
         on_try=channel.tell_backend,
     )
 

@@ -26,7 +26,8 @@ class Camera:
     def __init__(self, cameras: OnDemandCameras, index: int, sensor: CameraSensor) -> None:
         self._cameras = cameras
         self._index = index
-        self._focal_length = sensor.focal_length
+        self._lens = sensor.lens
+        self._rays: NDArray[np.float64] | None = None
         self.is_dark = False
         self.name = sensor.name
         self.width = sensor.width
@@ -34,9 +35,30 @@ class Camera:
 
     @property
     def matrix(self) -> NDArray[np.float64]:
-        """The intrinsic matrix K in pixels, shape (3, 3)."""
-        f = self._focal_length
-        return np.array([[f, 0.0, self.width / 2], [0.0, f, self.height / 2], [0.0, 0.0, 1.0]])
+        """The intrinsic matrix K in pixels, shape (3, 3), as in CameraInfo.
+
+        As in Gazebo, the centre of the first pixel is at (0.5, 0.5). OpenCV, image_geometry and
+        depth_image_proc have it at (0, 0): subtract 0.5 from cx and cy for them, or all points are
+        half a pixel off. `rays` has the rays themselves.
+        """
+        return self._lens.matrix
+
+    @property
+    def distortion(self) -> NDArray[np.float64]:
+        """The coefficients k1, k2, p1, p2, k3 of CameraInfo's plumb_bob model, shape (5,)."""
+        return np.array(self._lens.distortion)
+
+    def rays(self) -> NDArray[np.float64]:
+        """Return the rays through the pixels' centres, shape (height, width, 3), read-only.
+
+        They are in the optical frame (z forward, x right, y down), and z is 1: times `depth()` they
+        are the points that the camera sees, in m.
+        """
+        if self._rays is None:
+            self._rays = np.ones((self.height, self.width, 3))
+            self._rays[..., :2] = self._lens.rays(self.width, self.height)
+            self._rays.setflags(write=False)
+        return self._rays
 
     def image(self) -> NDArray[np.uint8]:
         """Return what it sees, with its noise: RGB, shape (height, width, 3).

@@ -1,10 +1,12 @@
 """Pictures of the present state."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from arm_description import expand_xacro, resolve_uri
 from arm_sim import Simulation, UnknownNameError
 
 pytestmark = pytest.mark.gl
@@ -80,6 +82,54 @@ def test_the_intrinsic_matrix_has_its_centre_in_the_middle(seen: Simulation):
     camera = seen.camera(NAME)
     assert camera.matrix[0, 2] == camera.width / 2
     assert camera.matrix[0, 0] == camera.matrix[1, 1] > 0
+
+
+def test_rays_times_depth_are_the_points_of_a_plane(seen: Simulation):
+    camera = seen.camera(NAME)
+    name = seen.spawn(WALL, pose=(0.5, 0.0, 0.0, 0.0, 0.4, 0.0), frame="camera_link")
+    points = camera.rays() * camera.depth()[..., np.newaxis]
+    seen.delete(name)
+    assert points.shape == (camera.height, camera.width, 3)
+    # The wall's front is 0.05 m before its middle; it is turned about the frame's y axis.
+    normal = np.array([0.0, np.sin(0.4), np.cos(0.4)])
+    distance = points @ normal
+    seen_wall = np.abs(distance - np.median(distance)) < 1e-3
+    assert seen_wall.mean() > 0.5
+    assert np.median(distance) == pytest.approx(0.5 * np.cos(0.4) - 0.05, abs=1e-4)
+
+
+def test_the_rays_are_those_of_the_matrix(seen: Simulation):
+    camera = seen.camera(NAME)
+    pixel = camera.matrix @ camera.rays()[7, 11]
+    np.testing.assert_allclose(pixel, [11.5, 7.5, 1.0], atol=1e-9)
+    assert camera.distortion.tolist() == [0.0] * 5
+
+
+LENS = """<lens><intrinsics><fx>300</fx><fy>310</fy><cx>150</cx><cy>125</cy></intrinsics></lens>
+<distortion><k1>-0.1</k1><k2>0.02</k2></distortion>"""
+
+
+@pytest.mark.parametrize("backend", ["auto", "raycast"])
+def test_a_lens_of_the_description_is_the_library_s(backend: str, tmp_path: Path):
+    text = expand_xacro(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(text.replace("<image>", f"{LENS}<image>", 1))
+    with Simulation(urdf, world="objects", render_backend=backend) as simulation:
+        camera = simulation.camera(NAME)
+        matrix, distortion = camera.matrix, camera.distortion
+        depth, rays = camera.depth(), camera.rays()
+        image = camera.image()
+        state = simulation.save()
+        simulation.run(0.2)
+        simulation.restore(state)
+        np.testing.assert_array_equal(camera.image(), image)
+    np.testing.assert_array_equal(matrix, [[300, 0, 150], [0, 310, 125], [0, 0, 1]])
+    assert distortion.tolist() == [-0.1, 0.02, 0.0, 0.0, 0.0]
+    assert image.std() > 5.0
+    floor = rays[-1] * depth[-1, :, np.newaxis]
+    # The last row sees the floor, which is a plane: its points are on one line across.
+    heights = floor @ np.linalg.lstsq(floor, np.ones(len(floor)), rcond=None)[0]
+    np.testing.assert_allclose(heights, 1.0, atol=1e-3)
 
 
 def test_an_unknown_camera_is_named_with_those_that_exist(seen: Simulation, sim: Simulation):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -165,6 +166,38 @@ def test_the_intrinsics_project_the_ball_to_its_pixels(simulate, client):
     # The ball is 0.3 m to the left, 0.2 m above and 2 m ahead.
     u, v, w = np.reshape(info.p, (3, 4)) @ [-0.3, -0.2, 2.0, 1.0]
     assert red_centre(pixels(image)) == pytest.approx((u / w, v / w), abs=1.0)
+
+
+def test_a_lens_is_in_camera_info_in_the_picture_and_in_the_points(simulate, client):
+    import cv2
+    from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+
+    lens = replace(
+        SENSOR,
+        intrinsics=(350.0, 300.0, 150.0, 125.0, 0.0),
+        distortion=(-0.4, 0.1, 0.01, -0.01, 0.0),
+        depth_topics=("depth_image",),
+        points_topics=("points",),
+    )
+    simulate(lens)
+    images = client.subscribe(Image, "/videocamera")
+    clouds = client.subscribe(PointCloud2, "/points")
+    info = client.subscribe(CameraInfo, "/camera_info").wait_for(1)[0]
+    image, cloud = images.wait_for(1)[0], clouds.wait_for(1)[0]
+    np.testing.assert_array_equal(np.reshape(info.k, (3, 3)), lens.lens.matrix)
+    assert (info.distortion_model, list(info.d)) == ("plumb_bob", list(lens.distortion))
+    k, d = np.reshape(info.k, (3, 3)), np.array(info.d)
+
+    def project(points: np.ndarray) -> np.ndarray:
+        return cv2.projectPoints(points, np.zeros(3), np.zeros(3), k, d)[0].reshape(-1, 2)
+
+    ball = project(np.array([[-0.3, -0.2, 2.0]]))[0]
+    assert red_centre(pixels(image)) == pytest.approx(tuple(ball), abs=1.0)
+    points = np.frombuffer(cloud.data, np.float32).reshape(240, 320, 4)[..., :3].astype(float)
+    rows, columns = np.nonzero(np.isfinite(points[..., 2]))
+    assert rows.size > 1000
+    centres = np.stack([columns, rows], axis=1) + 0.5
+    np.testing.assert_allclose(project(points[rows, columns]), centres, atol=1e-2)
 
 
 def test_every_picture_has_a_camera_info_with_the_same_stamp_on_every_topic(simulate, client):

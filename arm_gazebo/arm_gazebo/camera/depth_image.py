@@ -24,11 +24,8 @@ class PointGrid:
     """Converts distances to points. One thread."""
 
     def __init__(self, sensor: CameraSensor) -> None:
-        columns = np.arange(sensor.width) + 0.5 - sensor.width / 2
-        rows = np.arange(sensor.height) + 0.5 - sensor.height / 2
         rays = np.ones((sensor.height, sensor.width, 3))
-        rays[..., 0] = columns / sensor.focal_length
-        rays[..., 1] = (rows / sensor.focal_length)[:, np.newaxis]
+        rays[..., :2] = sensor.lens.rays(sensor.width, sensor.height)
         optics = np.reshape(sensor.optics_in_frame, (3, 4))
         self._rays = np.moveaxis(rays @ optics[:, :3].T, -1, 0).astype(np.float32, order="C")
         self._origin = optics[:, 3].astype(np.float32)

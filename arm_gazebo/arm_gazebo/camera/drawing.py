@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.camera.depth_image import mark_limits
-from arm_gazebo.camera.noise import DepthNoise, NoiseBank, noise_for
+from arm_gazebo.camera.noise import CameraNoise
 from arm_gazebo.sensors.camera import CameraSensor
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class FrameDrawing:
         self._open_renderer = open_renderer
         self._seed = seed
         self._renderer: Renderer | None = None
-        self._noises: dict[int, NoiseBank | DepthNoise | None] = {}
+        self._noises: dict[int, CameraNoise] = {}
 
     @property
     def backend(self) -> str:
@@ -67,14 +67,13 @@ class FrameDrawing:
         sensor = self._sensors[camera]
         self._renderer.render(data, sensor, picture, depth)
         if camera not in self._noises:
-            self._noises[camera] = noise_for(sensor, self._seed)
+            self._noises[camera] = CameraNoise(sensor, self._seed)
         noise = self._noises[camera]
         if depth is not None:
-            if isinstance(noise, DepthNoise):
-                noise.add_to(depth, number)
+            noise.add_to_depth(depth, number)
             mark_limits(depth, sensor)
-        if picture is not None and isinstance(noise, NoiseBank):
-            noise.add_to(picture, number)
+        if picture is not None:
+            noise.add_to_picture(picture, number)
 
     def reseed(self, seed: int) -> None:
         """Draw the noise of another run from now on."""

@@ -9,16 +9,18 @@ DISTORTION_MODEL = "plumb_bob"
 
 @dataclass(frozen=True, slots=True)
 class Intrinsics:
-    """Projection of a camera without distortion, row by row, in pixels.
+    """Projection of a camera, row by row, in pixels.
 
-    A point (x, y, z) in the optical frame appears at u = fx x / z + cx, v = fy y / z + cy. The
-    image's upper left corner is (0, 0), and the centre of the first pixel is (0.5, 0.5).
+    A point (x, y, z) in the optical frame appears at u = fx x / z + cx, v = fy y / z + cy, moved by
+    the distortion. The image's upper left corner is (0, 0), and the centre of the first pixel is
+    (0.5, 0.5), as in Gazebo; OpenCV and image_geometry put it at (0, 0), so for them cx and cy are
+    half a pixel less.
 
     Attributes:
         k: (9,) camera matrix.
-        d: (5,) distortion coefficients, all zero.
+        d: (5,) distortion coefficients k1, k2, p1, p2, k3.
         r: (9,) rectification matrix, the identity.
-        p: (12,) projection matrix.
+        p: (12,) projection matrix, that of the rectified image.
     """
 
     k: tuple[float, ...]
@@ -28,11 +30,12 @@ class Intrinsics:
 
     @classmethod
     def of(cls, sensor: CameraSensor) -> "Intrinsics":
-        """Return the intrinsics of a camera with square pixels and a centred optical axis."""
-        f, cx, cy = sensor.focal_length, sensor.width / 2, sensor.height / 2
+        """Return the intrinsics of a camera."""
+        lens = sensor.lens
+        top, middle = (lens.fx, lens.skew, lens.cx), (0.0, lens.fy, lens.cy)
         return cls(
-            k=(f, 0.0, cx, 0.0, f, cy, 0.0, 0.0, 1.0),
-            d=(0.0,) * 5,
+            k=(*top, *middle, 0.0, 0.0, 1.0),
+            d=lens.distortion,
             r=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
-            p=(f, 0.0, cx, 0.0, 0.0, f, cy, 0.0, 0.0, 0.0, 1.0, 0.0),
+            p=(*top, 0.0, *middle, 0.0, 0.0, 0.0, 1.0, 0.0),
         )

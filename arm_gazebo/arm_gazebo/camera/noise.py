@@ -9,7 +9,7 @@ from arm_gazebo.sensors.camera import CameraSensor
 
 
 class DepthNoise:
-    """Noise of a camera that has only depth. One thread.
+    """Noise of distances. One thread.
 
     Like colour noise, it depends only on the seed, the camera's name and the frame's number.
     """
@@ -73,13 +73,25 @@ class NoiseBank:
         return int(mixed[0]) % SPARE_SAMPLES
 
 
-def noise_for(sensor: CameraSensor, seed: int) -> NoiseBank | DepthNoise | None:
-    """Return the noise of a camera; None for a camera without noise.
+class CameraNoise:
+    """The noise of one camera's pictures and distances; nothing without noise. One thread.
 
-    A camera with both colour and depth has exact depth, as in Gazebo.
+    What is not drawn costs nothing: a bank is computed with the first picture.
     """
-    if sensor.noise_stddev == 0.0 and sensor.noise_mean == 0.0:
-        return None
-    if sensor.measures_depth and not sensor.image_topics:
-        return DepthNoise(sensor, seed)
-    return NoiseBank(sensor, seed)
+
+    def __init__(self, sensor: CameraSensor, seed: int) -> None:
+        self._sensor, self._seed = sensor, seed
+        self._is_silent = sensor.noise_stddev == 0.0 and sensor.noise_mean == 0.0
+        self._bank: NoiseBank | None = None
+        self._depth = DepthNoise(sensor, seed)
+
+    def add_to_picture(self, picture: NDArray[np.uint8], frame_number: int) -> None:
+        """Add a frame's noise to a picture (height, width, 3), in place."""
+        if not self._is_silent:
+            self._bank = self._bank or NoiseBank(self._sensor, self._seed)
+            self._bank.add_to(picture, frame_number)
+
+    def add_to_depth(self, depth: NDArray[np.float32], frame_number: int) -> None:
+        """Add a frame's noise in m to distances (height, width), in place."""
+        if not self._is_silent:
+            self._depth.add_to(depth, frame_number)

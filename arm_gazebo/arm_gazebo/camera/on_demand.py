@@ -107,8 +107,9 @@ class OnDemandCameras:
 
     def _open(self) -> "Renderer":
         from arm_gazebo.rendering.backend_selection import RAYCAST, backend_order, open_renderer
+        from arm_gazebo.rendering.pinhole_view import drawn_size
 
-        size = max(s.width for s in self._sensors), max(s.height for s in self._sensors)
+        size = drawn_size(self._sensors)
         try:
             return open_renderer(backend_order(self._backend), *size)
         except BackendError as error:

@@ -138,11 +138,11 @@ def check_description(
     with failures(report, source):
         robot = parse_urdf(urdf, source, note)
     with failures(report, source):
-        cameras = parse_cameras(urdf)
+        cameras = parse_cameras(urdf, report.add)
         tags = parse_gazebo_tags(urdf)
     if robot is not None:
         with failures(report, source):
-            sensors = parse_link_sensors(urdf, robot)
+            sensors = parse_link_sensors(urdf, robot, report.add)
     with failures(report, source):
         hardware = parse_hardware_info(urdf)
         if not hardware and robot is not None:

@@ -1,6 +1,5 @@
 """Render with OpenGL, tuned for a software driver on a busy machine."""
 
-import math
 import os
 
 import mujoco
@@ -8,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.rendering.gl_context import GlContext
+from arm_gazebo.rendering.pinhole_view import LensTable, PinholeView
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
 from arm_gazebo.sensors.camera import CameraSensor
 
@@ -26,6 +26,7 @@ class GlRenderer:
     """Renders with a current OpenGL context, without shadows, reflections and multisampling.
 
     The renderer owns the context. Call it only from the thread in which the context is current.
+    Its buffers have `drawn_size` of its cameras.
     """
 
     def __init__(self, context: GlContext, max_width: int, max_height: int) -> None:
@@ -40,6 +41,7 @@ class GlRenderer:
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._model: mujoco.MjModel | None = None
         self._drawing: mujoco.MjrContext | None = None
+        self._views: dict[CameraSensor, tuple[PinholeView, LensTable | None]] = {}
 
     def set_model(self, model: mujoco.MjModel) -> None:
         """Upload a model's meshes and textures; see `Renderer.set_model`."""
@@ -71,29 +73,42 @@ class GlRenderer:
         mujoco.mjv_updateScene(model, data, self._option, None, self._camera, NO_DECORATION, scene)
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
-        # OpenGL's first row is the bottom one.
+        view, table = self._view(sensor)
         if picture is not None:
             scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = True
-            raw = self._raw[: picture.size].reshape(picture.shape)
-            self._draw(sensor, sensor.near, raw, None)
-            np.copyto(picture, raw[::-1])
+            raw = self._raw[: view.height * view.width * 3].reshape(view.height, view.width, 3)
+            self._draw(view, (sensor.near, sensor.far), raw, None)
+            if table is None:
+                # OpenGL's first row is the bottom one.
+                np.copyto(picture, raw[::-1])
+            else:
+                table.bend_colours(raw, picture)
         if depth is not None:
             # The sky box would have a depth.
             scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
-            buffer = np.empty(depth.shape, np.float32)
-            self._draw(sensor, sensor.nearest_drawn, None, buffer)
-            np.copyto(depth, _distances(buffer[::-1], sensor.nearest_drawn, sensor.far))
+            buffer = np.empty((view.height, view.width), np.float32)
+            clip = sensor.nearest_drawn, sensor.far
+            self._draw(view, clip, None, buffer)
+            buffer = buffer[::-1] if table is None else table.bend_depth(buffer)
+            np.copyto(depth, _distances(buffer, *clip))
+
+    def _view(self, sensor: CameraSensor) -> tuple[PinholeView, LensTable | None]:
+        if sensor not in self._views:
+            view = PinholeView.of(sensor)
+            table = None if sensor.lens.is_pinhole else LensTable(sensor, view)
+            self._views[sensor] = view, table
+        return self._views[sensor]
 
     def _draw(
         self,
-        sensor: CameraSensor,
-        near: float,
+        view: PinholeView,
+        clip: tuple[float, float],
         colours: NDArray[np.uint8] | None,
         depth: NDArray[np.float32] | None,
     ) -> None:
         assert self._drawing is not None
-        _apply_optics(self._scene, sensor, near)
-        area = mujoco.MjrRect(0, 0, sensor.width, sensor.height)
+        _apply_optics(self._scene, view, *clip)
+        area = mujoco.MjrRect(0, 0, view.width, view.height)
         mujoco.mjr_render(area, self._scene, self._drawing)
         mujoco.mjr_readPixels(colours, depth, area, self._drawing)
 
@@ -126,16 +141,15 @@ def _lighten(model: mujoco.MjModel, width: int, height: int) -> None:
             width_depth_grid[2] = FLOOR_GRID
 
 
-def _apply_optics(scene: mujoco.MjvScene, sensor: CameraSensor, near: float) -> None:
-    """Give the scene's cameras (one per eye, both the same) the sensor's own frustum."""
-    top = near * math.tan(sensor.vfov / 2)
+def _apply_optics(scene: mujoco.MjvScene, view: PinholeView, near: float, far: float) -> None:
+    """Give the scene's cameras (one per eye, both the same) the view's frustum."""
     for eye in scene.camera:
-        eye.frustum_center = 0.0
-        eye.frustum_width = near * math.tan(sensor.hfov / 2)
-        eye.frustum_top = top
-        eye.frustum_bottom = -top
+        eye.frustum_center = near * (view.width / 2 - view.cx) / view.fx
+        eye.frustum_width = near * view.width / 2 / view.fx
+        eye.frustum_top = near * view.cy / view.fy
+        eye.frustum_bottom = near * (view.cy - view.height) / view.fy
         eye.frustum_near = near
-        eye.frustum_far = sensor.far
+        eye.frustum_far = far
 
 
 def _distances(buffer: NDArray[np.float32], near: float, far: float) -> NDArray[np.float32]:

@@ -139,13 +139,10 @@ def _pixel_rays(sensor: CameraSensor) -> NDArray[np.float64]:
     """Return the rays through the pixels' centres, with a margin at the right and lower edges.
 
     They are in MuJoCo's camera frame (x right, y up, looks along -z) and have depth 1, so the
-    factor that scales a ray to a point is the point's depth.
+    factor that scales a ray to a point is the point's depth. The margin goes on in a straight line,
+    because the lens may not be known beyond the picture.
     """
-    margin = MAX_STEP
-    x = (np.arange(sensor.width + margin) + 0.5 - sensor.width / 2) / sensor.focal_length
-    y = (np.arange(sensor.height + margin) + 0.5 - sensor.height / 2) / sensor.focal_length
-    rays = np.empty((len(y), len(x), 3))
-    rays[..., 0] = x
-    rays[..., 1] = -y[:, np.newaxis]
-    rays[..., 2] = -1.0
-    return rays
+    rays = np.full((sensor.height, sensor.width, 3), -1.0)
+    rays[..., :2] = sensor.lens.rays(sensor.width, sensor.height) * (1.0, -1.0)
+    margin = (0, MAX_STEP)
+    return np.pad(rays, (margin, margin, (0, 0)), mode="reflect", reflect_type="odd")

@@ -12,6 +12,8 @@ from arm_gazebo.sensors.camera import CameraSensor
 
 FORWARD_TO_MUJOCO = np.array([0.5, 0.5, -0.5, -0.5])
 """Rotates a ROS camera (looks along x, z up) to MuJoCo's (looks along -z, y up), w x y z."""
+PIXEL_M = 1e-6
+"""Size of a pixel of a camera with <intrinsics>."""
 MIN_BUFFER = 800
 """Smallest side of the off-screen buffer in pixels: a renderer may need more than a camera."""
 
@@ -41,10 +43,23 @@ def add_cameras(
         orientation, quaternion = np.zeros(4), np.zeros(4)
         mujoco.mju_mat2Quat(orientation, rotation_from_rpy(camera.rpy).ravel())
         mujoco.mju_mulQuat(quaternion, orientation, FORWARD_TO_MUJOCO)
-        bodies[camera.link].add_camera(
+        mounted = bodies[camera.link].add_camera(
             name=camera.name,
             pos=camera.xyz,
             quat=quaternion,
-            fovy=math.degrees(camera.vfov),
             resolution=[camera.width, camera.height],
         )
+        _apply_lens(mounted, camera)
+
+
+def _apply_lens(mounted: mujoco.MjsCamera, camera: CameraSensor) -> None:
+    """Give a camera of the model the sensor's projection; MuJoCo has no distortion."""
+    lens = camera.lens
+    if not camera.intrinsics:
+        mounted.fovy = math.degrees(2 * math.atan(camera.height / 2 / lens.fy))
+        return
+    # Only the ratio of the sensor's sides counts, because all lengths are in pixels.
+    mounted.sensor_size = [camera.width * PIXEL_M, camera.height * PIXEL_M]
+    mounted.focal_pixel = [lens.fx, lens.fy]
+    # MuJoCo measures from the principal point to the middle of the picture.
+    mounted.principal_pixel = [camera.width / 2 - lens.cx, camera.height / 2 - lens.cy]

@@ -3,10 +3,14 @@
 import math
 from dataclasses import dataclass
 
+from arm_gazebo.sensors.lens import UNDISTORTED, Lens
+
 DEFAULT_HFOV = 1.047
 DEFAULT_SIZE = (320, 240)
 DEFAULT_RATE_HZ = 30.0
 DEFAULT_CLIP = (0.1, 100.0)
+MAX_SIDE = 8192
+"""Largest image side in pixels that common OpenGL drivers can render."""
 NEARER_SHARE = 0.1
 """Fraction of the near clip distance at which a depth camera starts to draw. An object nearer
 than the clip distance still hides what is behind it, and its pixels are reported as too near."""
@@ -23,12 +27,12 @@ class CameraSensor:
         optical_frame: frame in the messages' headers: z forward, x right, y down.
         width: image width in pixels.
         height: image height in pixels.
-        hfov: horizontal field of view in rad, in (0, pi).
+        hfov: horizontal field of view in rad, in (0, pi); `intrinsics` override it.
         near: nearest visible distance in m.
         far: farthest visible distance in m.
         rate_hz: frames per second of simulation time.
         noise_mean: mean of the Gaussian noise: for a colour image a fraction of the full range,
-            for a camera that has only depth in m.
+            for depth the same number in m.
         noise_stddev: standard deviation of the noise in the same unit; 0 for no noise.
         image_topics: topics of the image; relative ones are in the node's namespace.
         info_topics: topics of the camera info.
@@ -39,6 +43,9 @@ class CameraSensor:
         optics_in_frame: (3, 4) row by row, pose of the optical axes (z forward, x right, y down)
             in `optical_frame`. It differs from the identity where the user names a frame that
             looks along x. Points are published in `optical_frame`.
+        intrinsics: (5,) fx, fy, cx, cy and skew in pixels; empty for square pixels and a centred
+            optical axis.
+        distortion: (5,) k1, k2, p1, p2, k3.
     """
 
     name: str
@@ -59,16 +66,17 @@ class CameraSensor:
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
     optics_in_frame: tuple[float, ...] = SAME_FRAME
+    intrinsics: tuple[float, ...] = ()
+    distortion: tuple[float, ...] = UNDISTORTED
 
     @property
-    def focal_length(self) -> float:
-        """Focal length in pixels, equal along both axes because pixels are square."""
-        return self.width / 2 / math.tan(self.hfov / 2)
-
-    @property
-    def vfov(self) -> float:
-        """Vertical field of view in rad; MuJoCo's `fovy` is this in degrees."""
-        return 2 * math.atan(self.height / 2 / self.focal_length)
+    def lens(self) -> Lens:
+        """The projection."""
+        if self.intrinsics:
+            return Lens(*self.intrinsics, distortion=self.distortion)
+        focal_length = self.width / 2 / math.tan(self.hfov / 2)
+        middle = self.width / 2, self.height / 2
+        return Lens(focal_length, focal_length, *middle, distortion=self.distortion)
 
     @property
     def topics(self) -> tuple[str, ...]:

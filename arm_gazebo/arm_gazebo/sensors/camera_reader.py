@@ -2,9 +2,11 @@
 
 import logging
 import math
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from arm_description.urdf.document import Description, as_document
 from arm_description.urdf.robot import Pose
@@ -13,10 +15,12 @@ from arm_gazebo.sensors.camera import (
     DEFAULT_HFOV,
     DEFAULT_RATE_HZ,
     DEFAULT_SIZE,
+    MAX_SIDE,
     SAME_FRAME,
     CameraSensor,
 )
-from arm_gazebo.sensors.camera_frames import CameraFrames
+from arm_gazebo.sensors.camera_frames import ROTATION_TOLERANCE, CameraFrames
+from arm_gazebo.sensors.lens_reader import with_lens
 from arm_gazebo.sensors.noise import noise_type
 from arm_gazebo.sensors.reader import TYPES, sensor_type
 from arm_gazebo.sensors.tags import (
@@ -25,11 +29,10 @@ from arm_gazebo.sensors.tags import (
     sensor_elements,
     unique_names,
 )
+from arm_gazebo.spec.report import Finding
 
 logger = logging.getLogger(__name__)
 
-MAX_SIDE = 8192
-"""Largest image side in pixels that common OpenGL drivers can render."""
 FORMATS = (
     *COLOR_FORMATS,
     *("L8", "L_INT8", "L16", "L_INT16", "B8G8R8", "BGR_INT8", "R_FLOAT16", "R_FLOAT32"),
@@ -39,11 +42,17 @@ FORMATS = (
 CAMERA_TYPES = ("camera", "depth_camera", "rgbd_camera")
 
 
-def parse_cameras(description: Description) -> tuple[CameraSensor, ...]:
+def parse_cameras(
+    description: Description, note: Callable[[Finding], None] = lambda _finding: None
+) -> tuple[CameraSensor, ...]:
     """Return the cameras of a URDF, in document order.
 
     A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
     `depth_camera` or `rgbd_camera`. Values that a tag leaves out have Gazebo's defaults.
+
+    Args:
+        description: the robot description.
+        note: receives what is doubtful or not read.
 
     Raises:
         SensorError: a value is invalid; the message names sensor, element and line.
@@ -64,6 +73,8 @@ def parse_cameras(description: Description) -> tuple[CameraSensor, ...]:
         camera = _read_camera(tags, root, taken)
         _take_topics(camera, tags, taken)
         cameras.append(camera)
+        for finding in tags.findings():
+            note(finding)
     names = unique_names(cameras)
     return tuple(replace(c, name=name) for c, name in zip(cameras, names, strict=True))
 
@@ -126,7 +137,15 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
     pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
     frames = CameraFrames(root, tags.reference)
     frame = tags.frame(frames.optical())
-    return CameraSensor(
+    optics = frames.optics_in(frame, pose)
+    if optics is not None and np.abs(optics[:3, :3] - np.eye(3)).max() > ROTATION_TOLERANCE:
+        tags.doubt(
+            ".",
+            f"its images and camera_info have the frame '{frame}', whose z axis does not look "
+            f"where the camera looks (REP 103); give '{tags.reference}' a child link by a fixed "
+            "joint with the rpy -1.5708 0 -1.5708",
+        )
+    camera = CameraSensor(
         name=tags.name,
         link=tags.reference,
         optical_frame=frame,
@@ -145,8 +164,12 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
         points_topics=topics.points_topics,
         xyz=pose.xyz,
         rpy=pose.rpy,
-        optics_in_frame=_optics_in(frames, frame, pose) if topics.points_topics else SAME_FRAME,
+        optics_in_frame=SAME_FRAME
+        # A frame that is not fixed to the link counts as the optical one.
+        if optics is None or not topics.points_topics
+        else tuple(optics[:3].ravel().tolist()),
     )
+    return with_lens(camera, tags)
 
 
 def _noise(tags: SensorTags, tag: str, least: float, must_be: str) -> float:
@@ -174,9 +197,3 @@ def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, Camera
         if topic in taken:
             raise tags.topic_error(topic, "camera", taken[topic])
         taken[topic] = camera
-
-
-def _optics_in(frames: CameraFrames, frame: str, camera: Pose) -> tuple[float, ...]:
-    """Return the camera's optical axes in a frame; an unknown frame counts as the optical one."""
-    pose = frames.optics_in(frame, camera)
-    return SAME_FRAME if pose is None else tuple(pose[:3].ravel().tolist())

@@ -37,6 +37,9 @@ class ContactSensor(LinkSensor):
         Raises:
             SensorError: a value is invalid.
         """
+        if len(robot.link(tags.reference).collisions) == 1:
+            # Gazebo has a sensor name its collision shape; here all of a link's count.
+            tags.ignore("collision")
         return cls(
             name=tags.name,
             link=tags.reference,

@@ -12,6 +12,11 @@ BANK_SIZE = 1 << 16
 STRIDE = 40503
 """Odd, so that every offset in the bank is used once before any repeats; near the golden ratio."""
 TYPES = ("none", "gaussian", "gaussian_quantized")
+NUMBERS = (
+    *("mean", "stddev", "bias_mean", "bias_stddev", "precision"),
+    *("dynamic_bias_stddev", "dynamic_bias_correlation_time"),
+)
+"""What SDF writes in a noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +53,8 @@ def noise_type(tags: SensorTags, tag: str) -> str:
     kind = tags.attribute(tag, "type") or tags.choice(f"{tag}/type", TYPES)
     if kind not in TYPES:
         raise tags.error(tag, f"type {kind!r} is not one of {', '.join(TYPES)}")
+    if kind == "none":
+        tags.ignore(*(f"{tag}/{name}" for name in NUMBERS))
     return kind
 
 

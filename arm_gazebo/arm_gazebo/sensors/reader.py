@@ -1,6 +1,6 @@
 """Read the sensors of a URDF that MuJoCo computes: IMUs, force-torque and contact sensors."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from arm_gazebo.sensors.force_torque import ForceTorqueSensor
 from arm_gazebo.sensors.imu import ImuSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
 from arm_gazebo.sensors.tags import SensorTags, sensor_elements, unique_names
+from arm_gazebo.spec.report import Finding
 
 SENSORS: Mapping[str, type[LinkSensor]] = {
     sensor.type: sensor for sensor in (ImuSensor, ForceTorqueSensor, ContactSensor)
@@ -33,12 +34,17 @@ def sensor_type(element: Any) -> str | None:
     return TYPES.get(str(element.get("type", "")).strip())
 
 
-def parse_link_sensors(description: Description, robot: Robot) -> tuple[LinkSensor, ...]:
+def parse_link_sensors(
+    description: Description,
+    robot: Robot,
+    note: Callable[[Finding], None] = lambda _finding: None,
+) -> tuple[LinkSensor, ...]:
     """Return the sensors of a description except cameras, in document order.
 
     Args:
         description: the robot description.
         robot: the robot parsed from it.
+        note: receives what is doubtful or not read.
 
     Raises:
         SensorError: a value is invalid; the message names sensor, element and line.
@@ -63,5 +69,7 @@ def parse_link_sensors(description: Description, robot: Robot) -> tuple[LinkSens
             if other.topic == sensor.topic:
                 raise tags.topic_error(sensor.topic, "sensor", other)
         sensors.append(sensor)
+        for finding in tags.findings():
+            note(finding)
     names = unique_names(sensors)
     return tuple(replace(s, name=name) for s, name in zip(sensors, names, strict=True))

@@ -6,11 +6,16 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any, Protocol
 
+from arm_description.urdf.element import written_name
 from arm_gazebo.errors import SensorError
+from arm_gazebo.spec.report import BuildOutcome, Finding
 
 COLOR_FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
 TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+HARMLESS = ("always_on", "visualize", "enable_metrics")
+"""Tags that change no reading: a sensor works while somebody listens."""
+COUNTS = {2: "two", 6: "six"}
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
 _SLASHES = re.compile(r"/+")
 _DIGIT_FIRST = re.compile(r"(^|/)(?=[0-9])")
@@ -53,7 +58,7 @@ def unique_names(sensors: Sequence[_AttachedSensor]) -> list[str]:
 
 
 class SensorTags:
-    """The tags of one `<sensor>`.
+    """The tags of one `<sensor>`. It remembers what was looked up, to tell which tags nobody reads.
 
     Attributes:
         reference: the link or joint that it is attached to.
@@ -76,6 +81,9 @@ class SensorTags:
     ) -> None:
         self._element = element
         self._below = below or type_name
+        self._known: set[str] = set(HARMLESS)
+        self._single: set[str] = set()
+        self._doubts: list[Finding] = []
         self.reference = reference
         self.type = type_name
         self.name = str(element.get("name") or "").strip()
@@ -86,6 +94,16 @@ class SensorTags:
         """Return an error about one tag or attribute of this sensor."""
         line = (self._element if element is None else element).sourceline
         return SensorError(f"{self.type} sensor {self.name!r}, <{tag}> (line {line}): {problem}")
+
+    def doubt(self, tag: str, problem: str) -> None:
+        """Note that a tag, or the sensor ("."), is probably not what its author meant."""
+        (found, *_) = self._find(tag)
+        self._doubts.append(self._finding(BuildOutcome.DOUBTFUL, found, tag, problem))
+
+    def findings(self) -> Iterator[Finding]:
+        """Yield what is doubtful, and each tag that nobody looked up; call it after reading."""
+        yield from self._doubts
+        yield from self._unread(self._element, "", set())
 
     def topic_error(self, topic: str, kind: str, owner: _AttachedSensor) -> SensorError:
         """Return an error about a topic of this sensor that another sensor uses."""
@@ -108,19 +126,27 @@ class SensorTags:
 
     def texts(self, *tags: str) -> list[tuple[Any, str]]:
         """Return element and text of every non-empty tag of these names, outer ones first."""
-        paths = (f"./{tag} | ./{self._below}/{tag}" for tag in tags)
-        found = (element for path in paths for element in self._element.xpath(path))
+        found = (element for tag in tags for element in self._find(tag))
         return [(e, str(e.text or "").strip()) for e in found if str(e.text or "").strip()]
+
+    def has(self, tag: str) -> bool:
+        """Return whether there is a tag of this name."""
+        return bool(self._find(tag))
+
+    def ignore(self, *tags: str) -> None:
+        """Count tags, and all that is in them, as read: they have nothing to say here."""
+        self._known.update(tags)
 
     def attribute(self, tag: str, name: str) -> str:
         """Return an attribute of the first tag of this name; empty if there is none."""
-        found = self._element.xpath(f"./{tag} | ./{self._below}/{tag}")
+        found = self._find(tag)
         return str(found[0].get(name, "")).strip() if found else ""
 
     def number(
         self, tag: str, default: float, fits: Callable[[float], bool], must_be: str
     ) -> float:
         """Return a finite number that `fits` accepts; `must_be` words the condition for errors."""
+        self._single.add(tag)
         for element, text in self.texts(tag):
             try:
                 value = float(text)
@@ -137,6 +163,7 @@ class SensorTags:
 
     def choice(self, tag: str, choices: tuple[str, ...]) -> str:
         """Return a tag's text, or the first choice if the tag is missing."""
+        self._single.add(tag)
         for element, text in self.texts(tag):
             if text not in choices:
                 raise self.error(tag, f"{text!r} is not one of {', '.join(choices)}", element)
@@ -161,17 +188,50 @@ class SensorTags:
         frames = self.texts(*FRAME_TAGS)
         return frames[0][1] if frames else default
 
-    def pose(self) -> tuple[float, ...]:
-        """Return x y z roll pitch yaw of the sensor in its link or joint."""
-        for element, text in self.texts("pose"):
+    def numbers(self, tag: str, default: tuple[float, ...]) -> tuple[float, ...]:
+        """Return a tag's finite numbers, as many as the default has."""
+        self._single.add(tag)
+        for element, text in self.texts(tag):
             try:
                 values = tuple(float(word) for word in text.split())
             except ValueError:
                 values = ()
-            if len(values) != 6 or not all(map(math.isfinite, values)):
-                raise self.error("pose", f"{text!r} is not six numbers", element)
+            if len(values) != len(default) or not all(map(math.isfinite, values)):
+                wanted = f"{COUNTS[len(default)]} numbers"
+                raise self.error(tag, f"{text!r} is not {wanted}", element)
             return values
-        return (0.0,) * 6
+        return default
+
+    def pose(self) -> tuple[float, ...]:
+        """Return x y z roll pitch yaw of the sensor in its link or joint."""
+        return self.numbers("pose", (0.0,) * 6)
+
+    def _find(self, tag: str) -> list[Any]:
+        """Return the tags of this name, outer ones first."""
+        self._known.add(tag)
+        paths = (f"./{tag}", f"./{self._below}/{tag}")
+        return [element for path in paths for element in self._element.xpath(path)]
+
+    def _unread(self, element: Any, path: str, seen: set[str]) -> Iterator[Finding]:
+        for child in element.iterchildren(tag="*"):
+            name = written_name(child)
+            here = path + name
+            if not path and name == self._below and element is self._element:
+                yield from self._unread(child, "", seen)
+            elif any(known.startswith(here + "/") for known in self._known):
+                yield from self._unread(child, here + "/", seen)
+            elif here not in self._known:
+                problem = "the simulation does not use it"
+                yield self._finding(BuildOutcome.DROPPED, child, here, problem)
+            elif here in seen and here in self._single:
+                problem = "there is another one, and only one counts"
+                yield self._finding(BuildOutcome.DOUBTFUL, child, here, problem)
+            seen.add(here)
+
+    def _finding(self, outcome: BuildOutcome, element: Any, tag: str, problem: str) -> Finding:
+        owner = f"{self.type} '{self.name}'"
+        name = owner if element is self._element else f"<{tag}> of {owner}"
+        return Finding(outcome, name, problem, int(element.sourceline or 0))
 
 
 def _topic_of(name: str) -> str:

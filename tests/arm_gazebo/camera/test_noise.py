@@ -1,9 +1,11 @@
 """Noise of camera images and depth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from arm_gazebo.camera.noise import NoiseBank, noise_for
+from arm_gazebo.camera.noise import CameraNoise, NoiseBank
 from arm_gazebo.sensors.camera import CameraSensor
 
 
@@ -54,6 +56,31 @@ def test_a_negative_seed_is_a_seed():
     assert noisy(NoiseBank(sensor(), seed=-1), 0).std() > 0
 
 
-def test_a_camera_without_noise_has_no_bank():
-    assert noise_for(sensor(0.0), seed=0) is None
-    assert noise_for(sensor(0.0, mean=0.1), seed=0) is not None
+def drawn(camera: CameraSensor) -> tuple[np.ndarray, np.ndarray]:
+    """Return a grey picture and a depth of 1 m with the camera's noise."""
+    noise = CameraNoise(camera, seed=1)
+    picture, depth = np.full((150, 200, 3), 128, np.uint8), np.ones((150, 200), np.float32)
+    noise.add_to_picture(picture, 0)
+    noise.add_to_depth(depth, 0)
+    return picture, depth
+
+
+def test_a_camera_without_noise_is_exact():
+    picture, depth = drawn(sensor(0.0))
+    assert (picture == 128).all()
+    assert (depth == 1.0).all()
+
+
+def test_a_mean_alone_is_noise():
+    picture, depth = drawn(sensor(0.0, mean=0.1))
+    assert (picture == 128 + 26).all()
+    assert depth == pytest.approx(1.1)
+
+
+@pytest.mark.parametrize("topics", [{"depth_topics": ("d",)}, {"image_topics": ("i",)}, {}])
+def test_noise_reaches_colours_and_distances(topics):
+    picture, depth = drawn(replace(sensor(0.02, 0.05), **topics))
+    assert picture.std() == pytest.approx(np.hypot(0.02 * 255, 12**-0.5), rel=0.02)
+    # In m: the same number.
+    assert depth.mean() == pytest.approx(1.05, abs=1e-3)
+    assert depth.std() == pytest.approx(0.02, rel=0.02)

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from arm_gazebo.rendering.backend_selection import open_renderer
+from arm_gazebo.rendering.pinhole_view import drawn_size
 from arm_gazebo.sensors.camera import CameraSensor
 
 
@@ -19,10 +20,11 @@ def main() -> None:
     """Draw the model twice, for a renderer has to take a new model, too."""
     backend, model_file, sensor_file, picture_file, depth_file = sys.argv[1:]
     with open(sensor_file) as file:
-        sensor = CameraSensor(**json.load(file))
+        values = json.load(file)
+    sensor = CameraSensor(**{k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
     picture = np.zeros((sensor.height, sensor.width, 3), np.uint8)
     depth = np.zeros((sensor.height, sensor.width), np.float32)
-    renderer = open_renderer([backend], sensor.width, sensor.height)
+    renderer = open_renderer([backend], *drawn_size([sensor]))
     assert renderer.backend == backend
     for _ in range(2):
         model = mujoco.MjModel.from_xml_path(model_file)

@@ -126,8 +126,8 @@ def test_every_pixel_agrees_with_its_own_ray(measure, scene, backend):
     rotation = data.cam_xmat[0].reshape(3, 3)
     hit = np.array([-1], np.int32)
     for row, column in [(5, 140), (100, 20), (110, 150), (60, 20), (64, 40), (90, 80)]:
-        x = (column + 0.5 - EYE.width / 2) / EYE.focal_length
-        y = (row + 0.5 - EYE.height / 2) / EYE.focal_length
+        x = (column + 0.5 - EYE.width / 2) / EYE.lens.fx
+        y = (row + 0.5 - EYE.height / 2) / EYE.lens.fx
         ray = rotation @ np.array([x, -y, -1.0])
         along = mujoco.mj_ray(model, data, data.cam_xpos[0], ray, None, 1, -1, hit)
         expected = along if 0 < along <= EYE.far else np.inf
@@ -153,7 +153,7 @@ def test_points_are_on_the_objects_and_have_their_colours(measure):
     PointGrid(EYE).fill(points, depth, picture)
     middle = points[MIDDLE]
     # Half a pixel right of the axis and below it.
-    half = 0.5 * WALL / EYE.focal_length
+    half = 0.5 * WALL / EYE.lens.fx
     np.testing.assert_allclose(middle[:3], [half, half, WALL], atol=1e-4)
     assert middle[3:].view(np.uint32)[0] == 0xFF1001
     assert np.isnan(points[CORNER][:3]).all()

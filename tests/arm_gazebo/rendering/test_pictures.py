@@ -111,7 +111,7 @@ def test_the_intrinsics_project_a_point_to_the_pixel_that_shows_it(
     draw, backend, width, height, hfov
 ):
     eye = sensor(width, height, hfov=hfov)
-    f = eye.focal_length
+    f = eye.lens.fx
     for right, down, ahead in [(0.0, 0.0, 2.0), (0.5, 0.3, 2.0), (-0.6, -0.2, 1.5)]:
         # The camera looks along x: right of it is -y, below it is -z.
         ball = f'<geom type="sphere" size="0.05" pos="{ahead} {-right} {1 - down}" rgba="1 0 0 1"/>'

@@ -1,7 +1,6 @@
 """Cameras as a URDF describes them."""
 
 import logging
-import math
 
 import numpy as np
 import pytest
@@ -197,10 +196,10 @@ def test_cameras_have_rates_sizes_and_noise_of_their_own():
     assert (second.width, second.rate_hz, second.noise_stddev) == (320, 30.0, 0.02)
 
 
-def test_focal_length_and_vertical_field_of_view():
-    found = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047)
-    assert found.focal_length == pytest.approx(277.19, abs=0.01)
-    assert math.tan(found.vfov / 2) * 4 / 3 == pytest.approx(math.tan(1.047 / 2))
+def test_a_field_of_view_is_square_pixels_and_a_centred_axis():
+    lens = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047).lens
+    assert lens.fx == lens.fy == pytest.approx(277.19, abs=0.01)
+    assert (lens.cx, lens.cy, lens.skew, lens.is_pinhole) == (160, 120, 0, True)
 
 
 @pytest.mark.parametrize(
