@@ -78,6 +78,7 @@ class ControllerStatus:
             or active, like the next two.
         exported_state_interfaces: states that it exports for others to read, without its name.
         chain_connections: references of other controllers that it commands.
+        halted_by: why it does not run although it is active; empty otherwise.
     """
 
     name: str
@@ -92,3 +93,4 @@ class ControllerStatus:
     reference_interfaces: tuple[str, ...] = ()
     exported_state_interfaces: tuple[str, ...] = ()
     chain_connections: tuple[ChainConnection, ...] = ()
+    halted_by: str = ""

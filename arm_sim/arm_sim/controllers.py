@@ -58,10 +58,12 @@ class ControllerHandle:
 
         Raises:
             ControllerError: the controller refuses the values.
-            CallError: it is not active.
+            CallError: it is not active, it is halted, or another controller commands it.
         """
         if not self.is_active:
             raise CallError(f"controller '{self.name}' is {self.state.label} and takes no commands")
+        if reason := self.core.idle_reason:
+            raise CallError(f"controller '{self.name}' takes no commands: {reason}")
         self.deliver(values)
 
     def follow(

@@ -139,6 +139,8 @@ class ControllerContext:
 
 ParametersT = TypeVar("ParametersT")
 
+NOT_ACTIVE = "the controller is not active"
+CHAINED = "another controller commands this one"
 _NOTHING = LoanedInterfaces((), np.empty(0), ())
 _SETTINGS = (
     "context",
@@ -171,8 +173,8 @@ class Controller(ABC, Generic[ParametersT]):
         configured_with: the latest parameters that it was given; None before that.
         input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
         halted_by: why the manager keeps the active controller from running, such as "emergency
-            stop"; empty while it runs. `on_deactivate` has been called by then, and `on_activate`
-            is called before the next update.
+            stop" or "hardware component 'arm' is inactive"; empty while it runs. `on_deactivate`
+            has been called by then, and `on_activate` is called before the next update.
         transient: names of attributes that are not part of the state: what follows from the
             parameters, queues of requests, connections.
     """
@@ -203,6 +205,14 @@ class Controller(ABC, Generic[ParametersT]):
         if self._parameters is None:
             raise ControllerError(f"controller '{self.name}' is not configured")
         return self._parameters
+
+    @property
+    def idle_reason(self) -> str:
+        """Why commands have no effect now; empty while it runs. Any thread."""
+        if self.halted_by:
+            return self.halted_by
+        is_lent = self.commands is not _NOTHING or self.states is not _NOTHING
+        return "" if is_lent else NOT_ACTIVE
 
     @classmethod
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
@@ -348,6 +358,11 @@ class ChainableController(Controller[ParametersT]):
         self.references = np.empty(0)
         self.exported_states = np.empty(0)
         self.is_chained = False
+
+    @property
+    def idle_reason(self) -> str:
+        """Why commands have no effect now, other than those of the controller that commands it."""
+        return super().idle_reason or (CHAINED if self.is_chained else "")
 
     def reference_names(self) -> tuple[str, ...]:
         """Return the references without the controller's name; called after `on_configure`."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Generic, TypeVar
 
 from arm_control.controllers.controller import (
+    CHAINED,
+    NOT_ACTIVE,
     ChainableController,
     ControllerContext,
     ParametersT,
@@ -77,9 +79,9 @@ class DriveController(ChainableController[ParametersT], Generic[ParametersT, Twi
         """
         now_s = self._now_s
         if now_s is None:
-            return "the controller is not active"
+            return self.idle_reason or NOT_ACTIVE
         if self.is_chained:
-            return "another controller commands this one"
+            return CHAINED
         if reason := self.reason_to_refuse(twist):
             return reason
         stamp_s = now_s if stamp_s is None else min(stamp_s, now_s)

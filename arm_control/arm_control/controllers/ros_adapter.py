@@ -1,5 +1,6 @@
 """The ROS half of a controller: its topics, services and actions."""
 
+import logging
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
@@ -9,7 +10,7 @@ from rclpy.publisher import Publisher
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 
-from arm_control.controllers.controller import Controller
+from arm_control.controllers.controller import NOT_ACTIVE, Controller
 from arm_control.errors import ControllerError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import run_on_executor
@@ -35,6 +36,7 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
         self.controller = controller
         self.node = node
         self.loop = loop
+        self._said = ""
 
     @property
     def executor(self) -> Executor:
@@ -48,6 +50,29 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
                 f"no executor spins the node of controller '{self.node.get_name()}'"
             )
         return self.node.executor
+
+    def takes_commands(self, topic: str) -> bool:
+        """Return whether a command takes effect now; if not, say so, once until one does again.
+
+        Args:
+            topic: where the command came from, such as '~/commands'.
+        """
+        reason = self.controller.idle_reason
+        if reason and reason != self._said:
+            logging.getLogger(self.controller.name).warning(
+                "commands on %s have no effect: %s%s",
+                self.node.resolve_topic_name(topic),
+                reason,
+                self._remedy() if reason == NOT_ACTIVE else "",
+            )
+        self._said = reason
+        return not reason
+
+    def _remedy(self) -> str:
+        namespace = self.node.get_namespace().rstrip("/")
+        manager = f" -c {namespace}/controller_manager" if namespace else ""
+        name = self.controller.name
+        return f"; activate it with: arm control switch_controllers --activate {name}{manager}"
 
     @abstractmethod
     def on_configure(self, parameters: Any) -> None:

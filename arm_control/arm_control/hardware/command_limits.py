@@ -267,6 +267,11 @@ class CommandLimiter:
         for kind in self._kinds:
             kind.claimed(commands)
 
+    def forget(self, commands: Collection[str]) -> None:
+        """Let these commands start from the states again."""
+        for kind in self._kinds:
+            kind.forget(commands)
+
     def restart(self) -> None:
         """Start from the states again."""
         for kind in self._kinds:
@@ -318,6 +323,10 @@ class _LimitedCommands:
         held = np.array([name in commands for name in self._names])
         self.previous[held & ~self._held] = np.nan
         self._held = held
+
+    def forget(self, commands: Collection[str]) -> None:
+        """Forget the last values of these commands."""
+        self.previous[[name in commands for name in self._names]] = np.nan
 
     def enforce(self, period_s: float) -> None:
         """Clamp the claimed commands; leave the others as they are."""

@@ -121,6 +121,20 @@ class StoppableHardware(Protocol):
 
 
 @runtime_checkable
+class SingleModeHardware(Protocol):
+    """Hardware whose joints obey one kind of command at a time: a driver may have this attribute.
+
+    The manager refuses a switch after which two controllers would command one joint by these
+    interfaces, because only one of them would be obeyed. One controller may claim several.
+
+    Attributes:
+        modes: the kinds of command interfaces of which a joint obeys one, such as 'position'.
+    """
+
+    modes: tuple[str, ...]
+
+
+@runtime_checkable
 class Resettable(Protocol):
     """A driver of simulated hardware that can start over."""
 

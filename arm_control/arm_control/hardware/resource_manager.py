@@ -8,7 +8,7 @@ from arm_control.controllers.exported_interfaces import ExportedInterfaces, Plac
 from arm_control.controllers.loaned_interfaces import LoanedInterfaces, loan
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware.component import HardwareComponent
-from arm_control.hardware.driver import Hardware, HardwareReturn
+from arm_control.hardware.driver import Hardware, HardwareReturn, SingleModeHardware
 from arm_control.lifecycle import LifecycleState
 from arm_control.loop.run_record import RunRecord
 from arm_control.loop.supervision import RunSupervision, failure_of
@@ -16,6 +16,10 @@ from arm_control.status import HardwareComponentStatus, InterfaceStatus
 
 HardwareFault = tuple[HardwareComponent, HardwareReturn]
 """A component whose read or write was not OK."""
+
+STAYS = ("position",)
+"""Command interfaces for which the command that stops a joint is its own state, not 0."""
+STOPS = ("velocity", "acceleration", "effort")
 
 
 class ResourceManager:
@@ -139,6 +143,14 @@ class ResourceManager:
         owners += [self._command_owner.get(name) for name in commands]
         return frozenset(owner.name for owner in owners if owner is not None)
 
+    def moded_joint(self, command: str) -> str | None:
+        """Return the joint of a command interface of which it obeys one at a time, or None."""
+        owner = self._command_owner.get(command)
+        joint, _, kind = command.rpartition("/")
+        if owner is None or not isinstance(owner.hardware, SingleModeHardware):
+            return None
+        return joint if kind in owner.hardware.modes else None
+
     def prepare_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
         """Ask each affected component; return why one refuses, or an empty string."""
         for component, ours, theirs in self._concerned(start, stop):
@@ -199,15 +211,42 @@ class ResourceManager:
         return tuple(map(tuple, groups.values()))
 
     def set_component_state(self, name: str, target: LifecycleState) -> str:
-        """Bring a component to a state; return why that failed, or an empty string."""
-        reason = self.components[name].go_to(target)
-        self._select_components()
+        """Bring a component to a state; return why that failed, or an empty string.
+
+        A component that is activated finds commands that hold its joints where they are now,
+        whatever was commanded before. One that is cleaned up has no commands any more.
+        """
+        component = self.components[name]
+        if target is LifecycleState.ACTIVE and component.state is LifecycleState.INACTIVE:
+            self.hold(component.hardware.command_interfaces)
+        reason = component.go_to(target)
+        self._settle(component)
         return reason
 
     def take_down(self, component: HardwareComponent) -> None:
         """Take a failed component out of use."""
         component.fail()
-        self._select_components()
+        self._settle(component)
+
+    def hold(self, names: Iterable[str]) -> None:
+        """Command these interfaces to hold their joints; those without a command stay so."""
+        held = self.holding_commands()
+        for name in names:
+            index = self._command_index.get(name)
+            if index is not None and np.isfinite(self.commands[index]):
+                self.commands[index] = held[index]
+
+    def holding_commands(self) -> np.ndarray:
+        """Return the commands that hold each joint where it is, shape (n,)."""
+        states = dict(zip(self.state_names, self.states.tolist(), strict=True))
+        held = self.commands.copy()
+        for index, name in enumerate(self.command_names):
+            kind = name.rpartition("/")[2]
+            if kind in STOPS:
+                held[index] = 0.0
+            elif kind in STAYS and np.isfinite(states.get(name, np.nan)):
+                held[index] = states[name]
+        return held
 
     def list_interfaces(
         self,
@@ -312,6 +351,13 @@ class ResourceManager:
                 self.states[first_state:end_state], self.commands[first_command:end_command]
             )
             first_state, first_command = end_state, end_command
+
+    def _settle(self, component: HardwareComponent) -> None:
+        """Note what a transition of a component means for all of them."""
+        if not component.is_available:
+            for name in component.hardware.command_interfaces:
+                self.commands[self._command_index[name]] = np.nan
+        self._select_components()
 
     def _select_components(self) -> None:
         every = tuple(self.components.values())

@@ -111,6 +111,18 @@ class ControllerChain:
         """Return these and all active ones that precede them."""
         return self._closure(controllers, self.preceding)
 
+    def with_commands(
+        self, controllers: Iterable[ManagedController]
+    ) -> tuple[ManagedController, ...]:
+        """Return these and all active ones that command them or that they command, at any depth."""
+        every = tuple(self._controllers.values())
+
+        def neighbours(controller: ManagedController) -> Iterator[ManagedController]:
+            yield from self.commanded_by(controller)
+            yield from (c for c in every if controller in self.commanded_by(c))
+
+        return self._closure(controllers, neighbours)
+
     def with_read(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
         """Return these and all active ones whose exported states they read."""
         return self._closure(controllers, self.read_by)

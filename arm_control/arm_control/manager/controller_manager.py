@@ -17,8 +17,10 @@ from arm_control.loop.run_record import RunRecord
 from arm_control.loop.supervision import RunSupervision, log_failure, raise_failure
 from arm_control.manager.controller_chain import ControllerChain
 from arm_control.manager.controller_lifecycle import ControllerLifecycle
+from arm_control.manager.controller_selection import ControllerSelection
 from arm_control.manager.controller_switcher import DEFAULT_NAME, ControllerSwitcher
 from arm_control.manager.emergency_stop import LATCHED, EmergencyStop
+from arm_control.manager.halts import ControllerHalts
 from arm_control.manager.hardware_lifecycle import HardwareLifecycle
 from arm_control.manager.managed_controller import ManagedController
 from arm_control.manager.manager_observer import ManagerObserver
@@ -99,8 +101,6 @@ class ControllerManager:
         )
         self._limiter = CommandLimiter(limits, self.resources) if limits else None
         self._controllers: dict[str, ManagedController] = {}
-        self._commanding: tuple[ManagedController, ...] = ()
-        self._broadcasting: tuple[ManagedController, ...] = ()
         self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
         self._chain = ControllerChain(self._controllers, self.resources.exported)
         self._switcher = ControllerSwitcher(
@@ -109,7 +109,15 @@ class ControllerManager:
         self._hardware_lifecycle = HardwareLifecycle(
             self._controllers, self.resources, self._chain, self._switcher, policy
         )
-        self._emergency = EmergencyStop(self.resources, self._chain)
+        self._emergency = EmergencyStop(self.resources)
+        self._active = ControllerSelection(
+            self._controllers,
+            self._chain,
+            self._switcher,
+            ControllerHalts(self.resources, self._chain, self._emergency, name),
+            self._emergency,
+            self._limiter,
+        )
         self.state = ManagerState(
             self._controllers,
             self.resources,
@@ -145,7 +153,7 @@ class ControllerManager:
         began_s = self._supervision.now_s()
         if self._emergency.is_engaged:
             self._emergency.hold()
-        elif failed := [c for c in self._commanding if not c.run(time_s, period_s)]:
+        elif failed := [c for c in self._active.running if not c.run(time_s, period_s)]:
             self._replace_failed(failed)
         self.updates.add_period(period_s)
         self.updates.add_duration(self._supervision.now_s() - began_s)
@@ -166,7 +174,7 @@ class ControllerManager:
 
     def publish(self, time_s: float, period_s: float) -> None:
         """Update the other controllers: those that only read states, such as broadcasters."""
-        failed = [c for c in self._broadcasting if not c.run(time_s, period_s)]
+        failed = [c for c in self._active.broadcasting if not c.run(time_s, period_s)]
         if failed:
             self._replace_failed(failed)
 
@@ -183,11 +191,10 @@ class ControllerManager:
         if engaged == self._emergency.is_engaged:
             return False
         if engaged:
-            self._emergency.engage(self._commanding)
-        elif failed := self._emergency.release(self._commanding):
-            self._switcher.deactivate(failed)
-            self._select_active()
-        self._activity_changed()
+            self._emergency.engage()
+        else:
+            self._emergency.release()
+        self._select_active()
         return True
 
     # Hardware
@@ -358,12 +365,6 @@ class ControllerManager:
         self._hardware_lifecycle.stop_faulty(faults, exchange)
         self._select_active()
 
-    def _resolve_inactive(self) -> None:
-        """Find the interfaces of inactive controllers among those available now."""
-        for controller in self._controllers.values():
-            if controller.state is LifecycleState.INACTIVE:
-                self._lifecycle.resolve(controller)
-
     @contextmanager
     def _tracking_changes(self) -> Iterator[None]:
         """Update the lists of active controllers afterwards, if anything has changed."""
@@ -380,12 +381,11 @@ class ControllerManager:
         return self._changes, list(self._controllers), [c.state for c in components]
 
     def _select_active(self) -> None:
-        active = [c for c in self._chain.in_order() if c.is_active]
-        self._commanding = self._chain.with_read(c for c in active if c.commands)
-        self._broadcasting = tuple(c for c in active if c not in self._commanding)
-        if self._limiter is not None:
-            self._limiter.claimed({name for c in active for name in c.commands})
-        self._resolve_inactive()
+        """Find which controllers run now, and the interfaces of inactive ones that exist now."""
+        self._active.refresh()
+        for controller in self._controllers.values():
+            if controller.state is LifecycleState.INACTIVE:
+                self._lifecycle.resolve(controller)
         self._activity_changed()
 
     def _controller_transitioned(

@@ -29,6 +29,11 @@ SWITCHED = "Successfully switched controllers!"
 SWITCH_FAILED = "Failed switching controllers.... "
 
 
+def manager_option(manager_name: str) -> str:
+    """Return the option with which a command line finds a manager; empty for the default one."""
+    return "" if manager_name == DEFAULT_NAME else f" -c {manager_name}"
+
+
 class ControllerSwitcher:
     """Carries out switches, on request or after a failure.
 
@@ -57,7 +62,7 @@ class ControllerSwitcher:
         self._resources = resources
         self._lifecycle = lifecycle
         self._chain = chain
-        self._manager_option = "" if manager_name == DEFAULT_NAME else f" -c {manager_name}"
+        self._manager_option = manager_option(manager_name)
 
     def switch(self, request: SwitchRequest) -> SwitchResult:
         """Carry out a request, as far as its strictness and the current states allow."""
@@ -68,7 +73,9 @@ class ControllerSwitcher:
             return SwitchResult(False, str(error))
         if not plan.activate and not plan.deactivate:
             return SwitchResult(True, NOTHING_TO_SWITCH)
-        reason = self._resources.prepare_mode_switch(plan.start_interfaces, plan.stop_interfaces)
+        reason = self._rivals(plan) or self._resources.prepare_mode_switch(
+            plan.start_interfaces, plan.stop_interfaces
+        )
         if reason:
             logger.error("%s (%s)", PREPARE_REJECTED, reason)
             return SwitchResult(False, PREPARE_REJECTED)
@@ -79,7 +86,8 @@ class ControllerSwitcher:
         return self._carry_out(plan, request)
 
     def deactivate(self, controllers: Sequence[ManagedController]) -> None:
-        """Deactivate these unconditionally, after errors and at the end."""
+        """Deactivate those of these that are active, after errors and at the end."""
+        controllers = [controller for controller in controllers if controller.is_active]
         if not controllers:
             return
         self._leave_modes([name for controller in controllers for name in controller.commands])
@@ -101,10 +109,8 @@ class ControllerSwitcher:
         fallbacks = dict.fromkeys(name for c in failed for name in c.fallback_names)
         if not fallbacks:
             logger.error(
-                "Once the cause is gone, activate again with: spawner %s%s "
-                "(or: ros2 control switch_controllers --activate %s%s)",
-                names,
-                self._manager_option,
+                "They take no commands now. Once the cause is gone, activate again with: "
+                "arm control switch_controllers --activate %s%s",
                 names,
                 self._manager_option,
             )
@@ -117,6 +123,23 @@ class ControllerSwitcher:
                 Strictness.STRICT,
             )
         )
+
+    def _rivals(self, plan: SwitchPlan) -> str:
+        """Return which two controllers would command one joint in different modes, if any."""
+        stays = [c for c in self._controllers.values() if c.is_active and c not in plan.deactivate]
+        holders: dict[str, tuple[ManagedController, str]] = {}
+        for controller in (*stays, *plan.activate):
+            for name in controller.commands:
+                joint = self._resources.moded_joint(name)
+                if joint is None:
+                    continue
+                holder, held = holders.setdefault(joint, (controller, name))
+                if holder is not controller:
+                    return (
+                        f"joint '{joint}' obeys one kind of command at a time: controller "
+                        f"'{holder.name}' claims '{held}', and '{controller.name}' '{name}'"
+                    )
+        return ""
 
     def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
         modes = {controller: controller.commands for controller in plan.activate}

@@ -162,6 +162,8 @@ class ManagerDiagnostics:
         assessment = _RunAssessment(report, thresholds)
         for status, _ in controllers:
             report.values[f"{status.name}.state"] = status.state.label
+            if status.halted_by:
+                report.values[f"{status.name}.halted_by"] = status.halted_by
         for status, runs in active:
             assessment.add(status.name, runs, status.update_rate_hz, self._has_own_rate(status))
         assessment.conclude("Controllers")

@@ -128,7 +128,7 @@ class ManagedController:
 
     @property
     def is_halted(self) -> bool:
-        """Whether an emergency stop keeps it from running, although it is active."""
+        """Whether it does not run although it is active, see `ControllerHalts`."""
         return bool(self.controller.halted_by)
 
     def halt(self, reason: str) -> None:
@@ -194,6 +194,7 @@ class ManagedController:
             reference_interfaces=exports.reference_names() if exports else (),
             exported_state_interfaces=exports.exported_state_names() if exports else (),
             chain_connections=connections,
+            halted_by=self.controller.halted_by,
         )
 
     def _exports(self) -> ChainableController[Any] | None:

@@ -94,6 +94,12 @@ class ManagerState:
                 f"here are {', '.join(present) or 'none'}"
             )
         problems = [
+            f"hardware component '{name}' is finalized, which it cannot leave"
+            for name, (target, _) in state["components"].items()
+            if target is not LifecycleState.FINALIZED
+            and self._resources.components[name].state is LifecycleState.FINALIZED
+        ]
+        problems += [
             problem
             for name, controller in state["controllers"].items()
             for problem in self._misfits(name, controller)
@@ -140,6 +146,8 @@ class ManagerState:
             for managed in self._chain.from_below(active)
         }
         self.restart_cadences()
+        if self._emergency.is_engaged:
+            self._emergency.hold_here()
         failed = [f"controller '{name}': {reason}" for name, reason in reasons.items() if reason]
         if failed:
             raise StateError("; ".join(failed))
@@ -161,24 +169,37 @@ class ManagerState:
             raise StateError(LATCHED)
 
     def _align(self, state: Mapping[str, Any]) -> None:
-        for name, (target, _) in state["components"].items():
-            if self._resources.components[name].state is not target:
-                try:
-                    self._hardware.set_state(name, target)
-                except ControllerManagerError as error:
-                    raise StateError(f"{error}") from error
         saved = state["controllers"]
         active = {name for name in saved if saved[name]["state"] is LifecycleState.ACTIVE}
         stop = [c.name for c in self._chain.in_order() if c.is_active and c.name not in active]
         start = [name for name in saved if name in active and not self._controllers[name].is_active]
+        targets = {name: target for name, (target, _) in state["components"].items()}
+        if start:
+            # A controller may have been active before its hardware became inactive.
+            self._bring_components(
+                {
+                    name: LifecycleState.ACTIVE if target is LifecycleState.INACTIVE else target
+                    for name, target in targets.items()
+                }
+            )
+            stop = [name for name in stop if self._controllers[name].is_active]
         if start or stop:
             request = SwitchRequest(tuple(start), tuple(stop), Strictness.STRICT)
             result = self._switcher.switch(request)
             if not result.ok:
                 raise StateError(f"the snapshot's controllers do not start: {result.message}")
+        self._bring_components(targets)
         # Controllers run in the reverse order of their loading.
         for name in saved:
             self._controllers[name] = self._controllers.pop(name)
+
+    def _bring_components(self, targets: Mapping[str, LifecycleState]) -> None:
+        for name, target in targets.items():
+            if self._resources.components[name].state is not target:
+                try:
+                    self._hardware.set_state(name, target)
+                except ControllerManagerError as error:
+                    raise StateError(f"{error}") from error
 
     def _load_controller(self, managed: ManagedController, saved: Mapping[str, Any]) -> None:
         managed.load_state(saved["content"])

@@ -73,6 +73,8 @@ class SimulatedHardware:
         sensors: the robot's sensors.
     """
 
+    modes = tuple(MODES)
+
     def __init__(
         self,
         simulation: Simulation,
@@ -97,6 +99,7 @@ class SimulatedHardware:
         self.command_interfaces = tuple(i.name for i in (*self._interfaces, *self._limits))
         self._log_left_out()
         self._claimed: set[str] = set()
+        self._obeys = False
         self._is_stopped = False
         self._active: tuple[_CommandInterface, ...] = ()
         self._limiting: tuple[_LimitInterface, ...] = ()
@@ -143,20 +146,25 @@ class SimulatedHardware:
         return True
 
     def on_activate(self) -> bool:
-        """Accept; joints follow their claimed interfaces."""
+        """Drive each joint in the mode of its claimed interface, from its present state."""
+        self._obeys = True
+        self._change_modes()
         return True
 
     def on_deactivate(self) -> bool:
-        """Release all command interfaces."""
-        return self.perform_command_mode_switch((), tuple(self._claimed))
+        """Leave the joints idle; what is claimed stays claimed, and counts again once active."""
+        self._obeys = False
+        self._change_modes()
+        return True
 
     def on_cleanup(self) -> bool:
         """Release all command interfaces."""
+        self.perform_command_mode_switch((), tuple(self._claimed))
         return self.on_deactivate()
 
     def on_shutdown(self) -> bool:
         """Release all command interfaces."""
-        return self.on_deactivate()
+        return self.on_cleanup()
 
     def prepare_command_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> bool:
         """Accept every switch between existing interfaces."""
@@ -166,7 +174,7 @@ class SimulatedHardware:
         """Drive each joint in the mode of its claimed interface, from its present state.
 
         A started interface gets a value that causes no jump. Joints without a claimed interface
-        are idle.
+        are idle, and so are all while the component is not active.
         """
         before = self._modes()
         self._claimed = (self._claimed - set(stop)) | set(start)
@@ -190,11 +198,7 @@ class SimulatedHardware:
         A drive brakes as hard as it can in any pose. Limits of efforts stay.
         """
         self._is_stopped = engaged
-        for drive, mode in self._find_active().items():
-            self._servo.set_mode(drive, mode)
-        for interface in self._active:
-            self._commands[interface.index] = self._neutral(interface)
-        self._taken = b""
+        self._change_modes()
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Fill the states from the physics."""
@@ -258,6 +262,16 @@ class SimulatedHardware:
         warnings, self._warnings = self._warnings, {}
         return list(warnings.values())
 
+    def _change_modes(self) -> None:
+        """Drive each joint in its mode, and set its command to where it stays put."""
+        for drive, mode in self._find_active().items():
+            if mode is not self._servo.mode(drive):
+                self._servo.set_mode(drive, mode)
+        for interface in self._active:
+            self._commands[interface.index] = self._neutral(interface)
+        self._beyond.clear()
+        self._taken = b""
+
     def _find_active(self) -> dict[int, DriveMode]:
         """Find the claimed interfaces that count; return the mode of each drive."""
         modes = self._modes()
@@ -292,6 +306,8 @@ class SimulatedHardware:
         if self._is_stopped:
             return dict.fromkeys((i.drive for i in self._interfaces), DriveMode.HOLD)
         modes = dict.fromkeys((i.drive for i in self._interfaces), self._simulation.idle_mode)
+        if not self._obeys:
+            return modes
         for mode in reversed(MODES.values()):
             for interface in self._interfaces:
                 if interface.mode is mode and interface.name in self._claimed:

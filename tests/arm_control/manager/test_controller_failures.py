@@ -27,7 +27,7 @@ def test_a_controller_whose_update_fails_is_deactivated(
     assert bench.states() == {"good": "active", "bad": "inactive"}
     assert (len(probe.updates), len(good.updates)) == (1, 2)
     assert "Deactivating controllers : [ bad ] as their update resulted in an error!" in caplog.text
-    assert "activate again with: spawner bad" in caplog.text
+    assert "activate again with: arm control switch_controllers --activate bad" in caplog.text
 
 
 def test_the_suggested_command_names_a_manager_with_another_name(
@@ -38,8 +38,8 @@ def test_the_suggested_command_names_a_manager_with_another_name(
     bench.manager.switch_controller(SwitchRequest(("bad",)))
     bench.tick()
     assert (
-        "activate again with: spawner bad -c /left/controller_manager (or: ros2 control "
-        "switch_controllers --activate bad -c /left/controller_manager)"
+        "activate again with: arm control switch_controllers --activate bad "
+        "-c /left/controller_manager"
     ) in caplog.text
 
 

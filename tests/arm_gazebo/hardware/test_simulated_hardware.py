@@ -84,6 +84,33 @@ def test_a_deactivated_component_releases_its_joints(bench, parts, leave):
     assert pendulum.run(0.5)[-1, 0] > 0.5
 
 
+@pytest.mark.parametrize("interface", ["position", "velocity"])
+def test_a_component_that_is_active_again_obeys_what_is_claimed(bench, parts, interface):
+    pendulum = bench(parts.pendulum())
+    pendulum.claim(interface)
+    pendulum.command(0.3)
+    pendulum.run(1.0)
+    assert pendulum.hardware.on_deactivate()
+    before = pendulum.state("position")
+    pendulum.command(0.8)
+    assert pendulum.run(0.5)[-1] == pytest.approx(before, abs=0.02)
+    assert pendulum.hardware.on_activate()
+    # What was commanded meanwhile is forgotten; the next command counts.
+    before = pendulum.run(0.3)[-1]
+    assert pendulum.run(0.5)[-1] == pytest.approx(before, abs=1e-3)
+    pendulum.command(0.8)
+    assert pendulum.run(0.5)[-1, 0] > before[0] + 0.2
+
+
+def test_interfaces_may_be_claimed_before_the_component_is_active(bench, parts):
+    pendulum = bench(parts.pendulum())
+    assert pendulum.hardware.on_deactivate()
+    pendulum.claim()
+    assert pendulum.hardware.on_activate()
+    pendulum.command(0.4)
+    assert pendulum.run(1.5)[-1] == pytest.approx([0.4], abs=1e-3)
+
+
 def test_joint_released_in_motion_stops_and_holds(bench, parts):
     pendulum = bench(parts.pendulum())
     pendulum.claim()
@@ -278,6 +305,7 @@ def test_two_components_share_one_simulation(bench, parts):
     second = SimulatedHardware(first.simulation, parse_hardware_info(urdf)[1])
     commands = np.full(3, math.nan)
     second.bind(np.zeros(3), commands)
+    assert second.on_activate()
     second.perform_command_mode_switch(["b/position"], [])
     commands[0] = 0.5
     first.claim()

@@ -81,6 +81,7 @@ def test_each_follows_its_own_commands(pair):
         commands = np.zeros(len(component.command_interfaces))
         component.bind(states, commands)
         assert component.on_configure()
+        assert component.on_activate()
         claimed = [n for n in component.command_interfaces if n.endswith("/position")]
         assert component.perform_command_mode_switch(claimed, [])
         values.append((states, commands))

@@ -58,6 +58,8 @@ class DiffDriveAdapter(ControllerAdapter[DiffDriveController]):
         self._end_points = ()
 
     def _take(self, message: TwistStamped) -> None:
+        if not self.takes_commands("~/cmd_vel"):
+            return
         stamp = message.header.stamp
         stamp_s = stamp.sec + stamp.nanosec * 1e-9
         twist = PlanarTwist(message.twist.linear.x, message.twist.angular.z)

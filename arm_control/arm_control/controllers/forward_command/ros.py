@@ -45,6 +45,8 @@ class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
         return message.data
 
     def _take(self, message: Any) -> None:
+        if not self.takes_commands(self.topic):
+            return
         values = self.values_of(message)
         if not self.controller.offer(values) and self._throttle.permits():
             logging.getLogger(self.controller.name).warning(DROPPED, list(values)[:SHOWN])

@@ -228,6 +228,8 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             self._publisher = None
 
     def _take(self, message: bytes) -> None:
+        if not self.takes_commands("~/joint_trajectory"):
+            return
         try:
             request = read_trajectory(message)
         except SerializedTrajectoryError as error:

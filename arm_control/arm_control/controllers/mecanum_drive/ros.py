@@ -64,6 +64,8 @@ class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
         self._end_points = ()
 
     def _take_reference(self, message: TwistStamped) -> None:
+        if not self.takes_commands("~/reference"):
+            return
         stamp = message.header.stamp
         stamp_s = stamp.sec + stamp.nanosec * 1e-9
         twist = message.twist

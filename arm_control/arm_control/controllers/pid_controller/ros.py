@@ -71,7 +71,8 @@ class PidControllerAdapter(ControllerAdapter[PidController]):
         self._end_points = ()
 
     def _take_reference(self, message: MultiDOFCommand) -> None:
-        self._warn_dropped("reference", self.controller.offer(*_parts(message)))
+        if self.takes_commands("~/reference"):
+            self._warn_dropped("reference", self.controller.offer(*_parts(message)))
 
     def _take_measured(self, message: MultiDOFCommand) -> None:
         self._warn_dropped("measured state", self.controller.offer_measured(*_parts(message)))

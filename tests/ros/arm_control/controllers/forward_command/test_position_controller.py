@@ -66,11 +66,21 @@ def test_a_wrong_length_deactivates_it_and_the_log_says_how_to_go_on(
     manager.wait_for_line(
         "Deactivating controllers : [ position_controller ] as their update resulted in an error!"
     )
-    manager.wait_for_line("activate again with: spawner position_controller")
+    manager.wait_for_line(
+        "activate again with: arm control switch_controllers --activate position_controller"
+    )
     control.wait_for_states(position_controller="inactive", joint_state_broadcaster="active")
+    # Later commands vanish, and that is said once, by the time the next line is logged.
+    for _ in range(3):
+        publish(0.3, 0.0, 0.0, 0.0)
+    said = "commands on /position_controller/commands have no effect: the controller is not active"
+    manager.wait_for_line(
+        f"{said}; activate it with: arm control switch_controllers --activate position_controller"
+    )
     assert control.switch(["position_controller"]).ok
     publish(0.7, 0.0, 0.0, 0.0)
     wait_for(positions, 0.7, 0.0, 0.0, 0.0)
+    assert sum(said in line for line in manager.lines) == 1
 
 
 def test_a_command_with_a_nan_is_dropped_with_a_warning(
