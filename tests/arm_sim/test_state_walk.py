@@ -430,6 +430,6 @@ class Walk(RuleBasedStateMachine):
 
 # Not shrunk: a step takes a second of simulated time, and shrinking thousands of steps.
 Walk.TestCase.settings = settings(
-    max_examples=10, stateful_step_count=20, phases=(Phase.explicit, Phase.generate)
+    max_examples=8, stateful_step_count=20, phases=(Phase.explicit, Phase.generate)
 )
 TestWalk = Walk.TestCase

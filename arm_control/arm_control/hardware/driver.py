@@ -58,15 +58,25 @@ class Hardware(Protocol):
         ...
 
     def on_activate(self) -> bool:
-        """Power up; `write` is called from now on."""
+        """Power up; `write` is called from now on.
+
+        Interfaces may have been claimed before, and still are. Those that have been commanded
+        before have commands now that hold the joints where they are.
+        """
         ...
 
     def on_deactivate(self) -> bool:
-        """Stop sending commands; controllers keep their claims and resume after `on_activate`."""
+        """Stop sending commands; keep the command modes, which count again after `on_activate`.
+
+        Controllers keep their claims. They are not updated until the component is active again.
+        """
         ...
 
     def on_cleanup(self) -> bool:
-        """Undo `on_configure`; after a failed read or write it is called in any state."""
+        """Undo `on_configure`; after a failed read or write it is called in any state.
+
+        No controller has claimed an interface any more, and all commands are NaN afterwards.
+        """
         ...
 
     def on_shutdown(self) -> bool:
