@@ -28,6 +28,9 @@ class Action(LaunchDescriptionEntity, ABC):
         where: the file and line that describe it, for messages; "" for one of no launch file.
     """
 
+    starts_process = False
+    """Whether the action itself stands for a process, which ends some time."""
+
     def __init__(self, *, condition: Condition | None = None) -> None:
         self.condition = condition
         self.where = place_in_launch_file()

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
 
 from launch_py.errors import SubstitutionError
 from launch_py.substitution import LaunchScope, Text, describe_text, perform_text
 from launch_py.typed_values import parse_boolean
 
 
-class Condition(ABC):
-    """Decides whether an action is expanded."""
+class Condition:
+    """Decides whether an action is expanded: by `predicate(context)`, or in a derived class."""
 
-    @abstractmethod
+    def __init__(self, *, predicate: Callable[[Any], bool] = lambda _context: True) -> None:
+        self.predicate = predicate
+
     def evaluate(self, context: LaunchScope) -> bool:
         """Return whether the condition holds."""
+        return bool(self.predicate(context))
 
 
 class IfCondition(Condition):

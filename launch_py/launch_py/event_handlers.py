@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from launch_py.action import Action, check_actions, deferred_step, steps_at_event
 from launch_py.errors import LaunchFileError
-from launch_py.events import ProcessEvent, ProcessIO
+from launch_py.events import Event, ExecutionComplete, ProcessEvent, ProcessIO
 from launch_py.launch_context import LaunchContext
 from launch_py.plan.steps import OutputHandlerStep, ShutdownHandlerStep, Step, Trigger, TriggerKind
 
@@ -18,18 +17,56 @@ LineFunction = Callable[[ProcessIO], Iterable[Action] | Action | None]
 Target = Action | str | Callable[[Action], bool] | None
 
 
-class EventHandler(ABC):
-    """Actions that follow an event; see `RegisterEventHandler`.
+class EventHandler:
+    """Actions that follow every event that `matcher(event)` is true for; see `RegisterEventHandler`.
+
+    The events are those of processes, the shutdown, and those that `EmitEvent` emits.
 
     Attributes:
         actions: the actions that are known before the event happens.
+        removable: whether an `UnregisterEventHandler` for it exists. Its actions are then expanded
+            only when the event happens.
+        registered: false once it handles no further events.
     """
 
-    actions: list[Action]
+    def __init__(
+        self,
+        *,
+        matcher: Callable[[Any], bool] = lambda _event: True,
+        entities: Reaction = (),
+        handle_once: bool = False,
+    ) -> None:
+        self.matcher = matcher
+        self.function = entities if callable(entities) else None
+        self.actions = [] if callable(entities) else check_actions(entities, type(self).__name__)
+        self.handle_once = handle_once
+        self.removable = False
+        self.registered = True
+        self.was_expanded = False
 
-    @abstractmethod
     def expand(self, context: LaunchContext) -> None:
-        """Add the steps that wait for the event to the plan."""
+        """Add the steps that wait for the events to the plan."""
+        scope = context.scoped()
+        for kind in (TriggerKind.STARTED, TriggerKind.EXITED):
+            context.plan.add_for_each(lambda name, kind=kind: self._after(scope, kind, name))
+        expand = steps_at_event(context, self.react)
+        when = {"after": context.after, "delay_s": context.delay_s}
+        context.plan.add(OutputHandlerStep(**when, processes=None, expand=expand))
+        context.plan.add(ShutdownHandlerStep(**when, expand=expand))
+        context.plan.handlers_of_emitted_events.append(self.react)
+
+    def react(self, event: Any, context: LaunchContext) -> Iterable[Action] | Action | None:
+        """Return what follows an event, if this handler is for it."""
+        if not self.registered or not self.matcher(event):
+            return None
+        self.registered = not self.handle_once
+        return self.actions if self.function is None else self.function(event, context)
+
+    def _after(self, scope: LaunchContext, kind: TriggerKind, name: str) -> Step:
+        """Return the step that reacts to an event of the process `name`."""
+        inner = scope.scoped()
+        inner.after = (*scope.after, Trigger(kind, name))
+        return deferred_step(inner, self.react)
 
 
 class _ProcessEventHandler(EventHandler):
@@ -46,38 +83,31 @@ class _ProcessEventHandler(EventHandler):
 
     kind: TriggerKind
 
-    def __init__(self, target_action: Target, reaction: Reaction) -> None:
-        name = type(self).__name__
-        self.target_action = _check_target(target_action, name)
-        self.function = reaction if callable(reaction) else None
-        self.actions = [] if callable(reaction) else check_actions(reaction, name)
+    def __init__(self, target_action: Target, reaction: Reaction, handle_once: bool) -> None:
+        self.target_action = _check_target(target_action, type(self).__name__)
+        super().__init__(
+            matcher=lambda event: _concerns(self.target_action, event),
+            entities=reaction,
+            handle_once=handle_once,
+        )
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the actions, which wait for the event."""
         target = self.target_action
+        self.was_expanded = True
         if not isinstance(target, Action | str):
             scope = context.scoped()
-            context.plan.add_for_each(lambda name: self._step(scope.scoped(), name))
+            context.plan.add_for_each(lambda name: self._after(scope, self.kind, name))
             return
         inner = context.scoped()
         inner.event = None  # The awaited event has not happened yet.
         inner.after = (*context.after, Trigger(self.kind, target))
-        if self.function is not None:
-            inner.plan.add(deferred_step(inner, self.function))
+        if self.function is not None or self.removable:
+            inner.plan.add(deferred_step(inner, self.react))
+            return
         with inner.plan.detached():
             for action in self.actions:
                 action.visit(inner)
-
-    def _step(self, scope: LaunchContext, name: str) -> Step:
-        """Return the step that expands the actions at the event of the process `name`."""
-
-        def react(event: Any, context: LaunchContext) -> Iterable[Action] | Action | None:
-            if not _concerns(self.target_action, event):
-                return None
-            return self.actions if self.function is None else self.function(event, context)
-
-        scope.after = (*scope.after, Trigger(self.kind, name))
-        return deferred_step(scope, react)
 
 
 class OnProcessStart(_ProcessEventHandler):
@@ -85,8 +115,10 @@ class OnProcessStart(_ProcessEventHandler):
 
     kind = TriggerKind.STARTED
 
-    def __init__(self, *, target_action: Target = None, on_start: Reaction) -> None:
-        super().__init__(target_action, on_start)
+    def __init__(
+        self, *, target_action: Target = None, on_start: Reaction, handle_once: bool = False
+    ) -> None:
+        super().__init__(target_action, on_start, handle_once)
 
 
 class OnProcessExit(_ProcessEventHandler):
@@ -99,8 +131,40 @@ class OnProcessExit(_ProcessEventHandler):
 
     kind = TriggerKind.EXITED
 
-    def __init__(self, *, target_action: Target = None, on_exit: Reaction) -> None:
-        super().__init__(target_action, on_exit)
+    def __init__(
+        self, *, target_action: Target = None, on_exit: Reaction, handle_once: bool = False
+    ) -> None:
+        super().__init__(target_action, on_exit, handle_once)
+
+
+class OnExecutionComplete(_ProcessEventHandler):
+    """Actions that follow the end of an action: of a process, its exit.
+
+    Any other action is done once it is expanded, so what follows it is expanded at once. The
+    function gets an `ExecutionComplete`.
+    """
+
+    kind = TriggerKind.EXITED
+
+    def __init__(
+        self, *, target_action: Target = None, on_completion: Reaction, handle_once: bool = False
+    ) -> None:
+        reaction = on_completion
+        if callable(on_completion):
+
+            def reaction(event: ProcessEvent, context: LaunchContext) -> Any:
+                return on_completion(ExecutionComplete(action=event.action), context)
+
+        super().__init__(target_action, reaction, handle_once)
+
+    def expand(self, context: LaunchContext) -> None:
+        """Expand the actions, which wait for the end of the process."""
+        target = self.target_action
+        if isinstance(target, Action) and not target.starts_process:
+            done = ExecutionComplete(action=target)
+            context.plan.add(deferred_step(context, lambda _, scope: self.react(done, scope)))
+        else:
+            super().expand(context)
 
 
 class OnProcessIO(EventHandler):
@@ -116,11 +180,16 @@ class OnProcessIO(EventHandler):
         target_action: Target = None,
         on_stdout: LineFunction | None = None,
         on_stderr: LineFunction | None = None,
+        handle_once: bool = False,
     ) -> None:
         self.target_action = _check_target(target_action, type(self).__name__)
         self.on_stdout = on_stdout
         self.on_stderr = on_stderr
-        self.actions = []
+        super().__init__(
+            matcher=lambda event: _concerns(self.target_action, event),
+            entities=lambda event, _context: self._call(event),
+            handle_once=handle_once,
+        )
 
     def expand(self, context: LaunchContext) -> None:
         """Add the step that watches the process's output to the plan."""
@@ -130,13 +199,11 @@ class OnProcessIO(EventHandler):
                 after=context.after,
                 delay_s=context.delay_s,
                 processes=(target,) if isinstance(target, Action | str) else None,
-                expand=steps_at_event(context, self._react),
+                expand=steps_at_event(context, self.react),
             )
         )
 
-    def _react(self, event: ProcessIO, _context: LaunchContext) -> Iterable[Action] | Action | None:
-        if not _concerns(self.target_action, event):
-            return None
+    def _call(self, event: ProcessIO) -> Iterable[Action] | Action | None:
         function = self.on_stdout if event.from_stdout else self.on_stderr
         return function(event) if function is not None else None
 
@@ -151,10 +218,8 @@ class OnShutdown(EventHandler):
     for them.
     """
 
-    def __init__(self, *, on_shutdown: Reaction) -> None:
-        known = [] if callable(on_shutdown) else check_actions(on_shutdown, type(self).__name__)
-        self.actions = known
-        self.function = on_shutdown if callable(on_shutdown) else lambda _event, _context: known
+    def __init__(self, *, on_shutdown: Reaction, handle_once: bool = False) -> None:
+        super().__init__(entities=on_shutdown, handle_once=handle_once)
 
     def expand(self, context: LaunchContext) -> None:
         """Add the step that waits for the shutdown to the plan."""
@@ -162,9 +227,41 @@ class OnShutdown(EventHandler):
             ShutdownHandlerStep(
                 after=context.after,
                 delay_s=context.delay_s,
-                expand=steps_at_event(context, self.function),
+                expand=steps_at_event(context, self.react),
             )
         )
+
+
+class OnActionEventBase(EventHandler):
+    """Actions that follow the events of one class that an action is the source of."""
+
+    def __init__(
+        self,
+        *,
+        action_matcher: Action | Callable[[Any], bool] | None,
+        on_event: Reaction,
+        target_event_cls: type[Event],
+        target_action_cls: type[Any],
+        handle_once: bool = False,
+    ) -> None:
+        def matcher(event: Any) -> bool:
+            source = getattr(event, "action", None)
+            return (
+                isinstance(event, target_event_cls)
+                and isinstance(source, target_action_cls)
+                and (
+                    action_matcher is None
+                    or source is action_matcher
+                    or (not isinstance(action_matcher, Action) and bool(action_matcher(source)))
+                )
+            )
+
+        super().__init__(matcher=matcher, entities=on_event, handle_once=handle_once)
+
+
+def event_named(event_name: str) -> Callable[[Event], bool]:
+    """Return a matcher of the events whose class has this name."""
+    return lambda event: event.name == event_name
 
 
 def _check_target(target: Target, handler: str) -> Target:

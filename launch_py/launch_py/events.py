@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from launch_py.launch_description_entity import LaunchDescriptionEntity
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessEvent:
+class Event:
+    """Base class of all events; a launch file may derive its own and emit them."""
+
+    name: ClassVar[str] = "launch.Event"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProcessEvent(Event):
     """An event of a process.
 
     Attributes:
@@ -29,22 +37,30 @@ class ProcessEvent:
     pid: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+RunningProcessEvent = ProcessEvent
+"""ROS's name."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class ProcessStarted(ProcessEvent):
     """The process has started."""
 
+    name: ClassVar[str] = "launch.events.process.ProcessStarted"
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+
+@dataclass(frozen=True, kw_only=True)
 class ProcessExited(ProcessEvent):
     """The process has ended and will not be restarted; a signal counts as 128 + its number."""
 
+    name: ClassVar[str] = "launch.events.process.ProcessExited"
     returncode: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ProcessIO(ProcessEvent):
     """The process has written a line; `text` is that line with its newline, `fd` 1 or 2."""
 
+    name: ClassVar[str] = "launch.events.process.ProcessIO"
     text: bytes
     fd: int
 
@@ -59,8 +75,106 @@ class ProcessIO(ProcessEvent):
         return self.fd == 2
 
 
-@dataclass(frozen=True, slots=True)
-class Shutdown:
+class ProcessStdout(ProcessIO):
+    """A line on stdout."""
+
+    name: ClassVar[str] = "launch.events.process.ProcessStdout"
+
+
+class ProcessStderr(ProcessIO):
+    """A line on stderr."""
+
+    name: ClassVar[str] = "launch.events.process.ProcessStderr"
+
+
+@dataclass(frozen=True)
+class Shutdown(Event):
     """The shutdown begins; see `EmitEvent` and `OnShutdown`."""
 
+    name: ClassVar[str] = "launch.events.Shutdown"
     reason: str = "the launch file asks for it"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExecutionComplete(Event):
+    """An action is done; a process has ended for good."""
+
+    name: ClassVar[str] = "launch.events.ExecutionComplete"
+    action: LaunchDescriptionEntity | None
+
+
+@dataclass(frozen=True)
+class IncludeLaunchDescription(Event):
+    """Emit it to run another launch description."""
+
+    name: ClassVar[str] = "launch.events.IncludeLaunchDescription"
+    launch_description: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimerEvent(Event):
+    """The time of a `TimerAction` has come."""
+
+    name: ClassVar[str] = "launch.events.TimerEvent"
+    timer_action: LaunchDescriptionEntity
+
+
+ActionMatcher = Callable[[Any], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessMatcher:
+    """Tells the processes that an event is for by what they run, not by their actions."""
+
+    fits: Callable[[ProcessEvent], bool]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProcessTargetedEvent(Event):
+    """Emit it to do something to the processes that the matcher fits: those of which it is true.
+
+    The matcher is called with the process's action, unless it is one of those below.
+    """
+
+    process_matcher: ActionMatcher | ProcessMatcher
+
+    def concerns(self, process: ProcessEvent) -> bool:
+        """Return whether the matcher fits a process."""
+        if isinstance(self.process_matcher, ProcessMatcher):
+            return self.process_matcher.fits(process)
+        return process.action is not None and bool(self.process_matcher(process.action))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShutdownProcess(ProcessTargetedEvent):
+    """Stops the processes as the shutdown does: SIGINT, later SIGTERM and SIGKILL."""
+
+    name: ClassVar[str] = "launch.events.process.ShutdownProcess"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SignalProcess(ProcessTargetedEvent):
+    """Sends a signal, such as "SIGUSR1" or its number, to the processes."""
+
+    name: ClassVar[str] = "launch.events.process.SignalProcess"
+    signal_number: int | str
+
+
+def matches_action(action: LaunchDescriptionEntity) -> ActionMatcher:
+    """Return a matcher of one action's processes."""
+    return lambda other: other is action
+
+
+def matches_name(name: str) -> ProcessMatcher:
+    """Return a matcher of the process of this name."""
+    return ProcessMatcher(lambda process: process.process_name == name)
+
+
+def matches_pid(pid: int) -> ProcessMatcher:
+    """Return a matcher of the process with this id."""
+    return ProcessMatcher(lambda process: process.pid == pid)
+
+
+def matches_executable(executable: str) -> ProcessMatcher:
+    """Return a matcher of the processes that run a program of this name."""
+    return ProcessMatcher(lambda process: os.path.basename(process.cmd[0]) == executable)

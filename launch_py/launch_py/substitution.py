@@ -38,6 +38,12 @@ class LaunchScope:
     """The launch files that include this scope, outermost first."""
     fixed_arguments: frozenset[str] = frozenset()
     """Arguments whose values an enclosing include sets."""
+    configuration_stack: list[dict[str, str]] = field(default_factory=list)
+    """What `PushLaunchConfigurations` keeps for `PopLaunchConfigurations`."""
+    environment_stack: list[dict[str, str | None]] = field(default_factory=list)
+    """What `PushEnvironment` keeps for `PopEnvironment`."""
+    anonymous_names: dict[str, str] = field(default_factory=dict)
+    """The names that `AnonName` has made up; all copies share this dict."""
     warnings: list[str] = field(default_factory=list)
     """Warnings for the user; all copies share this list."""
 
@@ -54,6 +60,8 @@ class LaunchScope:
             environment=dict(self.environment),
             parameters=list(self.parameters),
             remappings=list(self.remappings),
+            configuration_stack=list(self.configuration_stack),
+            environment_stack=list(self.environment_stack),
         )
 
     def surveyed(self) -> Self:

@@ -48,6 +48,8 @@ class FakeChild:
         self.killed = False
         self.stop_delays: StopDelays | None = None
         """The delays that `stop` was called with, None before that."""
+        self.signals: list[int] = []
+        """The signals that `signal` has sent."""
         self._on_line = on_line
         self._on_end = on_end
 
@@ -62,6 +64,10 @@ class FakeChild:
     def stop(self, delays: StopDelays) -> None:
         """Record the request to stop."""
         self.stop_delays = delays
+
+    def signal(self, number: int) -> None:
+        """Record the signal."""
+        self.signals.append(number)
 
     def kill(self) -> None:
         """Exit as after SIGKILL."""

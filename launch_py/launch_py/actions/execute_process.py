@@ -106,6 +106,8 @@ class ExecuteProcess(Action):
         condition: whether to start it.
     """
 
+    starts_process = True
+
     def __init__(
         self,
         *,

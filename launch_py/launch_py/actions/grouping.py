@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import sys
+from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
 from launch_py.action import Action, check_actions, deferred_step
@@ -145,3 +146,48 @@ class OpaqueFunction(Action):
     def describe(self) -> str:
         """Return its name in messages."""
         return f"OpaqueFunction {getattr(self.function, '__name__', '')}".strip()
+
+
+class OpaqueCoroutine(Action):
+    """Runs `coroutine(context, *args, **kwargs)` beside the launch, in a thread with its own loop.
+
+    It starts with the processes, or when its event happens, and ends with the launch at the latest.
+    """
+
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Coroutine[Any, Any, None]],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        ignore_context: bool = False,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.coroutine = coroutine
+        self.args = tuple(args or ())
+        self.kwargs = dict(kwargs or {})
+        self.ignore_context = ignore_context
+
+    def expand(self, context: LaunchContext) -> None:
+        """Add the start of the coroutine to the plan."""
+        context.plan.add(deferred_step(context, lambda _event, scope: self._start(scope)))
+
+    def _start(self, context: LaunchContext) -> None:
+        import threading
+
+        threading.Thread(target=self._run, args=(context,), daemon=True).start()
+
+    def _run(self, context: LaunchContext) -> None:
+        import asyncio
+
+        args = self.args if self.ignore_context else (context, *self.args)
+        try:
+            asyncio.run(self.coroutine(*args, **self.kwargs))
+        except Exception as error:
+            # The coroutine is user code and may raise anything; it must not end the launch.
+            sys.stderr.write(f"{self.describe()}: {type(error).__name__}: {error}\n")
+
+    def describe(self) -> str:
+        """Return its name in messages."""
+        return f"OpaqueCoroutine {getattr(self.coroutine, '__name__', '')}".strip()

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 import time
-from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from launch_py.errors import StartError
+from launch_py.log_path import launch_name
 from launch_py.printable import printable, without_colours
 
 OWNER_ONLY = 0o600
@@ -88,17 +87,6 @@ MIB = 1024 * 1024
 DEFAULT_LIMIT_BYTES = 50 * MIB
 
 
-def log_root(environ: Mapping[str, str]) -> Path:
-    """Return the folder of ROS's logs: ROS_LOG_DIR, else $ROS_HOME/log, else ~/.ros/log."""
-    if environ.get("ROS_LOG_DIR"):
-        return Path(os.path.expanduser(environ["ROS_LOG_DIR"]))
-    if environ.get("ROS_HOME"):
-        return Path(os.path.expanduser(environ["ROS_HOME"])) / "log"
-    if environ.get("HOME"):
-        return Path(environ["HOME"]) / ".ros" / "log"
-    return Path(environ.get("TMPDIR", "/tmp")) / f"ros-log-{os.getuid()}"
-
-
 class LogFolder:
     """A new folder below the root that only its owner can read; the link `latest` points to it.
 
@@ -108,8 +96,7 @@ class LogFolder:
     """
 
     def __init__(self, root: Path, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:
-        stamp = time.strftime("%Y-%m-%d-%H-%M-%S")
-        self.path = root / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
+        self.path = root / launch_name()
         self._limit_bytes = limit_bytes
         self._files: dict[str, _LogFile] = {}
         self._generated: list[Path] = []

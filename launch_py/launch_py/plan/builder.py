@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 from launch_py.errors import LaunchFileError
 from launch_py.launch_description_entity import LaunchDescriptionEntity
@@ -32,6 +33,8 @@ class PlanBuilder:
         """Every action of the description, including those whose condition does not hold."""
         self.surveyed_names: set[str] = set()
         """The process names of those actions that are known without expanding them."""
+        self.handlers_of_emitted_events: list[Callable[..., Any]] = []
+        """The reactions `react(event, context)` of handlers that are for any event."""
         self._steps: list[Step] = []
         self._panels: list[PanelEntry] = []
         self._names: dict[str, None] = {}
@@ -74,6 +77,10 @@ class PlanBuilder:
     def add_for_each(self, make: Callable[[str], Step]) -> None:
         """Add the step that `make(name)` returns for each process, including later ones."""
         self._for_each.append((make, set()))
+
+    def expanded_actions(self) -> list[LaunchDescriptionEntity]:
+        """Return the actions that have been expanded so far, in that order."""
+        return list(self._processes_of)
 
     def add_panel(self, entry: PanelEntry) -> None:
         """Add a part of the ready panel."""

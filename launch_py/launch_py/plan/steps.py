@@ -98,6 +98,14 @@ class ShutdownStep(Step):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SignalStep(Step):
+    """Stops the processes that an event concerns, or sends them a signal."""
+
+    concerns: Callable[[ProcessEvent], bool]
+    signal_number: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DeferredStep(Step):
     """Calls a function of the launch file when due; it returns the steps that follow."""
 

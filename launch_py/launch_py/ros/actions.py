@@ -8,6 +8,7 @@ from typing import Any, Unpack
 
 from launch_py.action import Action
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
+from launch_py.actions.grouping import TimerAction
 from launch_py.conditions import Condition
 from launch_py.errors import NodeParameterError
 from launch_py.launch_context import LaunchContext
@@ -229,6 +230,26 @@ class SetParametersFromFile(Action):
     def expand(self, context: LaunchContext) -> None:
         """Add the file to the scope."""
         context.parameters.append(perform_text(context, self.filename))
+
+
+class SetROSLogDir(Action):
+    """Sets the folder that the nodes which follow in this scope write their own log files to."""
+
+    def __init__(self, new_log_dir: Text, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.new_log_dir = new_log_dir
+
+    def expand(self, context: LaunchContext) -> None:
+        """Set the variable that rcl reads."""
+        context.set_environment_variable("ROS_LOG_DIR", perform_text(context, self.new_log_dir))
+
+
+class RosTimer(TimerAction):
+    """A timer; unlike ROS's it counts real time, also beside a simulation."""
+
+
+ROSTimer = RosTimer
+"""ROS has both spellings."""
 
 
 class SetRemap(Action):

@@ -1,11 +1,22 @@
 """The substitutions, named as in ROS 2's `launch.substitutions`; `Call` is new."""
 
+from launch_py.errors import SubstitutionError as SubstitutionFailure
 from launch_py.substitution import Substitution
 from launch_py.substitutions.command import Call, Command, FindExecutable
+from launch_py.substitutions.files import (
+    AnonName,
+    FileContent,
+    LaunchLogDir,
+    PathJoinSubstitution,
+    PathSubstitution,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
 from launch_py.substitutions.logic import (
     AllSubstitution,
     AndSubstitution,
     AnySubstitution,
+    BooleanSubstitution,
     EqualsSubstitution,
     IfElseSubstitution,
     NotEqualsSubstitution,
@@ -17,30 +28,35 @@ from launch_py.substitutions.text import (
     EnvironmentVariable,
     LaunchConfiguration,
     LocalSubstitution,
-    PathJoinSubstitution,
+    StringJoinSubstitution,
     TextSubstitution,
-    ThisLaunchFile,
-    ThisLaunchFileDir,
 )
 
 __all__ = [
     "AllSubstitution",
     "AndSubstitution",
+    "AnonName",
     "AnySubstitution",
+    "BooleanSubstitution",
     "Call",
     "Command",
     "EnvironmentVariable",
     "EqualsSubstitution",
+    "FileContent",
     "FindExecutable",
     "IfElseSubstitution",
     "LaunchConfiguration",
+    "LaunchLogDir",
     "LocalSubstitution",
     "NotEqualsSubstitution",
     "NotSubstitution",
     "OrSubstitution",
     "PathJoinSubstitution",
+    "PathSubstitution",
     "PythonExpression",
+    "StringJoinSubstitution",
     "Substitution",
+    "SubstitutionFailure",
     "TextSubstitution",
     "ThisLaunchFile",
     "ThisLaunchFileDir",

@@ -109,6 +109,17 @@ class AnySubstitution(_Several):
         return boolean_text(any(_truth(context, value) for value in self.args))
 
 
+class BooleanSubstitution(Substitution):
+    """A text that is true or false, in ROS's spelling."""
+
+    def __init__(self, value: Text) -> None:
+        self.value = value
+
+    def perform(self, context: LaunchScope) -> str:
+        """Return 'true' or 'false'."""
+        return boolean_text(_truth(context, self.value))
+
+
 class NotSubstitution(Substitution):
     """The negation of a text that is true or false."""
 

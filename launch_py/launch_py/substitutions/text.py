@@ -1,8 +1,7 @@
-"""Substitutions for arguments, environment variables and paths."""
+"""Substitutions for arguments, environment variables and texts."""
 
 from __future__ import annotations
 
-import os.path
 from collections.abc import Iterable
 
 from launch_py.errors import SubstitutionError
@@ -104,34 +103,18 @@ class EnvironmentVariable(Substitution):
         return f"EnvironmentVariable({describe_text(self.name)!r})"
 
 
-class PathJoinSubstitution(Substitution):
-    """A path joined from its parts."""
+class StringJoinSubstitution(Substitution):
+    """Texts joined with a delimiter between them."""
 
-    def __init__(self, substitutions: Iterable[Text]) -> None:
+    def __init__(self, substitutions: Iterable[Text], delimiter: Text = "") -> None:
         self.parts = tuple(substitutions)
+        self.delimiter = delimiter
 
     def perform(self, context: LaunchScope) -> str:
-        """Return the joined path."""
-        return os.path.join(*(perform_text(context, part) for part in self.parts))
+        """Return the joined text."""
+        parts = (perform_text(context, part) for part in self.parts)
+        return perform_text(context, self.delimiter).join(parts)
 
     def describe(self) -> str:
         """Return the substitution as a launch file writes it."""
-        return "/".join(describe_text(part) for part in self.parts)
-
-
-class ThisLaunchFile(Substitution):
-    """The path of the launch file that is being expanded."""
-
-    def perform(self, context: LaunchScope) -> str:
-        """Return the path."""
-        if context.launch_file is None:
-            raise SubstitutionError("ThisLaunchFile has no value: no launch file is being read")
-        return str(context.launch_file)
-
-
-class ThisLaunchFileDir(Substitution):
-    """The folder of the launch file that is being expanded."""
-
-    def perform(self, context: LaunchScope) -> str:
-        """Return the path of the folder."""
-        return os.path.dirname(ThisLaunchFile().perform(context))
+        return describe_text(self.delimiter).join(map(describe_text, self.parts))

@@ -120,6 +120,10 @@ class ChildProcess:
             linux.signal_process(self.pid, signal.SIGCONT)
         self._escalate(delays.sigterm_timeout_s, lambda: self._terminate(delays))
 
+    def signal(self, number: int) -> None:
+        """Send it a signal; its children get none."""
+        linux.signal_process(self.pid, number)
+
     def kill(self) -> None:
         """Send SIGKILL to the group now."""
         if self.ended:

@@ -9,7 +9,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from launch_py.errors import LaunchError
-from launch_py.events import ProcessEvent, ProcessExited, ProcessIO, ProcessStarted
+from launch_py.events import (
+    ProcessEvent,
+    ProcessExited,
+    ProcessIO,
+    ProcessStarted,
+    ProcessStderr,
+    ProcessStdout,
+)
 from launch_py.plan.steps import DeferredStep, Step, TriggerKind
 from launch_py.supervision.event_loop import EventLoop, Timer
 from launch_py.supervision.managed_process import ManagedProcess
@@ -37,8 +44,8 @@ def exited_event(process: ManagedProcess) -> ProcessExited:
 
 def line_event(process: ManagedProcess, stream: str, text: str) -> ProcessIO:
     """Return the event of a line that a process has written to "stdout" or "stderr"."""
-    fd = 2 if stream == "stderr" else 1
-    return _event(ProcessIO, process, text=f"{text}\n".encode(), fd=fd)
+    kind, fd = (ProcessStderr, 2) if stream == "stderr" else (ProcessStdout, 1)
+    return _event(kind, process, text=f"{text}\n".encode(), fd=fd)
 
 
 def awaited_event(

@@ -109,7 +109,7 @@ def signal_group(group: int, number: signal.Signals | None) -> bool:
     return True
 
 
-def signal_process(pid: int, number: signal.Signals) -> None:
+def signal_process(pid: int, number: int) -> None:
     """Send a signal to a process that may be gone already."""
     with suppress(ProcessLookupError, PermissionError):
         os.kill(pid, number)

@@ -74,6 +74,10 @@ class Child(Protocol):
         """Stop it with SIGINT, then SIGTERM, then SIGKILL."""
         ...
 
+    def signal(self, number: int) -> None:
+        """Send it a signal."""
+        ...
+
     def kill(self) -> None:
         """Kill it now."""
         ...
@@ -193,6 +197,14 @@ class ManagedProcess:
         elif self.state is ProcessState.RUNNING and self.child is not None:
             self._stop_watching()
             self.child.stop(delays or self.step.stop_delays)
+
+    def signal(self, number: int | None) -> None:
+        """Send a signal if it runs; None stops it."""
+        if number is None:
+            self.disable_restart()
+            self.stop()
+        elif self.state is ProcessState.RUNNING and self.child is not None:
+            self.child.signal(number)
 
     def kill(self) -> None:
         """Kill it now."""

@@ -13,8 +13,9 @@ from pathlib import Path
 
 from launch_py.fast_dds.ledger import SharedMemoryLedger
 from launch_py.fast_dds.shared_memory import watch_folder
+from launch_py.log_path import log_root
 from launch_py.output import PlainScreen, ReadySummary, Screen, TerminalScreen
-from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder, log_root
+from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
 from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import LaunchPlan
 from launch_py.supervision import linux

@@ -19,6 +19,7 @@ from launch_py.plan.steps import (
     ProcessStep,
     ShutdownHandlerStep,
     ShutdownStep,
+    SignalStep,
     Step,
     StopDelays,
     Trigger,
@@ -31,6 +32,7 @@ from launch_py.supervision.event_handling import (
     awaited_event,
     call_handler,
     line_event,
+    started_event,
 )
 from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.managed_process import ManagedProcess, ProcessRunner, ProcessState
@@ -285,6 +287,10 @@ class Supervisor:
                 self._reporter.note(step.text)
             case ShutdownStep():
                 self._shut_down(step)
+            case SignalStep():
+                for process in self._active():
+                    if step.concerns(started_event(process)):
+                        process.signal(step.signal_number)
             case DeferredStep():
                 self._expand(step.expand, awaited_event(step, self.processes))
             case OutputHandlerStep():

@@ -126,7 +126,7 @@ def test_events_describe_their_process(trial):
     t["a"].write("one")
     t["a"].end(3)
     assert [type(event).__name__ for event in events] == [
-        *("ProcessStarted", "ProcessIO", "ProcessExited")
+        *("ProcessStarted", "ProcessStdout", "ProcessExited")
     ]
     assert all(event.action == a and event.process_name == "a" for event in events)
     assert {(event.cmd[1:], event.cwd, event.pid) for event in events} == {(("x",), "/tmp", 1001)}
