@@ -2,8 +2,7 @@
 
 The names are those of ROS 2's `launch` and `launch_ros` packages. Launch files that import from
 those run unchanged (see `ros_imports`). In new files `launch` is `launch_py`, and `launch_ros` is
-`launch_py.ros`. Composable and lifecycle nodes are not supported. Event handlers exist for a
-process's start, output and exit, and for the shutdown.
+`launch_py.ros`. The manual lists every name and where it differs.
 """
 
 from importlib import import_module
@@ -15,18 +14,29 @@ if TYPE_CHECKING:
         AppendEnvironmentVariable,
         DeclareLaunchArgument,
         EmitEvent,
+        ExecuteLocal,
         ExecuteProcess,
         GroupAction,
         IncludeLaunchDescription,
         LogInfo,
+        OpaqueCoroutine,
         OpaqueFunction,
+        PopEnvironment,
+        PopLaunchConfigurations,
+        PushEnvironment,
+        PushLaunchConfigurations,
         ReadyPanel,
         RegisterEventHandler,
+        ReplaceEnvironmentVariables,
+        ResetEnvironment,
+        ResetLaunchConfigurations,
         SetEnvironmentVariable,
         SetLaunchConfiguration,
         Shutdown,
         TimerAction,
+        UnregisterEventHandler,
         UnsetEnvironmentVariable,
+        UnsetLaunchConfiguration,
     )
     from launch_py.errors import LaunchError
     from launch_py.launch_context import LaunchContext
@@ -49,6 +59,7 @@ __all__ = [
     "AppendEnvironmentVariable",
     "DeclareLaunchArgument",
     "EmitEvent",
+    "ExecuteLocal",
     "ExecuteProcess",
     "Finished",
     "GroupAction",
@@ -60,10 +71,18 @@ __all__ = [
     "LogInfo",
     "LogLine",
     "Notified",
+    "OpaqueCoroutine",
     "OpaqueFunction",
+    "PopEnvironment",
+    "PopLaunchConfigurations",
     "ProcessExited",
+    "PushEnvironment",
+    "PushLaunchConfigurations",
     "ReadyPanel",
     "RegisterEventHandler",
+    "ReplaceEnvironmentVariables",
+    "ResetEnvironment",
+    "ResetLaunchConfigurations",
     "RestartPolicy",
     "ServiceAvailable",
     "SetEnvironmentVariable",
@@ -71,7 +90,9 @@ __all__ = [
     "Shutdown",
     "TimerAction",
     "TopicPublished",
+    "UnregisterEventHandler",
     "UnsetEnvironmentVariable",
+    "UnsetLaunchConfiguration",
 ]
 
 _PUBLIC_MODULES = (

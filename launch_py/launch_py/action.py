@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
@@ -18,7 +17,7 @@ LAUNCH_FILE = "__launch_file__"
 """The global name by which the code of a Python launch file is known; its value is the path."""
 
 
-class Action(LaunchDescriptionEntity, ABC):
+class Action(LaunchDescriptionEntity):
     """One entry of a launch description, switched on or off by its condition.
 
     Expanding an action starts nothing: it only adds steps to the plan or changes the context for
@@ -46,13 +45,21 @@ class Action(LaunchDescriptionEntity, ABC):
                 with context.plan.expanding(self):
                     self.expand(context)
 
-    @abstractmethod
     def expand(self, context: LaunchContext) -> None:
         """Add this action's steps to the plan, or change the context.
 
         Raises:
             LaunchError: the action is invalid.
         """
+        if context.after or context.delay_s:
+            context.plan.add(deferred_step(context, lambda _event, scope: self.execute(scope)))
+            return
+        for action in check_actions(self.execute(context) or (), self.describe()):
+            action.visit(context)
+
+    def execute(self, context: LaunchContext) -> Iterable[Action] | Action | None:
+        """Return the actions that take this one's place; a launch file's own class overrides it."""
+        return None
 
     def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
         """Record this action and all actions inside it, whatever their conditions say."""

@@ -18,7 +18,7 @@ Target = Action | str | Callable[[Action], bool] | None
 
 
 class EventHandler:
-    """Actions that follow every event that `matcher(event)` is true for; see `RegisterEventHandler`.
+    """Actions that follow every event that `matcher(event)` is true for.
 
     The events are those of processes, the shutdown, and those that `EmitEvent` emits.
 
@@ -50,9 +50,12 @@ class EventHandler:
         for kind in (TriggerKind.STARTED, TriggerKind.EXITED):
             context.plan.add_for_each(lambda name, kind=kind: self._after(scope, kind, name))
         expand = steps_at_event(context, self.react)
-        when = {"after": context.after, "delay_s": context.delay_s}
-        context.plan.add(OutputHandlerStep(**when, processes=None, expand=expand))
-        context.plan.add(ShutdownHandlerStep(**when, expand=expand))
+        after, delay_s = context.after, context.delay_s
+        for step in (
+            OutputHandlerStep(after=after, delay_s=delay_s, processes=None, expand=expand),
+            ShutdownHandlerStep(after=after, delay_s=delay_s, expand=expand),
+        ):
+            context.plan.add(step)
         context.plan.handlers_of_emitted_events.append(self.react)
 
     def react(self, event: Any, context: LaunchContext) -> Iterable[Action] | Action | None:
@@ -149,12 +152,11 @@ class OnExecutionComplete(_ProcessEventHandler):
     def __init__(
         self, *, target_action: Target = None, on_completion: Reaction, handle_once: bool = False
     ) -> None:
-        reaction = on_completion
-        if callable(on_completion):
+        def call(event: ProcessEvent, context: LaunchContext) -> Any:
+            assert callable(on_completion)
+            return on_completion(ExecutionComplete(action=event.action), context)
 
-            def reaction(event: ProcessEvent, context: LaunchContext) -> Any:
-                return on_completion(ExecutionComplete(action=event.action), context)
-
+        reaction = call if callable(on_completion) else on_completion
         super().__init__(target_action, reaction, handle_once)
 
     def expand(self, context: LaunchContext) -> None:

@@ -15,8 +15,14 @@ from launch_py.plan.steps import LaunchPlan
 class LaunchDescription:
     """Actions in the order in which they are expanded."""
 
-    def __init__(self, initial_entities: Iterable[Action] = ()) -> None:
-        self.entities: list[Action] = check_actions(initial_entities, "LaunchDescription")
+    def __init__(
+        self,
+        initial_entities: Iterable[Action] | None = None,
+        *,
+        deprecated_reason: str | None = None,
+    ) -> None:
+        self.entities: list[Action] = check_actions(initial_entities or (), "LaunchDescription")
+        self.deprecated_reason = deprecated_reason
 
     def add_action(self, action: Action) -> None:
         """Append one action."""
@@ -28,6 +34,10 @@ class LaunchDescription:
 
     def visit(self, context: LaunchContext) -> None:
         """Expand all actions in this scope."""
+        if self.deprecated_reason is not None:
+            context.warnings.append(
+                f"launch file [{_name(context.launch_file)}] is deprecated: {self.deprecated_reason}"
+            )
         for entity in self.entities:
             entity.visit(context)
 

@@ -45,25 +45,26 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
     """A launch file in any supported format, told by its ending; see `read_launch_file`."""
 
 
-class _FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
+class FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
     """An XML or YAML launch file."""
 
 
-class XMLLaunchDescriptionSource(_FrontendLaunchDescriptionSource):
+class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
     """An XML launch file."""
 
 
-class YAMLLaunchDescriptionSource(_FrontendLaunchDescriptionSource):
+class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
     """A YAML launch file."""
 
 
-def read_launch_file(path: Path) -> LaunchDescription:
+def read_launch_file(path: Path | str) -> LaunchDescription:
     """Read a launch file and return its description; the file's ending tells its format.
 
     Raises:
         NotFoundError: there is no such file.
         LaunchFileError: the file is not Python, XML or YAML, or is invalid.
     """
+    path = Path(path)
     if not os.path.isfile(path):
         raise NotFoundError(describe_missing_launch_file(path, Packages(os.environ)))
     if path.suffix == ".py":

@@ -16,6 +16,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from launch_py.near_names import describe_known
+from launch_py.ros_names import HOMES, NOT_HERE, OTHER_NAMES
 
 if TYPE_CHECKING:
     from importlib.abc import Loader
@@ -23,67 +24,26 @@ else:
     # The import system needs only the methods, and `importlib.abc` imports `tempfile` and more.
     Loader = object
 
-HOMES = {
-    "launch": "launch_py",
-    "launch.action": "launch_py.action",
-    "launch.actions": "launch_py.actions",
-    "launch.condition": "launch_py.conditions",
-    "launch.conditions": "launch_py.conditions",
-    "launch.event_handler": "launch_py.event_handlers",
-    "launch.event_handlers": "launch_py.event_handlers",
-    "launch.events": "launch_py.events",
-    "launch.events.process": "launch_py.events",
-    "launch.launch_context": "launch_py.launch_context",
-    "launch.launch_description": "launch_py.launch_description",
-    "launch.launch_description_entity": "launch_py.launch_description_entity",
-    "launch.launch_description_source": "launch_py.launch_description_sources",
-    "launch.launch_description_sources": "launch_py.launch_description_sources",
-    "launch.logging": "logging",
-    "launch.some_substitutions_type": "launch_py.substitution",
-    "launch.substitution": "launch_py.substitution",
-    "launch.substitutions": "launch_py.substitutions",
-    "launch.utilities": "launch_py.substitution",
-    "launch_ros": "launch_py.ros",
-    "launch_ros.actions": "launch_py.ros.actions",
-    "launch_ros.descriptions": "launch_py.ros.descriptions",
-    "launch_ros.parameter_descriptions": "launch_py.ros.parameter_descriptions",
-    "launch_ros.substitutions": "launch_py.ros.substitutions",
-    "launch_xml.launch_description_sources": "launch_py.launch_description_sources",
-    "launch_xml": "launch_py.launch_description_sources",
-    "launch_yaml.launch_description_sources": "launch_py.launch_description_sources",
-    "launch_yaml": "launch_py.launch_description_sources",
-}
-"""The launch_py module that has the names of each ROS module."""
-
-OTHER_NAMES = {
-    "launch": {
-        "Condition": "launch_py.conditions:Condition",
-        "EventHandler": "launch_py.event_handlers:EventHandler",
-        "LaunchDescriptionSource": "launch_py.launch_description_sources:LaunchDescriptionSource",
-        "SomeSubstitutionsType": "launch_py.substitution:Text",
-        "Substitution": "launch_py.substitution:Substitution",
-    },
-    "launch.logging": {"get_logger": "logging:getLogger"},
-    "launch.some_substitutions_type": {"SomeSubstitutionsType": "launch_py.substitution:Text"},
-    "launch.utilities": {"perform_substitutions": "launch_py.substitution:perform_text"},
-}
-"""Names of ROS modules that launch_py keeps in another module or calls differently."""
-
-ONLY_OTHER_NAMES = ("launch.logging", "launch.some_substitutions_type", "launch.utilities")
-"""ROS modules that have only the names in `OTHER_NAMES` here."""
-
-REASONS = {
-    "ComposableNode": "there are no composable nodes here: start each one as a Node",
-    "ComposableNodeContainer": "there are no composable nodes here: start each one as a Node",
-    "LoadComposableNodes": "there are no composable nodes here: start each one as a Node",
-    "LifecycleNode": "start it as a Node, and take it through its states with `arm lifecycle set`",
-    "LaunchService": "`arm launch` runs the description; the file need not",
-}
-"""Why some ROS names do not exist here, and what to use instead."""
-
 
 class MissingRosNameError(ImportError):
-    """A launch file imports a name that does not exist here; the message says what does."""
+    """A launch file imports or uses a name that does not exist here; the message says what does."""
+
+
+class _Absent(type):
+    """The class of names that can only be imported: whatever is done with one tells why."""
+
+    def __call__(cls, *_args: object, **_options: object) -> Any:
+        raise cls.error()
+
+    def __getattr__(cls, name: str) -> Any:
+        raise AttributeError(name) if name.startswith("__") else cls.error()
+
+    def __setattr__(cls, name: str, value: object) -> None:
+        raise cls.error()
+
+    def error(cls) -> MissingRosNameError:
+        """Return the error that names the reason."""
+        return MissingRosNameError(f"{cls.__module__} has no {cls.__name__!r} here; {cls.__doc__}")
 
 
 @contextmanager
@@ -159,6 +119,9 @@ class _RosModule(ModuleType):
             raise AttributeError(name)
         if f"{self.__name__}.{name}" in HOMES:
             return import_module(f"{self.__name__}.{name}")
+        reason = NOT_HERE.get(self.__home, {}).get(name)
+        if reason is not None:
+            return _Absent(name, (), {"__module__": self.__name__, "__doc__": reason})
         if name not in _names(self.__home):
             raise _missing_name(self.__name__, name, _names(self.__home))
         return _find(self.__home, name)
@@ -166,8 +129,8 @@ class _RosModule(ModuleType):
 
 def _names(home: str) -> list[str]:
     """Return the names that a ROS module has here, sorted."""
-    found = set(OTHER_NAMES.get(home, ()))
-    if home not in ONLY_OTHER_NAMES:
+    found = {*OTHER_NAMES.get(home, ()), *NOT_HERE.get(home, ())}
+    if HOMES[home]:
         module = import_module(HOMES[home])
         found.update(getattr(module, "__all__", None) or _own_names(module))
     return sorted(found)
@@ -189,10 +152,8 @@ def _find(home: str, name: str) -> Any:
 
 
 def _missing_name(module: str, name: str, known: list[str]) -> MissingRosNameError:
-    reason = REASONS.get(name)
-    if reason is None:
-        near = describe_known(name, known)
-        reason = near if near.startswith("did you mean") else f"it has {', '.join(known)}"
+    near = describe_known(name, known)
+    reason = near if near.startswith("did you mean") else f"it has {', '.join(known)}"
     return MissingRosNameError(f"{module} has no {name!r} here; {reason}")
 
 

@@ -42,17 +42,13 @@ class ExecuteLocal(ExecuteProcess):
         shell: bool = False,
         **options: Unpack[ProcessOptions],
     ) -> None:
-        described = process_description
-        super().__init__(
-            cmd=[*described.cmd, *described.arguments],
-            name=described.name,
-            shell=shell,
-            **{
-                "prefix": described.prefix,
-                "cwd": described.cwd,
-                "env": described.env,
-                "additional_env": described.additional_env,
-                **options,
-            },
-        )
-        self.process_description = described
+        self.process_description = described = process_description
+        own: ProcessOptions = {
+            "prefix": described.prefix,
+            "cwd": described.cwd,
+            "env": described.env,
+            "additional_env": described.additional_env,
+        }
+        own.update(options)
+        words = [*described.cmd, *described.arguments]
+        super().__init__(cmd=words, name=described.name, shell=shell, **own)

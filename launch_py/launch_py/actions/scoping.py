@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from launch_py.action import Action
 from launch_py.conditions import Condition
@@ -115,7 +116,7 @@ class UnsetLaunchConfiguration(Action):
         context.launch_configurations.pop(perform_text(context, self.name), None)
 
 
-def _replace(target: dict, content: Mapping) -> None:
+def _replace(target: dict[str, Any], content: Mapping[str, Any]) -> None:
     """Replace the content of a dict that others refer to."""
     target.clear()
     target.update(content)

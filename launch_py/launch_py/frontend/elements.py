@@ -15,6 +15,11 @@ from launch_py.actions import (
     GroupAction,
     IncludeLaunchDescription,
     LogInfo,
+    PopEnvironment,
+    PushEnvironment,
+    ReplaceEnvironmentVariables,
+    ResetEnvironment,
+    ResetLaunchConfigurations,
     SetEnvironmentVariable,
     SetLaunchConfiguration,
     Shutdown,
@@ -29,11 +34,19 @@ from launch_py.near_names import describe_known
 from launch_py.ros.actions import (
     Node,
     PushRosNamespace,
+    RosTimer,
     SetParameter,
     SetParametersFromFile,
     SetRemap,
+    SetROSLogDir,
     SetUseSimTime,
 )
+from launch_py.ros.composable import (
+    ComposableNode,
+    ComposableNodeContainer,
+    LoadComposableNodes,
+)
+from launch_py.ros.lifecycle import LifecycleNode
 from launch_py.ros.parameter_descriptions import ParameterFile, ParameterValue
 from launch_py.substitution import Text
 
@@ -65,15 +78,6 @@ TYPES: dict[str, Any] = {
     "list_of_str": list[str],
 }
 """The values of a parameter's attribute `type`."""
-
-NO_COMPOSABLE = "there are no composable nodes here: start each one as a <node>"
-REASONS = {
-    "node_container": NO_COMPOSABLE,
-    "composable_node": NO_COMPOSABLE,
-    "load_composable_node": NO_COMPOSABLE,
-    "lifecycle_node": "start it as a <node>; `arm lifecycle set` takes it through its states",
-}
-"""Elements of ROS that do not exist here, and what to use instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +124,8 @@ def _actions(entity: Entity) -> list[Action]:
 def _action(entity: Entity) -> Action:
     element = ELEMENTS.get(entity.tag.replace("-", "_"))
     if element is None:
-        reason = REASONS.get(entity.tag.replace("-", "_")) or describe_known(entity.tag, ELEMENTS)
-        raise LaunchFileError(f"{entity.where}: no action {entity.tag!r} here; {reason}")
+        known = describe_known(entity.tag, ELEMENTS)
+        raise LaunchFileError(f"{entity.where}: no action {entity.tag!r} here; {known}")
     entity.refuse_unknown(element.needed, (*element.optional, "if", "unless"))
     if element.children is not None:
         _check_parts(entity, element.children)
@@ -167,16 +171,61 @@ def _process_options(entity: Entity) -> dict[str, Any]:
 
 
 def _node(entity: Entity) -> Action:
-    return Node(
-        package=entity.text("pkg"),
-        executable=entity.text("exec"),
-        namespace=entity.text_or_none("namespace"),
-        exec_name=entity.text_or_none("exec_name"),
-        arguments=entity.words("args"),
-        ros_arguments=entity.words("ros_args"),
-        parameters=_parameters(entity),
-        remappings=[(c.text("from"), c.text("to")) for c in entity.children_named("remap")],
+    return Node(**_node_options(entity))
+
+
+def _node_options(entity: Entity) -> dict[str, Any]:
+    return {
+        "executable": entity.text("exec"),
+        "exec_name": entity.text_or_none("exec_name"),
+        "arguments": entity.words("args"),
+        "ros_arguments": entity.words("ros_args"),
+        **_graph_options(entity),
         **_process_options(entity),
+    }
+
+
+def _graph_options(entity: Entity) -> dict[str, Any]:
+    """Return what nodes and components have in common."""
+    return {
+        "package": entity.text("pkg"),
+        "namespace": entity.text_or_none("namespace"),
+        "parameters": _parameters(entity),
+        "remappings": [(c.text("from"), c.text("to")) for c in entity.children_named("remap")],
+    }
+
+
+def _lifecycle_node(entity: Entity) -> Action:
+    options = _node_options(entity)
+    options["namespace"] = options["namespace"] or ""
+    return LifecycleNode(autostart=entity.boolean("autostart", False), **options)
+
+
+def _components(entity: Entity) -> list[ComposableNode]:
+    return [
+        ComposableNode(
+            plugin=child.text("plugin"),
+            name=child.text_or_none("name"),
+            condition=child.condition(),
+            **_graph_options(child),
+        )
+        for child in entity.children_named("composable_node")
+    ]
+
+
+def _container(entity: Entity) -> Action:
+    return ComposableNodeContainer(
+        name=entity.text("name"),
+        composable_node_descriptions=_components(entity),
+        condition=entity.condition(),
+    )
+
+
+def _load_components(entity: Entity) -> Action:
+    return LoadComposableNodes(
+        composable_node_descriptions=_components(entity),
+        target_container=entity.text("target"),
+        condition=entity.condition(),
     )
 
 
@@ -291,6 +340,29 @@ def _set_parameter(entity: Entity) -> Action:
     return SetParameter(entity.text("name"), _value(entity), condition=entity.condition())
 
 
+def _pairs(entity: Entity, child: str) -> dict[Any, Any]:
+    return {(c.text("name"),): c.text("value") for c in entity.children_named(child)}
+
+
+def _bare(make: Callable[..., Action]) -> Callable[[Entity], Action]:
+    """Return a function that makes an action without arguments."""
+    return lambda entity: make(condition=entity.condition())
+
+
+def _reset(entity: Entity) -> Action:
+    return ResetLaunchConfigurations(_pairs(entity, "keep"), condition=entity.condition())
+
+
+def _replace_env(entity: Entity) -> Action:
+    return ReplaceEnvironmentVariables(_pairs(entity, "env"), condition=entity.condition())
+
+
+def _ros_timer(entity: Entity) -> Action:
+    return RosTimer(
+        period=entity.text("period"), actions=_actions(entity), condition=entity.condition()
+    )
+
+
 def _shutdown(entity: Entity) -> Action:
     return Shutdown(reason=entity.text_or_none("reason") or "", condition=entity.condition())
 
@@ -303,8 +375,16 @@ NAMESPACE = Element(_one(PushRosNamespace, "namespace", "namespace"), ("namespac
 PROCESS = tuple(PROCESS_WORDS)
 PAIR = ("name", "value")
 
+NODE_WORDS = ("namespace", "exec_name", "args", "ros_args", *PROCESS)
+NODE_PARTS = ("param", "remap", "env")
+
 PARTS = {
     "arg": Part(PAIR),
+    "composable_node": Part(
+        ("pkg", "plugin"), ("name", "namespace", "if", "unless"), ("param", "remap", "extra_arg")
+    ),
+    "extra_arg": Part(PAIR),
+    "keep": Part(PAIR),
     "choice": Part(("value",)),
     "env": Part(PAIR),
     "let": Part(PAIR),
@@ -321,20 +401,32 @@ ELEMENTS = {
     "include": Element(_include, ("file",), (), ("arg", "let")),
     "let": Element(_named(SetLaunchConfiguration), PAIR),
     "log": Element(_one(LogInfo, "message", "msg"), ("message",), ("level",)),
-    "node": Element(
-        _node,
-        ("pkg", "exec"),
-        ("namespace", "exec_name", "args", "ros_args", *PROCESS),
-        ("param", "remap", "env"),
+    "lifecycle_node": Element(
+        _lifecycle_node, ("pkg", "exec", "name"), ("autostart", *NODE_WORDS), NODE_PARTS
     ),
+    "load_composable_node": Element(_load_components, ("target",), (), ("composable_node",)),
+    "node": Element(_node, ("pkg", "exec"), NODE_WORDS, NODE_PARTS),
+    "node_container": Element(
+        _container,
+        ("pkg", "exec", "name", "namespace"),
+        NODE_WORDS,
+        ("composable_node", *NODE_PARTS),
+    ),
+    "pop_env": Element(_bare(PopEnvironment)),
+    "push_env": Element(_bare(PushEnvironment)),
     "push_namespace": NAMESPACE,
     "push_ros_namespace": NAMESPACE,
+    "rep_env": Element(_replace_env, (), (), ("env",)),
+    "reset": Element(_reset, (), (), ("keep",)),
+    "reset_env": Element(_bare(ResetEnvironment)),
+    "ros_timer": Element(_ros_timer, ("period",), (), None),
     "set_env": Element(_named(SetEnvironmentVariable), PAIR),
     "set_parameter": Element(_set_parameter, PAIR, ("type",)),
     "set_parameters_from_file": Element(
         _one(SetParametersFromFile, "filename", "filename"), ("filename",)
     ),
     "set_remap": Element(_set_remap, ("from", "to")),
+    "set_ros_log_dir": Element(_one(SetROSLogDir, "new_log_dir", "new_log_dir"), ("new_log_dir",)),
     "set_use_sim_time": Element(_one(SetUseSimTime, "value", "value"), ("value",)),
     "shutdown": Element(_shutdown, (), ("reason",)),
     "timer": Element(_timer, ("period",), (), None),

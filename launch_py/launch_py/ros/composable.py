@@ -1,7 +1,8 @@
 """Composable nodes, named as in ROS 2's `launch_ros`: each starts as a process of its own.
 
 A component is a library that a C++ container loads. Nothing can load one here, so a component that
-the suite or a package has a program for starts as that program. Any other is skipped, with a warning.
+the suite or a package has a program for starts as that program. Any other is skipped, with a
+warning.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ class ComposableNode:
         package: the package that the component is in.
         plugin: its class, such as "image_proc::RectifyNode".
         name: the node's name.
-        namespace: the node's namespace.
+        namespace: the node's namespace; as in ROS that of the container has no effect.
         parameters: as of `Node`.
         remappings: as of `Node`.
         extra_arguments: accepted as in ROS, without effect: they are for a container.
@@ -54,13 +55,13 @@ class ComposableNode:
         self.remappings = remappings
         self.condition = condition
 
-    def node(self, container_namespace: Text | None) -> Node:
+    def node(self) -> Node:
         """Return the action that starts it as a process."""
         return _ComponentNode(
             package=self.package,
             executable=self.plugin,
             name=self.name,
-            namespace=self.namespace if self.namespace is not None else container_namespace,
+            namespace=self.namespace,
             parameters=self.parameters,
             remappings=self.remappings,
             condition=self.condition,
@@ -74,13 +75,13 @@ class ComposableLifecycleNode(ComposableNode):
         super().__init__(**options)
         self.autostart = autostart
 
-    def node(self, container_namespace: Text | None) -> Node:
+    def node(self) -> Node:
         """Return the action that starts it as a process."""
         return _ComponentLifecycleNode(
             package=self.package,
             executable=self.plugin,
             name=self.name or "",
-            namespace=self.namespace or container_namespace or "",
+            namespace=self.namespace or "",
             parameters=self.parameters,
             remappings=self.remappings,
             condition=self.condition,
@@ -129,8 +130,7 @@ class LoadComposableNodes(Action):
     ) -> None:
         super().__init__(condition=condition)
         self.target_container = target_container
-        namespace = getattr(target_container, "namespace", None)
-        self.nodes = [node.node(namespace) for node in composable_node_descriptions]
+        self.nodes = [node.node() for node in composable_node_descriptions]
 
     def expand(self, context: LaunchContext) -> None:
         """Add the processes to the plan."""
@@ -151,7 +151,6 @@ class ComposableNodeContainer(LoadComposableNodes):
         self,
         *,
         name: Text,
-        namespace: Text | None = "",
         composable_node_descriptions: Iterable[ComposableNode] | None = None,
         condition: Condition | None = None,
         **options: Any,
@@ -160,7 +159,6 @@ class ComposableNodeContainer(LoadComposableNodes):
             composable_node_descriptions=composable_node_descriptions or (), condition=condition
         )
         self.name = name
-        self.namespace = namespace
 
     def describe(self) -> str:
         """Return its name in messages."""

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from launch_py.action import Action
+from launch_py.action import Action, steps_at_event
 from launch_py.actions.event_actions import EmittedEvent
 from launch_py.actions.execute_process import ExecuteProcess
 from launch_py.conditions import Condition
@@ -86,7 +86,8 @@ def change_state(context: LaunchContext, node: LifecycleNode, transitions: list[
     process = ExecuteProcess(cmd=words, name=f"{labels} {full_name}")
     # Whoever waits for the transition must hear it.
     process.depends_on = (node, *([] if node.watcher is None else [node.watcher]))
-    process.visit(context)
+    with context.plan.detached():  # It is no process of the node's own action.
+        process.visit(context)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,7 +165,7 @@ class OnStateTransition(EventHandler):
 
     Args:
         entities: the actions, or a function of the `StateTransition` and the context.
-        target_lifecycle_node: the node.
+        target_lifecycle_node: the node; without one, every LifecycleNode of the description.
         transition: the label of the transition, such as "configure"; None for any.
         start_state: the label of the state before it, such as "configuring".
         goal_state: the label of the state after it, such as "inactive".
@@ -181,8 +182,10 @@ class OnStateTransition(EventHandler):
         goal_state: str | None = None,
         handle_once: bool = False,
     ) -> None:
-        if not isinstance(target_lifecycle_node, LifecycleNode):
-            raise LaunchFileError("OnStateTransition needs target_lifecycle_node=, a LifecycleNode")
+        if not isinstance(target_lifecycle_node, LifecycleNode | None):
+            raise LaunchFileError(
+                "target_lifecycle_node= of OnStateTransition takes a LifecycleNode"
+            )
         self.node = target_lifecycle_node
         wanted = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
         super().__init__(
@@ -195,19 +198,21 @@ class OnStateTransition(EventHandler):
 
     def expand(self, context: LaunchContext) -> None:
         """Add the step that hears the node's transitions to the plan."""
-        watcher = self.node.watch(context)
-        context.plan.add(
-            OutputHandlerStep(
-                after=context.after,
-                delay_s=context.delay_s,
-                processes=(watcher,),
-                expand=self._expand_line(context),
+        every = [a for a in context.plan.surveyed_actions if isinstance(a, LifecycleNode)]
+        for node in every if self.node is None else [self.node]:
+            watcher = node.watch(context)
+            context.plan.add(
+                OutputHandlerStep(
+                    after=context.after,
+                    delay_s=context.delay_s,
+                    processes=(watcher,),
+                    expand=self._expand_line(context, node),
+                )
             )
-        )
 
-    def _expand_line(self, context: LaunchContext) -> Callable[[ProcessIO], Any]:
-        from launch_py.action import steps_at_event
-
+    def _expand_line(
+        self, context: LaunchContext, node: LifecycleNode
+    ) -> Callable[[ProcessIO], Any]:
         expand = steps_at_event(context, self.react)
 
         def take(line: ProcessIO) -> Any:
@@ -216,7 +221,7 @@ class OnStateTransition(EventHandler):
                 return ()
             names = ("start_state", "goal_state", "transition")
             fields = dict(zip(names, words, strict=True))
-            return expand(StateTransition(action=self.node, **fields))
+            return expand(StateTransition(action=node, **fields))
 
         return take
 

@@ -1,8 +1,8 @@
 """A program that takes a managed node through transitions, or prints those that it makes.
 
 `change NODE NUMBER...` waits for the node, makes the transitions in that order, and fails at the
-first one that fails. `watch NODE` prints a line for each transition: the labels of the states before
-and after it, and its own. It ends when the node does.
+first one that fails. `watch NODE` prints a line for each transition: the labels of the states
+before and after it, and its own. It ends when the node does.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ def main(words: Sequence[str]) -> int:
     """Run the program; return its exit code."""
     import rclpy
     from rclpy.executors import ExternalShutdownException
+    from rclpy.utilities import try_shutdown
 
     rclpy.init(args=[])
     node = rclpy.create_node("launch_lifecycle", start_parameter_services=False)
@@ -34,7 +35,7 @@ def main(words: Sequence[str]) -> int:
         return 0
     finally:
         node.destroy_node()
-        rclpy.try_shutdown()
+        try_shutdown()
 
 
 def _change(node: Node, name: str, numbers: Sequence[int]) -> int:

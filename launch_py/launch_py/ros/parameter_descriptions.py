@@ -3,22 +3,44 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, cast
 
 from launch_py.errors import LaunchError, NodeParameterError
 from launch_py.near_names import describe_missing_file
 from launch_py.plan.steps import GeneratedFile
 from launch_py.ros.parameters import ParameterValue, check_depth
 from launch_py.ros.substitution_parser import parse_substitutions
-from launch_py.substitution import LaunchScope, Text, perform_text
+from launch_py.substitution import LaunchScope, Substitution, Text, perform_text
 
 if TYPE_CHECKING:
     import yaml
 
 
-__all__ = ["ParameterFile", "ParameterValue"]
+__all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
 MAX_CHARACTERS = 20_000_000
+
+
+class Parameter(dict[Any, Any]):
+    """One parameter for a node's `parameters`: the dict of its name and its value.
+
+    Args:
+        name: its name.
+        value: its value.
+        value_type: see `ParameterValue`.
+        description: accepted as in ROS, without effect.
+    """
+
+    def __init__(
+        self, name: Text, value: Any, *, value_type: Any = None, description: Text = ""
+    ) -> None:
+        key = name if isinstance(name, str | Substitution) else tuple(cast("Iterable[Any]", name))
+        typed = value if value_type is None else ParameterValue(value, value_type=value_type)
+        super().__init__({key: typed})
+        self.name = name
+        self.value = value
+        self.value_type = value_type
 
 
 class ParameterFile:

@@ -8,21 +8,30 @@ from dataclasses import dataclass
 
 from launch_py.errors import SubstitutionError
 from launch_py.near_names import describe_known
-from launch_py.ros.substitutions import FindPackagePrefix, FindPackageShare
+from launch_py.ros.substitutions import (
+    ExecutableInPackage,
+    FindPackagePrefix,
+    FindPackageShare,
+    Parameter,
+)
 from launch_py.substitution import Substitution, Text
 from launch_py.substitutions import (
     AllSubstitution,
     AndSubstitution,
+    AnonName,
     AnySubstitution,
     Command,
     EnvironmentVariable,
     EqualsSubstitution,
+    FileContent,
     FindExecutable,
     IfElseSubstitution,
     LaunchConfiguration,
+    LaunchLogDir,
     NotEqualsSubstitution,
     NotSubstitution,
     OrSubstitution,
+    StringJoinSubstitution,
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
@@ -44,20 +53,27 @@ class _Kind:
 KINDS = {
     "all": _Kind(AllSubstitution, 1, MANY),
     "and": _Kind(AndSubstitution, 2, 2),
+    "anon": _Kind(AnonName),
     "any": _Kind(AnySubstitution, 1, MANY),
     "command": _Kind(Command),
     "dirname": _Kind(ThisLaunchFileDir, 0, 0),
     "env": _Kind(lambda name, value=None: EnvironmentVariable(name, default_value=value), 1, 2),
     "equals": _Kind(EqualsSubstitution, 2, 2),
     "eval": _Kind(SafeExpression, 1, 2),
+    "exec-in-pkg": _Kind(ExecutableInPackage, 2, 2),
+    "file-content": _Kind(FileContent),
     "filename": _Kind(ThisLaunchFile, 0, 0),
     "find-exec": _Kind(lambda name: FindExecutable(name=name)),
     "find-pkg-prefix": _Kind(FindPackagePrefix),
     "find-pkg-share": _Kind(FindPackageShare),
     "if": _Kind(IfElseSubstitution, 2, 3),
+    "launch_log_dir": _Kind(LaunchLogDir, 0, 0),
+    "log_dir": _Kind(LaunchLogDir, 0, 0),
     "not": _Kind(NotSubstitution),
     "not-equals": _Kind(NotEqualsSubstitution, 2, 2),
     "or": _Kind(OrSubstitution, 2, 2),
+    "param": _Kind(lambda name, value=None: Parameter(name, default=value), 1, 2),
+    "string-join": _Kind(lambda mark, *parts: StringJoinSubstitution(parts, mark), 2, MANY),
     "var": _Kind(lambda name, value=None: LaunchConfiguration(name, default=value), 1, 2),
 }
 

@@ -25,7 +25,7 @@ class PathJoinSubstitution(Substitution):
         return "/".join(describe_text(part) for part in self.parts)
 
     def __truediv__(self, part: Text) -> PathJoinSubstitution:
-        return PathJoinSubstitution([*self.parts, part])
+        return PathJoinSubstitution([self, part])
 
 
 class PathSubstitution(PathJoinSubstitution):

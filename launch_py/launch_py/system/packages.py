@@ -248,6 +248,14 @@ class Packages:
         known = describe_known(name, files | {script.name for script in own}, "it has")
         raise NotFoundError(f"package {package!r} has no executable {name!r}; {known}")
 
+    def executable_file(self, package: str, name: str) -> str | None:
+        """Return the path of an executable in <prefix>/lib/<package>, None if there is none."""
+        for prefix in self._prefixes:
+            path = os.path.join(prefix, "lib", package, name)
+            if os.path.isfile(path) and os.access(path, os.X_OK):
+                return path
+        return None
+
     def node_names(self, executable: str) -> list[str]:
         """Return the default names of the nodes that an executable creates.
 

@@ -216,7 +216,7 @@ def test_parameters_for_all_nodes(ros_file, demo):
         ('<let name="a" value="$(vra b)"/>', r"line 2: no substitution $(vra); "),
         ('<log message="a" if="1" unless="1"/>', "line 2: log has both 'if' and 'unless'"),
         ('<group scoped="maybe"/>', "line 2: scoped='maybe' is neither true nor false"),
-        ("<node_container/>", "line 2: no action 'node_container' here; there are no composable"),
+        ("<node_container/>", "line 2: node_container lacks 'pkg'"),
         ("words", "line 2: 'words' is outside an attribute"),
         ("<node", "line 3: not XML: not well-formed (invalid token)"),
     ],
@@ -273,3 +273,41 @@ def test_errors_of_substitutions_are_reported_with_their_line(ros_file, body, sa
     with pytest.raises(LaunchError) as caught:
         expand(path)
     assert str(caught.value).startswith(f"{path}, {said}")
+
+
+def test_containers_managed_nodes_and_settings(ros_file):
+    path = ros_file(
+        """<launch>
+          <let name="a" value="1"/>
+          <node_container pkg="rclcpp_components" exec="component_container" name="box"
+              namespace="">
+            <composable_node pkg="robot_state_publisher" name="rsp" namespace="left"
+                plugin="robot_state_publisher::RobotStatePublisher">
+              <param name="robot_description" value="x"/>
+              <extra_arg name="use_intra_process_comms" value="true"/>
+            </composable_node>
+          </node_container>
+          <load_composable_node target="box">
+            <composable_node pkg="image_proc" plugin="image_proc::RectifyNode"/>
+          </load_composable_node>
+          <lifecycle_node pkg="robot_state_publisher" exec="robot_state_publisher" name="managed"
+              namespace="" autostart="true"/>
+          <push_env/>
+          <rep_env><env name="B" value="2"/></rep_env>
+          <set_ros_log_dir new_log_dir="/tmp/x"/>
+          <ros_timer period="1"><log message="$(env B) $(string-join - a $(var a))"/></ros_timer>
+          <pop_env/>
+          <reset><keep name="b" value="$(var a)"/></reset>
+          <log message="$(var a unset) $(var b)"/>
+          <reset_env/>
+        </launch>"""
+    )
+    plan = expand_description(read_launch_file(path), {}, dict(os.environ), path)
+    assert [step.name for step in plan.processes] == [
+        "rsp",
+        "managed",
+        "configure activate /managed",
+    ]
+    texts = [step.text for step in plan.steps if isinstance(step, MessageStep)]
+    assert texts == ["2 a-1", "unset 1"]
+    assert plan.warnings[0].startswith("the composable node image_proc::RectifyNode of image_proc")
