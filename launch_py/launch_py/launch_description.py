@@ -35,9 +35,8 @@ class LaunchDescription:
     def visit(self, context: LaunchContext) -> None:
         """Expand all actions in this scope."""
         if self.deprecated_reason is not None:
-            context.warnings.append(
-                f"launch file [{_name(context.launch_file)}] is deprecated: {self.deprecated_reason}"
-            )
+            name = _name(context.launch_file)
+            context.warnings.append(f"launch file [{name}] is deprecated: {self.deprecated_reason}")
         for entity in self.entities:
             entity.visit(context)
 

@@ -307,7 +307,7 @@ def test_a_restart_policy_is_asked_for():
 
 
 def test_an_unknown_event_is_refused():
-    with pytest.raises(LaunchFileError, match=r"EmitEvent takes events\.Shutdown.*, not 'stop'"):
+    with pytest.raises(LaunchFileError, match=r"EmitEvent takes an event, not 'stop'"):
         EmitEvent(event="stop")  # pyright: ignore[reportArgumentType]
 
 
