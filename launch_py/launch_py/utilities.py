@@ -42,7 +42,7 @@ def ensure_argument_type(
     argument: object, types: type | Iterable[type], argument_name: str, caller: object = None
 ) -> None:
     """Raise a LaunchFileError if an argument has none of these types."""
-    wanted = (types,) if isclass(types) else tuple(types)
+    wanted = (types,) if isinstance(types, type) else tuple(types)
     if not isinstance(argument, wanted):
         names = " or ".join(kind.__name__ for kind in wanted)
         whose = f" of {caller}" if caller else ""
