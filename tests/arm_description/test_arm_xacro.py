@@ -16,6 +16,7 @@ from arm_description import (
     parse_xml,
     resolve_uri,
 )
+from arm_gazebo.errors import SensorError
 from arm_gazebo.sensors.camera_reader import parse_cameras
 
 ARM = "package://arm_description/urdf/arm.urdf.xacro"
@@ -270,6 +271,30 @@ def test_the_camera_of_ros_1_is_the_large_one_on_absolute_topics():
     assert camera.info_topics[-1] == "/camera/camera_info"
 
 
+@pytest.mark.parametrize("profile", ["standard", "large", "ros1"])
+def test_the_camera_has_the_size_and_the_field_of_view_that_are_given(profile):
+    given = {"camera_width": "1280", "camera_height": "720", "camera_hfov": "1.2"}
+    (camera,) = parse_cameras(expand(camera_profile=profile, **given))
+    assert (camera.width, camera.height, camera.hfov) == (1280, 720, 1.2)
+    (plain,) = parse_cameras(expand(camera_profile=profile))
+    assert (camera.image_topics, camera.near) == (plain.image_topics, plain.near)
+    (wider,) = parse_cameras(expand(camera_profile=profile, camera_width="1000"))
+    assert (wider.width, wider.height, wider.hfov) == (1000, plain.height, plain.hfov)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"camera_width": "0"}, "<image/width> .* a whole number from 1 to 8192, not '0'"),
+        ({"camera_height": "2.5"}, "<image/height> .* a whole number from 1 to 8192, not '2.5'"),
+        ({"camera_hfov": "0"}, "<horizontal_fov> .* in \\(0, pi\\), not '0'"),
+    ],
+)
+def test_a_camera_of_no_size_is_refused(arguments, said):
+    with pytest.raises(SensorError, match=said):
+        parse_cameras(expand(**arguments))
+
+
 def test_the_camera_has_the_pose_and_the_box_that_are_given():
     robot = arm(
         base="free", camera_xyz="0 0 0", camera_rpy="0 0 -1.57", camera_box="0.03 0.03 0.03",
@@ -319,6 +344,8 @@ def test_without_a_camera_there_is_no_sensor():
             "camera_profile:=huge is not a choice; camera_profile can be standard, large, ros1",
         ),
         ({"camera_xyz": "1 2"}, "camera_xyz:=1 2 has 2 numbers; it takes 3"),
+        ({"camera_width": "wide"}, "camera_width has 'wide', which is not a number"),
+        ({"camera_hfov": "1 2"}, "camera_hfov:=1 2 has 2 numbers; it takes 1"),
         ({"servo_rgba": "1 grey 0 1"}, "servo_rgba has 'grey', which is not a number"),
         (
             {"camera": "none", "camera_profile": "huge"},

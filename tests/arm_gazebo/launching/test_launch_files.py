@@ -169,6 +169,11 @@ def test_ros_1_has_the_side_camera_on_its_own_topics():
     assert chosen.image_topics == ("videocamera",)
 
 
+def test_the_camera_has_any_size_and_field_of_view():
+    camera = camera_of(camera_width="1280", camera_height="720", camera_hfov="1.2")
+    assert (camera.width, camera.height, camera.hfov) == (1280, 720, 1.2)
+
+
 # Where the camera is in base_link, and the colour of the box around it, by course.
 COURSE_CAMERAS = {
     "S0": ((0.0, -0.05, 0.0), (0.0, -0.2, -1.57), None),
