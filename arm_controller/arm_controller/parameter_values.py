@@ -2,13 +2,14 @@
 
 from array import array
 from collections.abc import Sequence
+from dataclasses import dataclass
 from string import Formatter
 
 from arm_controller.joint_pose import JointPose
 from arm_node.parameter_values import (
+    NumberReader,
     ParameterValueError,
     numbers_in,
-    read_number,
     read_numbers,
     read_text,
     read_texts,
@@ -40,55 +41,36 @@ def read_joint_format(value: object) -> str:
     return text
 
 
-def read_positive(value: object) -> float:
-    """Return a number above 0, up to `MAX_NUMBER`.
-
-    Raises:
-        ParameterValueError: the value is something else.
-    """
-    wanted = "a number above 0"
-    number = _up_to_largest(value, wanted)
-    if number <= 0:
-        raise refusal(wanted, value)
-    return number
+read_positive = NumberReader(f"a number above 0, at most {MAX_NUMBER:g}", 0.0, MAX_NUMBER, True)
+read_zero_or_more = NumberReader(f"a number from 0 to {MAX_NUMBER:g}", 0.0, MAX_NUMBER)
 
 
-def read_zero_or_more(value: object) -> float:
-    """Return a number from 0 up to `MAX_NUMBER`.
+@dataclass(frozen=True, slots=True)
+class _RateReader(NumberReader):
+    """Reads a rate in Hz, 0 for never; its period is at most `MAX_NUMBER`."""
 
-    Raises:
-        ParameterValueError: the value is something else.
-    """
-    wanted = "a number of at least 0"
-    number = _up_to_largest(value, wanted)
-    if number < 0:
-        raise refusal(wanted, value)
-    return number
+    def __call__(self, value: object) -> float:
+        """Return the rate."""
+        rate = NumberReader.__call__(self, value)
+        least = 1.0 / MAX_NUMBER
+        if 0.0 < rate < least:
+            raise refusal(f"0 or at least {least:g}", value)
+        return rate
 
 
-def read_rate(value: object) -> float:
-    """Return a rate in Hz, 0 for never; its period is at most `MAX_NUMBER`.
-
-    Raises:
-        ParameterValueError: the value is something else.
-    """
-    rate = read_zero_or_more(value)
-    least = 1.0 / MAX_NUMBER
-    if 0.0 < rate < least:
-        raise refusal(f"0 or at least {least:g}", value)
-    return rate
+read_rate = _RateReader(read_zero_or_more.wanted, 0.0, MAX_NUMBER)
 
 
 def read_pose(value: object, joint_names: Sequence[str]) -> JointPose | None:
-    """Return a pose, or None for a parameter that is not set.
+    """Return a pose, or None for an empty list.
 
     Raises:
         ParameterValueError: the value is not a list.
         PoseError: the list is not a pose.
     """
-    if value is None:
-        return None
     values = numbers_in(value)
+    if isinstance(values, list | tuple | array) and not values:
+        return None
     # The parameter service delivers an array.
     if not isinstance(values, list | tuple | array):
         raise refusal(f"a list of {len(joint_names)} numbers", value)
@@ -121,10 +103,3 @@ def read_place(value: object) -> tuple[float, float]:
     if len(numbers) != 2:
         raise refusal(wanted, value)
     return numbers[0], numbers[1]
-
-
-def _up_to_largest(value: object, wanted: str) -> float:
-    number = read_number(value, wanted)
-    if number > MAX_NUMBER:
-        raise refusal(f"at most {MAX_NUMBER:g}", value)
-    return number

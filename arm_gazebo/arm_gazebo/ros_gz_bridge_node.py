@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_gazebo.errors import GazeboError
+from arm_node.parameter_values import ParameterValueError, read_text
 from arm_node.task import run_task
 
 if TYPE_CHECKING:
@@ -44,12 +45,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     at = words.index("--ros-args") if "--ros-args" in words else len(words)
 
     def task(node: "Node", process: "NodeProcess") -> int:
-        file = str(node.declare_parameter("config_file", "").value)
+        from arm_node.parameters import declare
+
+        file = declare(node, "config_file", "", read_text, "YAML file with the topics to bridge")
         topics = [parse(word) for word in words[:at] if not word.startswith("-")]
         bridge(node, process, [*topics, *(read_config(Path(file)) if file else ())])
         return 0
 
-    return run_task("ros_gz_bridge", task, [program, *words[at:]], (GazeboError,))
+    return run_task(
+        "ros_gz_bridge", task, [program, *words[at:]], (GazeboError, ParameterValueError)
+    )
 
 
 def parse(word: str) -> Bridged:

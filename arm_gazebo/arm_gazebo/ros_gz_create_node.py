@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_gazebo.errors import GazeboError
+from arm_node.parameter_values import ParameterValueError, read_text
 from arm_node.process import EXIT_FAILED, EXIT_OK
 from arm_node.task import run_task
 
@@ -32,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     def task(node: "Node", process: "NodeProcess") -> int:
         return create(node, process, options)
 
-    return run_task("ros_gz_sim", task, [program, *words[at:]], (GazeboError,))
+    return run_task("ros_gz_sim", task, [program, *words[at:]], (GazeboError, ParameterValueError))
 
 
 def parser() -> argparse.ArgumentParser:
@@ -111,7 +112,9 @@ def description_of(node: "Node", process: "NodeProcess", options: argparse.Names
     if options.string:
         return options.string
     if options.param:
-        return str(node.declare_parameter(options.param, "").value)
+        from arm_node.parameters import declare
+
+        return declare(node, options.param, "", read_text, "the description to spawn")
     if options.file:
         try:
             return Path(options.file.removeprefix("file://")).read_text(encoding="utf-8")

@@ -9,6 +9,7 @@ the message says what the value must be, and `read_parameter` adds the name.
 import math
 from array import array
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard, TypeVar
 
@@ -45,25 +46,57 @@ def read_flag(value: object) -> bool:
     return value
 
 
-def read_integer(value: object, wanted: str = "a whole number") -> int:
-    """Return a whole number."""
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise refusal(wanted, value)
-    return value
+@dataclass(frozen=True, slots=True)
+class IntegerReader:
+    """Reads a whole number.
+
+    Attributes:
+        wanted: what the value must be, in words.
+        least: smallest allowed value.
+        most: largest allowed value.
+    """
+
+    wanted: str = "a whole number"
+    least: float = -math.inf
+    most: float = math.inf
+
+    def __call__(self, value: object) -> int:
+        """Return the number."""
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise refusal(self.wanted, value)
+        if not self.least <= value <= self.most:
+            raise refusal(self.wanted, value)
+        return value
 
 
-def read_number(value: object, wanted: str = "a finite number") -> float:
-    """Return a finite number."""
-    if not is_finite(value):
-        raise refusal(wanted, value)
-    return float(value)
+@dataclass(frozen=True, slots=True)
+class NumberReader:
+    """Reads a finite number.
+
+    Attributes:
+        wanted: what the value must be, in words.
+        least: smallest allowed value.
+        most: largest allowed value.
+        above: whether the value must be above `least`.
+    """
+
+    wanted: str
+    least: float = -math.inf
+    most: float = math.inf
+    above: bool = False
+
+    def __call__(self, value: object) -> float:
+        """Return the number."""
+        if not is_finite(value) or not self.least <= value <= self.most:
+            raise refusal(self.wanted, value)
+        if self.above and value == self.least:
+            raise refusal(self.wanted, value)
+        return float(value)
 
 
-def read_non_negative(value: object) -> float:
-    """Return a finite number of at least 0."""
-    if not is_number(value) or not 0.0 <= value < math.inf:
-        raise refusal("a finite number of at least 0", value)
-    return float(value)
+read_integer = IntegerReader()
+read_number = NumberReader("a finite number")
+read_non_negative = NumberReader("a finite number of at least 0", least=0.0)
 
 
 def read_text(value: object, wanted: str = "a text") -> str:
@@ -148,6 +181,14 @@ def refusal(wanted: str, value: object) -> ParameterValueError:
     error = ParameterValueError(f"must be {wanted}, not {value!r}")
     error.wanted = wanted
     return error
+
+
+def range_of(read: Reader[object]) -> tuple[float, float] | None:
+    """Return the smallest and largest number that a reader accepts; None if there is no bound."""
+    if not isinstance(read, IntegerReader | NumberReader):
+        return None
+    bounds = (read.least, read.most)
+    return None if bounds == (-math.inf, math.inf) else bounds
 
 
 def wanted_by(read: Reader[object]) -> str:

@@ -25,20 +25,20 @@ def test_a_number_may_be_an_integer(value):
 
 @pytest.mark.parametrize("value", [0, -1.5, float("nan"), float("inf"), "2", True, None, [2.0]])
 def test_refuses_a_value_that_is_not_a_positive_number(value):
-    with pytest.raises(ParameterValueError, match="must be a number above 0, not"):
+    with pytest.raises(ParameterValueError, match=r"must be a number above 0, at most 1e\+09, not"):
         read_positive(value)
 
 
 def test_zero_may_be_allowed():
     assert read_zero_or_more(0) == 0.0
-    with pytest.raises(ParameterValueError, match="must be a number of at least 0, not -1"):
+    with pytest.raises(ParameterValueError, match=r"must be a number from 0 to 1e\+09, not -1"):
         read_zero_or_more(-1)
 
 
 @pytest.mark.parametrize("value", [1.1e9, 2**62])
 def test_a_number_that_no_timer_can_count_is_refused(value: float):
     assert read_positive(1e9) == 1e9
-    with pytest.raises(ParameterValueError, match=r"must be at most 1e\+09, not"):
+    with pytest.raises(ParameterValueError, match=r"must be .*, at most 1e\+09, not"):
         read_positive(value)
 
 

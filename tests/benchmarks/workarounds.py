@@ -247,7 +247,7 @@ FIGURES = {
         f"processor of the simulation at {RATE_HZ} Hz",
         "%",
         lambda: processor_of("arm_gazebo_node"),
-        ("message_template", "stamp_clock"),
+        ("message_template", "stamp_clock", "process_clock"),
     ),
     "publisher": Figure(
         f"processor of robot_state_publisher at {RATE_HZ} Hz",

@@ -1,5 +1,7 @@
 """The node arm_controller_node: publishes the pose in a parameter, and prints joint states."""
 
+from array import array
+
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -20,6 +22,7 @@ from arm_controller.ros.command_publisher import POLL_S, CommandPublisher
 from arm_controller.ros.joint_state_input import JointStateInput
 from arm_controller.ros.parameters import declare, declare_course, declare_joints
 from arm_node.parameter_values import ParameterValueError, read_flag, read_text
+from arm_node.parameters import take_other_notations
 from arm_node.printable import printable
 
 WAIT_WARNING_S = 5.0
@@ -87,7 +90,7 @@ class ArmController(Node):
         pose = declare(
             self,
             "desired_param",
-            None,
+            array("d"),
             self._read_pose,
             "Pose to publish: a list of numbers, one per joint; each setting publishes it once",
             read_only=False,
@@ -100,6 +103,7 @@ class ArmController(Node):
             "Interval at which the joint states are printed (s); 0 = never",
             read_only=False,
         )
+        take_other_notations(self, "desired_param")
         self._want(pose)
         self._print_every(period_s)
         self.add_on_set_parameters_callback(self._check_parameters)

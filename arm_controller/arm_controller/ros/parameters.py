@@ -12,9 +12,8 @@ from arm_node.parameter_values import (
     Value,
     one_of,
     read_nonempty_text,
-    wanted_by,
 )
-from arm_node.parameters import declare_untyped
+from arm_node.parameters import declare_from, given_parameters
 
 COURSE = "course"
 
@@ -36,13 +35,12 @@ def declare(
     Raises:
         ParameterValueError: `read` refuses the given value.
     """
+    given = given_parameters(node)
     if node.has_parameter(COURSE):
         course = node.get_parameter(COURSE).value
-        default = course_parameters(course, node.get_name()).get(name, default)
+        given = {**course_parameters(course, node.get_name()), **given}
     try:
-        return read(
-            declare_untyped(node, name, default, description, wanted_by(read), read_only=read_only)
-        )
+        return declare_from(given, node, name, default, read, description, read_only=read_only)
     except (ArmControllerError, ParameterValueError, ParameterException) as error:
         raise ParameterValueError(f"parameter {name}: {error}") from error
 

@@ -1,6 +1,6 @@
 """Checks the parameters of joint_state_publisher."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -8,15 +8,15 @@ from typing import Any
 from arm_description.errors import SettingsError
 from arm_description.urdf.mimic import Mimic
 from arm_node.parameter_values import (
+    IntegerReader,
     ParameterValueError,
     Reader,
     Value,
     read_flag,
-    read_integer,
     read_number,
     read_parameter,
+    read_text,
     read_texts,
-    refusal,
 )
 
 ZEROS = "zeros."
@@ -96,6 +96,21 @@ def _dependences(parameters: Mapping[str, Any]) -> dict[str, Mimic]:
     return {joint: _dependence(joint, keys) for joint, keys in found.items()}
 
 
+def named_after_joints(given: Iterable[str]) -> dict[str, tuple[Any, Reader[Any], str]]:
+    """Return those of the given parameters that are named after joints, as in `PARAMETERS`.
+
+    Args:
+        given: names of parameters that `JointPublisherSettings.from_parameters` accepts.
+    """
+    found: dict[str, tuple[Any, Reader[Any], str]] = {}
+    for name in given:
+        if name.startswith(ZEROS):
+            found[name] = (0.0, read_number, "initial position of the joint (rad or m)")
+        elif name.startswith(DEPENDENT_JOINTS):
+            found[name] = _OF_A_DEPENDENT_JOINT[name.rpartition(".")[2]]
+    return found
+
+
 def _dependence(joint: str, keys: Mapping[str, Any]) -> Mimic:
     name = f"{DEPENDENT_JOINTS}{joint}"
     parent = keys.get("parent")
@@ -108,16 +123,18 @@ def _dependence(joint: str, keys: Mapping[str, Any]) -> Mimic:
     )
 
 
-def _read_rate(value: object) -> int:
-    wanted = "an integer from 1 to 10000 (Hz)"
-    rate = read_integer(value, wanted)
-    if not 1 <= rate <= 10_000:
-        raise refusal(wanted, value)
-    return rate
-
+_OF_A_DEPENDENT_JOINT: dict[str, tuple[Any, Reader[Any], str]] = {
+    "parent": ("", read_text, "joint that the dependent joint follows"),
+    "factor": (1.0, read_number, "ratio of its position to that of the parent"),
+    "offset": (0.0, read_number, "position when that of the parent is 0 (rad or m)"),
+}
 
 PARAMETERS: dict[str, tuple[Any, Reader[Any], str]] = {
-    "rate": (10, _read_rate, "messages per second"),
+    "rate": (
+        10,
+        IntegerReader("an integer from 1 to 10000 (Hz)", 1, 10_000),
+        "messages per second",
+    ),
     "source_list": (
         [],
         partial(read_texts, wanted="a list of topics"),

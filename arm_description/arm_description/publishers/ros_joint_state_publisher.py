@@ -17,14 +17,12 @@ from arm_description.errors import (
 )
 from arm_description.publishers.joint_document import read_joints
 from arm_description.publishers.joint_publisher_settings import (
-    DEPENDENT_JOINTS,
     PARAMETERS,
-    ZEROS,
     JointPublisherSettings,
+    named_after_joints,
 )
 from arm_description.publishers.joint_state_merge import JointStateMerge
-from arm_node.parameter_values import wanted_by
-from arm_node.parameters import declare_untyped
+from arm_node.parameters import declare, given_parameters
 from arm_node.printable import printable, printable_message
 
 LOG_INTERVAL_S = 5.0
@@ -53,15 +51,13 @@ class JointStatePublisher(Node):
                 because then no joint state is valid.
         """
         super().__init__("joint_state_publisher")
-        for name, (default, read, about) in PARAMETERS.items():
-            fixed = name not in CHANGEABLE
-            declare_untyped(self, name, default, about, wanted_by(read), read_only=fixed)
-        named_after_joints = self._parameters_named_after_joints()
-        for name in named_after_joints:
-            declare_untyped(self, name, None, "", read_only=True)
-        self._names = [*PARAMETERS, *named_after_joints]
+        given = given_parameters(self)
+        self._settings = JointPublisherSettings.from_parameters(given)
+        table = {**PARAMETERS, **named_after_joints(given)}
+        for name, (default, read, about) in table.items():
+            declare(self, name, default, read, about, read_only=name not in CHANGEABLE)
+        self._names = list(table)
         self._fail = fail
-        self._settings = self._checked([])
         self._merge: JointStateMerge | None = None
         if description is not None:
             self._merge = JointStateMerge(read_joints(description), self._settings)
@@ -72,13 +68,6 @@ class JointStatePublisher(Node):
         self._timer = self.create_timer(1.0 / self._settings.rate_hz, self._publish)
         self.add_on_set_parameters_callback(self._refuse_or_accept)
         self.add_post_set_parameters_callback(self._take_parameters)
-
-    def _parameters_named_after_joints(self) -> list[str]:
-        # The given parameters, declared or not. rclpy's option to declare all given ones fails on
-        # an empty list in a YAML file.
-        with self.handle:
-            given = self.handle.get_parameters(Parameter)
-        return [name for name in given if name.startswith((ZEROS, DEPENDENT_JOINTS))]
 
     def _checked(self, changes: list[Parameter]) -> JointPublisherSettings:
         values = {name: self.get_parameter(name).value for name in self._names}

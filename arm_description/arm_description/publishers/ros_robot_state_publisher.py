@@ -28,8 +28,8 @@ from arm_description.publishers.state_throttle import StateThrottle
 from arm_description.urdf.parser import parse_urdf
 from arm_node.executor_thread import ExecutorThread
 from arm_node.names import listing
-from arm_node.parameter_values import read_flag, read_text, wanted_by
-from arm_node.parameters import declare_untyped
+from arm_node.parameter_values import read_flag, read_text
+from arm_node.parameters import declare_from, given_parameters
 from arm_node.printable import printable
 from arm_node.user_file import read_text as read_file_text
 from arm_node.workarounds.joint_state_encoding import (
@@ -115,11 +115,12 @@ class RobotStatePublisher(Node):
     def __init__(self, namespace: str = "", urdf_file: str | None = None) -> None:
         super().__init__("robot_state_publisher", namespace=namespace)
         self._stamp_clock = StampClock(self)
+        given = given_parameters(self)
+        if urdf_file is not None and not given.get("robot_description"):
+            given["robot_description"] = self._text_of(urdf_file)
+        self._settings = StatePublisherSettings.from_parameters(given)
         for name, (default, read, description) in _PARAMETERS.items():
-            declare_untyped(self, name, default, description, wanted_by(read), read_only=False)
-        if urdf_file is not None and not self.get_parameter("robot_description").value:
-            self._take_file(urdf_file)
-        self._settings = self._checked(())
+            declare_from(given, self, name, default, read, description, read_only=False)
         self._tree = TransformTree(parse_urdf(self._settings.robot_description))
         self._throttle = StateThrottle(self._settings.publish_frequency_hz)
         self._groups: dict[tuple[str, ...], _TransformGroup] = {}
@@ -153,8 +154,8 @@ class RobotStatePublisher(Node):
         self._publish_description()
         self._publish_static()
 
-    def _take_file(self, path: str) -> None:
-        """Set robot_description from a file.
+    def _text_of(self, path: str) -> str:
+        """Return the description in a file that an argument names.
 
         Raises:
             SettingsError: the file cannot be read.
@@ -165,11 +166,10 @@ class RobotStatePublisher(Node):
             "removed in the future."
         )
         try:
-            text = read_file_text(path)
+            return read_file_text(path)
         except (OSError, UnicodeError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise SettingsError(f"Failed to open URDF file: {path}: {reason}") from error
-        self.set_parameters([Parameter("robot_description", value=text)])
 
     def _checked(self, changes: Sequence[Parameter]) -> StatePublisherSettings:
         values = {name: self.get_parameter(name).value for name in _PARAMETERS}

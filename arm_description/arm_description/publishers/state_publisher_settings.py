@@ -6,17 +6,16 @@ from functools import partial
 
 from arm_description.errors import SettingsError
 from arm_node.parameter_values import (
+    NumberReader,
     ParameterValueError,
     Reader,
     Value,
-    is_number,
     read_flag,
     read_parameter,
     read_text,
-    refusal,
 )
 
-HIGHEST_FREQUENCY_HZ = 1000.0
+read_frequency = NumberReader("between 0 and 1000 Hz", 0.0, 1000.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,14 +62,3 @@ class StatePublisherSettings:
             )
         except ParameterValueError as error:
             raise SettingsError(str(error)) from error
-
-
-def read_frequency(value: object) -> float:
-    """Return a frequency in Hz.
-
-    Raises:
-        ParameterValueError: the value is something else.
-    """
-    if not is_number(value) or not 0.0 <= value <= HIGHEST_FREQUENCY_HZ:
-        raise refusal("between 0 and 1000 Hz", value)
-    return float(value)

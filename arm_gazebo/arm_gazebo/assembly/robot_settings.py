@@ -1,6 +1,7 @@
 """The settings of one robot."""
 
 import os
+from array import array
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -17,6 +18,7 @@ from arm_node.parameter_values import (
     read_words,
 )
 
+NO_NUMBERS = array("d")
 BASES = ("fixed", "free")
 
 
@@ -82,7 +84,7 @@ def read_robots(value: Parameters) -> tuple[RobotSettings, ...]:
     Raises:
         ParameterValueError: a value is invalid, or a name occurs twice.
     """
-    names = value("robots", None, read_words, "namespaces of several robots; none for a single one")
+    names = value("robots", (), read_words, "namespaces of several robots; none for a single one")
     if not names:
         return (_read_robot(value, ""),)
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -99,7 +101,7 @@ def _read_robot(parameters: Parameters, namespace: str) -> RobotSettings:
     return RobotSettings(
         namespace=namespace,
         robot_description=value("robot_description", "", _read_description, "the URDF"),
-        spawn=value("spawn", None, read_words, "controllers to start with the simulation"),
+        spawn=value("spawn", (), read_words, "controllers to start with the simulation"),
         spawn_required=value(
             "spawn_required", True, read_flag, "a controller that cannot start ends the simulation"
         ),
@@ -110,7 +112,7 @@ def _read_robot(parameters: Parameters, namespace: str) -> RobotSettings:
             f"how a root link other than 'world' is attached: {', '.join(BASES)}",
         ),
         pose=value(
-            "pose", None, _read_pose, "x y z roll pitch yaw of the robot's root, in m and rad"
+            "pose", NO_NUMBERS, _read_pose, "x y z roll pitch yaw of the robot's root, in m and rad"
         ),
         on_floor=value(
             "on_floor", False, read_flag, "a free robot stands on the floor at its pose"
@@ -132,7 +134,7 @@ def _read_description(value: object) -> str:
 
 
 def _read_pose(value: object) -> Pose | None:
-    numbers = read_numbers([] if value in (None, "") else value)
+    numbers = read_numbers([] if isinstance(value, str) and not value else value)
     if not numbers:
         return None
     if len(numbers) != 6:

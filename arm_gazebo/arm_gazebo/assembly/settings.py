@@ -6,16 +6,18 @@ from arm_gazebo.assembly.robot_settings import Parameters, RobotSettings, read_r
 from arm_gazebo.rendering.backend_selection import PREFERENCES
 from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_node.parameter_values import (
+    NumberReader,
     one_of,
     read_flag,
     read_integer,
     read_non_negative,
     read_text,
     read_words,
-    refusal,
 )
 
 PARTNERS = "stamped topics, or nodes by their ~/tick_done, that answer each control period first"
+read_above_zero = NumberReader("a finite number above 0", least=0.0, above=True)
+_read_gain = NumberReader("a number from 0 to 1", least=0.0, most=1.0)
 LONGEST_SILENCE = "seconds of wall time without an answer after which the simulation is paused"
 
 
@@ -88,7 +90,7 @@ def read_settings(value: Parameters) -> SimulationSettings:
         )
         or None,
         paused=value("paused", False, read_flag, "start paused"),
-        lockstep=value("lockstep", None, read_words, PARTNERS),
+        lockstep=value("lockstep", (), read_words, PARTNERS),
         lockstep_timeout_s=value(
             "lockstep_timeout", 10.0, read_above_zero, LONGEST_SILENCE, read_only=False
         ),
@@ -124,21 +126,6 @@ def read_settings(value: Parameters) -> SimulationSettings:
             read_only=False,
         ),
     )
-
-
-def read_above_zero(value: object) -> float:
-    """Return a finite number above 0."""
-    number = read_non_negative(value)
-    if not number:
-        raise refusal("a finite number above 0", value)
-    return number
-
-
-def _read_gain(value: object) -> float:
-    gain = read_non_negative(value)
-    if gain > 1.0:
-        raise refusal("a number from 0 to 1", value)
-    return gain
 
 
 def _limit(value: Parameters, default: MemoryLimit, whose: str) -> MemoryLimit:

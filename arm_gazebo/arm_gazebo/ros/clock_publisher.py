@@ -6,6 +6,7 @@ from rosgraph_msgs.msg import Clock
 
 from arm_control.loop.outbox import Outbox
 from arm_node.workarounds.message_template import MessageTemplate, raw_sender
+from arm_node.workarounds.process_clock import ProcessClock
 
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that both default and best-effort subscribers match."""
@@ -16,6 +17,9 @@ class RosClockPublisher:
 
     It is also the clock of this process (see `arm_control.loop.clock.Clock`), because the time that
     it published last is the time that every other node uses.
+
+    Attributes:
+        of_nodes: the same clock for the nodes of this process.
     """
 
     def __init__(self, node: Node, outbox: Outbox) -> None:
@@ -33,6 +37,7 @@ class RosClockPublisher:
         self._topic = self._publisher.topic_name
         self._message = MessageTemplate(Clock())
         self._time_s = 0.0
+        self.of_nodes = ProcessClock(lambda: round(self._time_s * 1e9))
 
     def now_s(self) -> float:
         """Return the last published time; any thread."""
@@ -41,6 +46,7 @@ class RosClockPublisher:
     def publish(self, time_s: float) -> None:
         """Publish a simulation time."""
         self._time_s = time_s
+        self.of_nodes.advance()
         if self._publisher.get_subscription_count():
             self._message.set_stamps(round(time_s * 1e9))
             self._outbox.put(self._send, self._message.to_bytes())

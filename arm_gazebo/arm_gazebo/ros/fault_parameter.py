@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from functools import partial
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
@@ -14,23 +15,25 @@ from arm_gazebo.errors import FaultError
 from arm_gazebo.faults.fault import USAGE, Fault, read_fault
 from arm_gazebo.faults.injector import FaultInjector
 from arm_node.parameter_values import ParameterValueError, read_texts
-from arm_node.parameters import declare_untyped
+from arm_node.parameters import declare, take_other_notations
 
 PARAMETER = "faults"
 LOOP_TIMEOUT_S = 10.0
 
 logger = logging.getLogger(__name__)
 
+_KINDS = "; ".join(f"{kind.value} {words}" for kind, words in USAGE.items())
+_read_names = partial(read_texts, wanted=f"a list of texts, each one of: {_KINDS}")
+
 
 def declare_faults(node: Node) -> None:
     """Declare the parameter, without any faults."""
-    kinds = "; ".join(f"{kind.value} {words}" for kind, words in USAGE.items())
-    declare_untyped(
+    declare(
         node,
         PARAMETER,
         [],
+        _read_names,
         "faults for tests; each lasts as long as it is listed",
-        f"a list of texts, each one of: {kinds}",
         read_only=False,
     )
 
@@ -52,13 +55,13 @@ class FaultParameter:
         self._injector = injector
         self._loop = loop
         declare_faults(node)
+        take_other_notations(node, PARAMETER)
         node.add_on_set_parameters_callback(self._take)
 
     def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
         try:
             for parameter in changed:
                 if parameter.name == PARAMETER:
-                    # An empty list has no type of its own in ROS, so it may arrive with any.
                     wanted = [read_fault(text) for text in read_texts(list(parameter.value or ()))]
                     self._loop.call(lambda faults=wanted: self._change(faults)).result(
                         LOOP_TIMEOUT_S

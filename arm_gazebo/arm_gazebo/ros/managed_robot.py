@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from rclpy.executors import Executor
 
 from arm_control.errors import ArmControlError, LoopStoppedError
-from arm_control.loop.clock import Clock
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 from arm_gazebo.assembly.robot import AssembledRobot
 from arm_gazebo.assembly.robot_settings import RobotSettings
 from arm_gazebo.physics.simulation import Simulation
+from arm_node.workarounds.process_clock import ProcessClock
 
 logger = logging.getLogger(__name__)
 
@@ -34,7 +34,9 @@ class ManagedRobot:
             invalid.
     """
 
-    def __init__(self, settings: RobotSettings, arguments: Sequence[str], clock: Clock) -> None:
+    def __init__(
+        self, settings: RobotSettings, arguments: Sequence[str], clock: ProcessClock
+    ) -> None:
         self._settings = settings
         self._server: ControllerManagerServer | None = None
         self.robot = AssembledRobot(settings)

@@ -82,7 +82,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         )
         robots = []
         for robot_settings in settings.robots:
-            robots.append(ManagedRobot(robot_settings, arguments, clock))
+            robots.append(ManagedRobot(robot_settings, arguments, clock.of_nodes))
             nodes.callback(robots[-1].destroy_nodes)
         world = assemble_world(
             [robot.robot for robot in robots], settings, _update_rates_hz(robots)

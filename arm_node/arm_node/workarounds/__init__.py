@@ -16,6 +16,7 @@ them; see `switch`.
 | message_template     | rclpy serialises whole messages each cycle  | rclpy 7.1        | [836]    |
 | joint_state_encoding | rclpy creates objects for unused fields     | rclpy 7.1        | [836]    |
 | stamp_clock          | listening to /clock costs a tenth of a core | rclpy 7.1        | [1378]   |
+| process_clock        | as above, for each node of the simulation   | rclpy 7.1        | [1378]   |
 | serialized_goals     | a large goal stops the control loop         | rclpy 7.1        | [836]    |
 | parameter_types      | an unknown parameter type gets no answer    | rclpy 7.1        |          |
 | profiler             | MuJoCo reads the clock 20 times in a step   | MuJoCo 4.0       |          |

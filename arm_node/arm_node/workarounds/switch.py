@@ -80,6 +80,7 @@ LIBRARIES: Mapping[str, Library] = {
     "local_profile": RMW,
     "message_template": RCLPY,
     "stamp_clock": RCLPY,
+    "process_clock": RCLPY,
     "joint_state_encoding": RCLPY,
     "parameter_types": RCLPY,
     "serialized_goals": RCLPY,

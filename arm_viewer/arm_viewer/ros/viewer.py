@@ -8,7 +8,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from arm_node.names import listing
-from arm_node.parameter_values import read_flag, read_integer, read_text
+from arm_node.parameter_values import IntegerReader, read_flag, read_text
 from arm_node.parameters import declare
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.printable import printable
@@ -39,13 +39,15 @@ TICK_S = 1.0 / 30.0
 DISCOVERY_PERIOD_S = 1.0
 DEFAULT_PORT = 8080
 
+_read_port = IntegerReader("a port, from 0 to 65535", 0, 65535)
+
 
 class Viewer(Node):
     """All ROS work happens in the executor's thread; any thread may call `latest` and `send`."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("arm_viewer", context=context)
-        self.port = declare(self, "port", DEFAULT_PORT, read_integer, "page's port on 127.0.0.1")
+        self.port = declare(self, "port", DEFAULT_PORT, _read_port, "page's port on 127.0.0.1")
         self.display_config = declare(
             self, "display_config", "", read_text, "RViz configuration that the page shows first"
         )

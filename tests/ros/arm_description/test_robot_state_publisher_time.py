@@ -43,8 +43,9 @@ def test_the_frequency_changes_at_once(tf, send, set_parameters):
 
 def test_a_frequency_out_of_range_is_refused(tf, set_parameters):
     tf()
-    reason = "publish_frequency must be between 0 and 1000 Hz, not 1001.0"
+    reason = "Parameter publish_frequency out of range. Min: 0.0, Max: 1000.0, value: 1001.0"
     assert set_parameters(NODE, publish_frequency=1001.0) == reason
+    assert set_parameters(NODE, publish_frequency=20).startswith("Wrong parameter type")
 
 
 def test_time_that_is_set_back_starts_again(client, tf, send, latched, set_parameters):

@@ -39,9 +39,6 @@ DEFAULT_SWITCH_TIMEOUT_S = 1.0
 START_SWITCH_TIMEOUT_S = 5.0
 EXECUTOR_TIMEOUT_S = 1.0
 
-USE_SIM_TIME = ("--param", "use_sim_time:=true")
-"""Controllers use the manager's clock, however the manager got that setting."""
-
 
 class ControlPlane:
     """The operations behind the manager's services, also for programs that use no services.
@@ -251,7 +248,8 @@ class ControlPlane:
         arguments = controller_arguments(
             self._node.arguments,
             [
-                *(USE_SIM_TIME if self._node.get_parameter("use_sim_time").value else ()),
+                # The manager's clock, however the manager got that setting.
+                *self._node.clock_arguments(),
                 *self._node.strings(f"{name}.node_options_args"),
                 *(
                     argument
@@ -265,7 +263,12 @@ class ControlPlane:
         try:
             with parameters_of(name):
                 return ControllerNode(
-                    controller, type_name, self._node.get_namespace(), arguments, self._loop
+                    controller,
+                    type_name,
+                    self._node.get_namespace(),
+                    arguments,
+                    self._loop,
+                    self._node.give_clock,
                 )
         except ArmControlError:
             raise

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 
 from builtin_interfaces.msg import Time
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from arm_control.controllers.ros_times import time_message
-from arm_control.loop.clock import Clock
 from arm_control.loop.priority import LoopPriority
 from arm_control.manager.node_arguments import manager_arguments
 from arm_control.manager.ros.health_publisher import HealthPublisher
@@ -19,9 +19,12 @@ from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
 from arm_node.logger_levels import LoggerLevelServices
+from arm_node.workarounds.process_clock import ProcessClock
 
 MIN_SIMILARITY = 0.85
 """Similarity from which a parameter name counts as a mistyped one (difflib's ratio)."""
+
+USE_SIM_TIME = ("--param", "use_sim_time:=true")
 
 _STRICTNESS = {"best_effort": Strictness.BEST_EFFORT, "strict": Strictness.STRICT}
 
@@ -44,7 +47,7 @@ class ControllerManagerNode(ParameterNode):
         *,
         name: str = "controller_manager",
         namespace: str = "",
-        clock: Clock | None = None,
+        clock: ProcessClock | None = None,
     ) -> None:
         """Make the node.
 
@@ -52,22 +55,22 @@ class ControllerManagerNode(ParameterNode):
             arguments: command line of the process; default sys.argv.
             name: name of the node.
             namespace: namespace of the node, its controllers and components.
-            clock: clock for its stamps, which any thread may read; default the node's clock. A
-                process that generates simulation time passes its own clock instead of
-                subscribing to /clock.
+            clock: the clock of a process that makes simulation time, for this node and those of
+                controllers and components, which then use simulation time; None for ROS's.
 
         Raises:
             ParameterError: a parameter has the wrong type or value.
         """
         self.arguments = tuple(sys.argv if arguments is None else arguments)
-        self._stamp_clock = clock
+        self._process_clock = clock
         super().__init__(
             name,
             namespace=namespace,
-            cli_args=manager_arguments(self.arguments),
+            cli_args=[*manager_arguments(self.arguments), *(USE_SIM_TIME if clock else ())],
             use_global_arguments=False,
             allow_undeclared_parameters=True,
         )
+        self.give_clock(self)
         LoggerLevelServices(self)
         self._specs = tuple(self._adapted(specs_of(ManagerSettings)))
         self.declare_specs(self._specs)
@@ -77,6 +80,22 @@ class ControllerManagerNode(ParameterNode):
         self.add_post_set_parameters_callback(self._take)
         self.health = HealthPublisher(self, lambda: self.settings, self.stamp)
         self.health.start()
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters, also those that describe controllers that are not loaded yet."""
+        types = [item for item in parameter_list if item.name.endswith(".type")]
+        for item in types:
+            if item.type_ not in (Parameter.Type.STRING, Parameter.Type.NOT_SET):
+                reason = f"parameter '{item.name}' must be a text, not {item.value!r}"
+                return SetParametersResult(successful=False, reason=reason)
+        result = super().set_parameters_atomically(parameter_list)
+        for item in types if result.successful else ():
+            if self.has_parameter(item.name):
+                # What rclpy declares by itself could be set to a value of any type.
+                about = ParameterDescriptor(type=Parameter.Type.STRING.value)
+                about.description = "type of a controller"
+                self.set_descriptor(item.name, about)
+        return result
 
     def destroy_node(self) -> None:
         """End the publishing, then the node."""
@@ -94,18 +113,24 @@ class ControllerManagerNode(ParameterNode):
 
     def stamp(self) -> Time:
         """Return the time for a message's header; any thread."""
-        if self._stamp_clock is None:
-            return self.get_clock().now().to_msg()
-        return time_message(self._stamp_clock.now_s())
+        return self.get_clock().now().to_msg()
+
+    def clock_arguments(self) -> tuple[str, ...]:
+        """Return ROS arguments with which nodes of controllers and components use its clock."""
+        return USE_SIM_TIME if self.get_parameter("use_sim_time").value else ()
+
+    def give_clock(self, node: Node) -> None:
+        """Give a node that was made with `clock_arguments` the clock of this process, if any."""
+        if self._process_clock is not None:
+            self._process_clock.give(node)
 
     def _adapted(self, specs: Iterable[ParameterSpec]) -> Iterator[ParameterSpec]:
         """Yield the parameters, with defaults that depend on other parameters."""
         for spec in specs:
             if spec.name == "overruns.print_warnings":
-                # The simulation, not this process, determines the pace of simulation time.
-                yield dataclasses.replace(
-                    spec, default=not self.get_parameter("use_sim_time").value
-                )
+                # If time comes from /clock, another process determines its pace.
+                elsewhere = self.get_parameter("use_sim_time").value and not self._process_clock
+                yield dataclasses.replace(spec, default=not elsewhere)
             else:
                 yield spec
 

@@ -169,9 +169,10 @@ class ControllerManagerServer:
         node = Node(
             as_node_name(component.lower()),
             namespace=self._node.get_namespace(),
-            cli_args=controller_arguments(self._node.arguments),
+            cli_args=controller_arguments(self._node.arguments, self._node.clock_arguments()),
             use_global_arguments=False,
         )
+        self._node.give_clock(node)
         LoggerLevelServices(node)
         self._executor.add_node(node)
         return node

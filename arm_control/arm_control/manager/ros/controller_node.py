@@ -1,12 +1,13 @@
 """The node of one controller: its parameters, its adapter, its transition events."""
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Any
 
 from lifecycle_msgs.msg import TransitionEvent
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 
@@ -45,6 +46,7 @@ class ControllerNode(ParameterNode):
         namespace: str,
         arguments: Sequence[str],
         loop: ControlLoop,
+        give_clock: Callable[[Node], None],
     ) -> None:
         """Make the node and declare the parameters.
 
@@ -54,6 +56,7 @@ class ControllerNode(ParameterNode):
             namespace: the manager's namespace.
             arguments: ROS arguments for this node only.
             loop: runs the controller.
+            give_clock: gives the node the manager's clock.
 
         Raises:
             ParameterError: a given parameter has the wrong type.
@@ -65,6 +68,7 @@ class ControllerNode(ParameterNode):
             cli_args=list(arguments),
             use_global_arguments=False,
         )
+        give_clock(self)
         LoggerLevelServices(self)
         self.controller = controller
         self._loop = loop

@@ -5,26 +5,27 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from rcl_interfaces.msg import (
-    FloatingPointRange,
-    IntegerRange,
-    ParameterDescriptor,
-    SetParametersResult,
-)
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from arm_control.errors import ParameterError
 from arm_control.manager.controller_creation import given_value, strings_of, unknown_parameters
 from arm_control.parameters import ParameterSpec
+from arm_node.parameters import declare_typed, given_parameters, in_its_type, set_range, type_of
 
+_TYPES = {
+    bool: Parameter.Type.BOOL,
+    int: Parameter.Type.INTEGER,
+    float: Parameter.Type.DOUBLE,
+    str: Parameter.Type.STRING,
+}
 _LIST_TYPES = {
     bool: Parameter.Type.BOOL_ARRAY,
     int: Parameter.Type.INTEGER_ARRAY,
     float: Parameter.Type.DOUBLE_ARRAY,
     str: Parameter.Type.STRING_ARRAY,
 }
-_MAX_INT = 2**63 - 1
 
 
 class ParameterNode(Node):
@@ -36,16 +37,17 @@ class ParameterNode(Node):
 
     def given_parameters(self) -> dict[str, Any]:
         """Return this node's parameters from files and arguments; None for an empty list."""
-        # rclpy offers no other access to values that are not yet declared.
-        return {name: given.value for name, given in self._parameter_overrides.items()}
+        return given_parameters(self)
 
     _rules: Mapping[str, ParameterSpec] = MappingProxyType({})
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; refuse a value that breaks its rules, and say what is allowed.
 
-        rclpy would refuse it too, but its reason is harder to understand.
+        rclpy would refuse it too, but its reason is harder to understand. An empty list may come
+        as a list of any type.
         """
+        parameter_list = [x if x.value else in_its_type(self, x) for x in parameter_list]
         try:
             for item in parameter_list:
                 spec = self._rules.get(item.name)
@@ -82,16 +84,13 @@ class ParameterNode(Node):
                 self._rules = {**self._rules, spec.name: spec}
 
     def declare_rest(self) -> None:
-        """Declare all other given parameters, such as the types of controllers."""
+        """Declare all other given parameters, such as the types of controllers, as they are."""
         for name, value in self.given_parameters().items():
             if self.has_parameter(name):
                 continue
-            if value is None:
-                self._declare_empty_list(ParameterSpec(name, str, True, (), "", False))
-            else:
-                self.declare_parameter(
-                    name, value, ParameterDescriptor(dynamic_typing=True), ignore_override=True
-                )
+            kind = type_of(() if value is None else value)
+            about = ParameterDescriptor(description="given, but not a parameter of this node's own")
+            declare_typed(self, name, kind, () if value is None else value, about)
 
     def strings(self, name: str) -> tuple[str, ...]:
         """Return a parameter that is one string or several, declared or not; empty for none.
@@ -118,38 +117,11 @@ class ParameterNode(Node):
         return {spec.name: self.get_parameter(spec.name).value for spec in specs}
 
     def _declare(self, spec: ParameterSpec, value: Any) -> None:
-        if spec.is_list and not value:
-            self._declare_empty_list(spec)
-            return
-        self.declare_parameter(
-            spec.name,
-            list(value) if spec.is_list else value,
-            _descriptor(spec),
-            ignore_override=True,
+        kind = (_LIST_TYPES if spec.is_list else _TYPES)[spec.type]
+        descriptor = ParameterDescriptor(
+            description=spec.description,
+            read_only=spec.read_only,
+            additional_constraints=spec.constraint,
         )
-
-    def _declare_empty_list(self, spec: ParameterSpec) -> None:
-        # rclpy cannot infer the type of an empty list, so declare the type, then set the value,
-        # then the descriptor.
-        kind = _LIST_TYPES[spec.type]
-        self.declare_parameter(spec.name, kind, ignore_override=True)
-        self.set_parameters([Parameter(spec.name, kind, [])])
-        descriptor = _descriptor(spec)
-        descriptor.type = kind.value
-        self.set_descriptor(spec.name, descriptor)
-
-
-def _descriptor(spec: ParameterSpec) -> ParameterDescriptor:
-    """Return the descriptor of a parameter."""
-    descriptor = ParameterDescriptor(
-        description=spec.description,
-        read_only=spec.read_only,
-        additional_constraints=spec.constraint,
-    )
-    if spec.range is not None and spec.type is int:
-        low, high = (int(min(max(bound, -_MAX_INT), _MAX_INT)) for bound in spec.range)
-        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
-    elif spec.range is not None:
-        low, high = map(float, spec.range)
-        descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
-    return descriptor
+        set_range(descriptor, kind, spec.range)
+        declare_typed(self, spec.name, kind, value or () if spec.is_list else value, descriptor)
