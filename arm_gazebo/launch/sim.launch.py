@@ -171,6 +171,7 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
     place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
     return [
         *(LogInfo(msg=remark) for remark in setup.remarks),
+        *left_out({"": setup.left_out}),
         simulation({**setup.parameters(), **place}, [setup.controllers], words["namespace"]),
         state_publisher(publisher_parameters(setup.description), words["namespace"]),
     ]
@@ -220,7 +221,14 @@ def simulate_several(robots: "Mapping[str, PlacedRobot]") -> list[Action]:
         settings[name] = replace(robot, setup=setup).parameters()
         descriptions[name] = setup.description
         remarks += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
-    return [simulation(settings, controllers), *remarks, state_publishers(descriptions)]
+    missing = left_out({f"{name}: ": robot.setup.left_out for name, robot in robots.items()})
+    return [simulation(settings, controllers), *remarks, *missing, state_publishers(descriptions)]
+
+
+def left_out(sentences: Mapping[str, str]) -> list[Action]:
+    """Return warnings about controllers that the suite does not have, shown when all is ready."""
+    rows = [("warning", f"{whose}{sentence}") for whose, sentence in sentences.items() if sentence]
+    return [ReadyPanel(notes=rows)] if rows else []
 
 
 def panel_of(names: list[str]) -> ReadyPanel:

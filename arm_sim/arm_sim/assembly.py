@@ -1,8 +1,10 @@
 """One robot in its world with its controllers, put together as the node does it."""
 
 import logging
+import warnings
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import ArmControlError
@@ -153,6 +155,8 @@ def assemble(
     setup = set_up(description, controllers, arguments, spawn, package_path, settings)
     for remark in setup.remarks:
         logger.info("%s", remark)
+    if setup.left_out:
+        warnings.warn(setup.left_out, UserWarning, skip_file_prefixes=(str(Path(__file__).parent),))
     chosen, name = setup.settings, f"/{MANAGER}"
     manager = manager_settings(setup.parameters)
     robot = AssembledRobot(chosen.robots[0])

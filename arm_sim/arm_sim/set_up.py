@@ -23,11 +23,13 @@ class SimulationSetup:
         settings: the settings of the simulation with its one robot.
         parameters: the parameters of the controller manager and its controllers.
         remarks: one sentence for each default that was added.
+        left_out: names the controllers of types that the suite does not have; empty for none.
     """
 
     settings: SimulationSettings
     parameters: ParametersByNode
     remarks: tuple[str, ...]
+    left_out: str
 
 
 def set_up(
@@ -69,6 +71,7 @@ def set_up(
         read_settings(_parameters(_values(setup, robot, settings))),
         ParametersByNode(read_controllers(setup.controllers), _source(setup)),
         setup.remarks,
+        setup.left_out,
     )
 
 

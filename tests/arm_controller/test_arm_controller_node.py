@@ -208,7 +208,8 @@ def test_warns_without_a_subscriber_and_publishes_when_the_controller_comes(robo
 
 def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
     program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
-    assert set_pose(until).successful
+    # As `ros2 param set ... "[]"` sends it: an empty list has no type of its own.
+    assert set_pose(until, bool_array_value=[]).successful
     robot.broadcast()
     commands = robot.listen()
     until(lambda: program.output.count("Joint State: 'j3'") >= 10, "a second of prints")
@@ -231,10 +232,16 @@ def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until
     [
         ({"desired_param": "[0.1, 0.2]"}, "parameter desired_param: a pose is 4 numbers"),
         ({"desired_param": "[.nan, 0.0, 0.0, 0.0]"}, "joint 'j0' cannot go to nan"),
-        ({"print_period": "-1"}, "parameter print_period: must be a number from 0 to 1e+09, not -1"),
+        (
+            {"print_period": "-1"},
+            "parameter print_period: must be a number from 0 to 1e+09, not -1",
+        ),
         ({"joints": "[]"}, "parameter joints: must be a list of joint names"),
         ({"command_topic": "5"}, "parameter command_topic: must be the name of a topic, not 5"),
-        ({"publish_rate": "-1"}, "parameter publish_rate: must be a number from 0 to 1e+09, not -1"),
+        (
+            {"publish_rate": "-1"},
+            "parameter publish_rate: must be a number from 0 to 1e+09, not -1",
+        ),
         ({"print_format": "'{speed}'"}, "parameter print_format: the format '{speed}' may contain"),
         ({"print_format": "'{name'"}, "parameter print_format: the format '{name' is wrong"),
         ({"print_header": "5"}, "parameter print_header: must be a text, not 5"),

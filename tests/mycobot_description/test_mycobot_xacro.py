@@ -221,7 +221,7 @@ def test_ros2_control_commands_what_the_robot_has_and_only_that(use_gripper):
     commanded = [joint.name for joint in component.joints if joint.command_interfaces]
     assert commanded == [*(prefixed(joint, "left_") for joint in ARM_JOINTS), *gripper]
     assert {joint.name for joint in component.joints} == names(parse_urdf(text).movable_joints)
-    assert component.plugin == "arm_gazebo/SimulatedHardware"
+    assert component.plugin == "gz_ros2_control/GazeboSimSystem"
     (mock,) = parse_hardware_info(expand())
     assert mock.plugin == "mock_components/GenericSystem"
 

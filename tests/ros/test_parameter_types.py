@@ -70,7 +70,9 @@ def controller_node(type_name: str) -> Node:
     arguments = ["--ros-args"]
     for name, value in given.items():
         arguments += ["-p", f"{name}:={json.dumps(value)}"]
-    return ControllerNode(controller_class(type_name)(context), type_name, "", arguments, PROCESS, lambda _: None)
+    return ControllerNode(
+        controller_class(type_name)(context), type_name, "", arguments, PROCESS, lambda _: None
+    )
 
 
 MAKERS: dict[str, Callable[[], Node]] = {

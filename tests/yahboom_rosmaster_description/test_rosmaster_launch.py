@@ -74,4 +74,4 @@ def test_the_arguments_reach_the_description_and_the_clock():
         given = parameters(process)
         assert given["use_sim_time"] is True
         assert 'name="a_front_left_wheel_joint"' in given["robot_description"]
-        assert "arm_gazebo/SimulatedHardware" in given["robot_description"]
+        assert "gz_ros2_control/GazeboSimSystem" in given["robot_description"]

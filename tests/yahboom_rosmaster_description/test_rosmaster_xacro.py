@@ -120,7 +120,7 @@ def test_the_masses_are_the_originals_and_lie_in_the_links():
 
 @pytest.mark.parametrize(
     ("use_gazebo", "plugin"),
-    [("true", "arm_gazebo/SimulatedHardware"), ("false", "mock_components/GenericSystem")],
+    [("true", "gz_ros2_control/GazeboSimSystem"), ("false", "mock_components/GenericSystem")],
 )
 def test_ros2_control_commands_the_speed_of_each_wheel(use_gazebo, plugin):
     (component,) = parse_hardware_info(expand(prefix="left_", use_gazebo=use_gazebo))

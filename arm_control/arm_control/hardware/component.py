@@ -12,7 +12,7 @@ from arm_control.loop.run_record import RunRecord
 from arm_control.loop.supervision import RunSupervision, failure_of
 from arm_control.state.attributes import Stateful
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class HardwareComponent:

@@ -3,7 +3,7 @@
 import logging
 from math import nan
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class Cadence:

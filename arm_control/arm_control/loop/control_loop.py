@@ -17,7 +17,7 @@ from arm_control.loop.priority import LoopPriority
 
 ResultT = TypeVar("ResultT")
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class ControlLoop:

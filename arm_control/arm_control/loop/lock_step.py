@@ -9,7 +9,7 @@ from arm_control.loop.clock import Clock, MonotonicClock
 NEVER_NS = -1
 NS_PER_S = 1_000_000_000
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class LockStep:

@@ -166,7 +166,7 @@ class Pacer:
         self._reset_unreported(now_s)
 
     def _warn(self, elapsed_s: float) -> None:
-        logger = logging.getLogger(__name__)
+        logger = logging.getLogger("controller_manager")
         achieved = self._unreported_ticks * self.period_s / elapsed_s
         latest_ms = 1e3 * self._unreported_max_lag_s
         if achieved >= KEPT * self._real_time_factor:

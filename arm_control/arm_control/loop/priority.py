@@ -13,7 +13,7 @@ MAX_LOAD = 0.5
 OTHERS_NICENESS = -20
 """Niceness of the other threads while the loop has real-time priority: eighty ordinary shares."""
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 Schedule = Callable[[int, int], None]
 

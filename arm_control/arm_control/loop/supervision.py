@@ -8,7 +8,7 @@ from arm_control.errors import ArmControlError, UnhandledFailureError
 from arm_control.loop.clock import MonotonicClock
 from arm_control.loop.run_record import RunRecord
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 FailureHandler = Callable[[str, BaseException], None]
 """Receives an exception that user code raised in a cycle, and a sentence that says where."""

@@ -11,7 +11,7 @@ from arm_control.manager.registry import controller_class
 from arm_control.parameters import ParameterSpec
 from arm_node.printable import first_line
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 _OF_ANY_CONTROLLER = (
     "fallback_controllers",

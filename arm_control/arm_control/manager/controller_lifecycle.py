@@ -9,7 +9,7 @@ from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.loop.supervision import failure_of
 from arm_control.manager.managed_controller import ManagedController
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 TransitionListener = Callable[[str, Transition, LifecycleState, LifecycleState], None]
 """Is told of an attempted transition: controller, transition, state before, state after."""

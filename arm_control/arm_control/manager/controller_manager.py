@@ -36,7 +36,7 @@ STATISTICS_S = 5
 DEFAULT_POLICY = ManagerPolicy()
 NO_LIMITS: Mapping[str, JointLimits] = MappingProxyType({})
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 def _describe_load(arguments: Mapping[str, Any]) -> Mapping[str, object]:

@@ -26,7 +26,7 @@ from arm_description.urdf.document import Description
 MANAGER = "controller_manager"
 ROOT = "/"
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 def manager_settings(parameters: ParametersByNode) -> ManagerSettings:

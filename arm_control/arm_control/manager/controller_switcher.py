@@ -16,7 +16,7 @@ from arm_control.manager.switch_planner import (
     SwitchResult,
 )
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 DEFAULT_NAME = "/controller_manager"
 """The manager's node that command-line tools use by default."""

@@ -95,7 +95,7 @@ class RefusedRequests:
             }
 
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 MOTION = ("position", "velocity", "acceleration", "effort")
 """States of a joint that controllers use; any other may have no value yet."""

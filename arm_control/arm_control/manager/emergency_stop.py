@@ -9,7 +9,7 @@ from arm_control.loop.supervision import failure_of
 REASON = "emergency stop"
 LATCHED = "the emergency stop is latched: release it first, for example with arm stop --release"
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class EmergencyStop:

@@ -13,7 +13,7 @@ from arm_control.manager.controller_switcher import ControllerSwitcher
 from arm_control.manager.managed_controller import ManagedController
 from arm_control.manager.settings import ManagerPolicy
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class HardwareLifecycle:

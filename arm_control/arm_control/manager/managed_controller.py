@@ -11,7 +11,7 @@ from arm_control.loop.cadence import Cadence, achievable_rate_hz
 from arm_control.loop.supervision import RunSupervision, failure_of
 from arm_control.status import ChainConnection, ControllerStatus
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class ManagedController:

@@ -8,17 +8,19 @@ because the search takes tens of milliseconds.
 
 import importlib
 import logging
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
 from arm_control.controllers.controller import ChainableController, Controller
 from arm_control.errors import ArmControlError, RegistryError
 from arm_control.hardware.driver import Hardware
 from arm_control.hardware.info import HardwareInfo
+from arm_control.manager.type_names import unknown_type
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 CONTROLLER_GROUP = "arm_control.controllers"
 HARDWARE_GROUP = "arm_control.hardware"
@@ -37,6 +39,9 @@ _CONTROLLERS = {
     "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
     "forward_command_controller/MultiInterfaceForwardCommandController": (
         f"{_FORWARD}:MultiInterfaceForwardCommandController"
+    ),
+    "gpio_controllers/GpioCommandController": (
+        f"{_BUILT_IN}.gpio_command.controller:GpioCommandController"
     ),
     "imu_sensor_broadcaster/IMUSensorBroadcaster": (
         f"{_BUILT_IN}.sensor_broadcasters.imu:ImuSensorBroadcaster"
@@ -73,7 +78,7 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     Raises:
         RegistryError: the type is unknown, cannot be imported, or is not a controller.
     """
-    found = _find(type_name, _CONTROLLERS, CONTROLLER_GROUP, "controller type")
+    found = _find(type_name, _CONTROLLERS, CONTROLLER_GROUP, unknown_type)
     if not (isinstance(found, type) and issubclass(found, Controller)):
         raise RegistryError(
             f"controller type '{type_name}' is {found!r}, "
@@ -100,7 +105,7 @@ def create_hardware(info: HardwareInfo) -> Hardware:
         RegistryError: the plugin is unknown, or it cannot be imported or created.
         ArmControlError: the driver refuses the description.
     """
-    make = _find(info.plugin, _HARDWARE, HARDWARE_GROUP, "hardware plugin")
+    make = _find(info.plugin, _HARDWARE, HARDWARE_GROUP, _unknown_plugin)
     try:
         return make(info)
     except ArmControlError:
@@ -128,15 +133,23 @@ def load_object(path: str) -> Any:
         raise RegistryError(f"cannot import '{path}': {type(error).__name__}: {error}") from error
 
 
-def _find(type_name: str, built_in: dict[str, str], group: str, what: str) -> Any:
+def _unknown_plugin(plugin: str, known: Collection[str]) -> str:
+    return f"no hardware plugin '{plugin}'; known: {', '.join(sorted(known))}"
+
+
+def _find(
+    type_name: str,
+    built_in: dict[str, str],
+    group: str,
+    unknown: Callable[[str, Collection[str]], str],
+) -> Any:
     if type_name in built_in:
         return load_object(built_in[type_name])
     points = _installed(group)
     for point in points:
         if point.name == type_name:
             return load_object(point.value)
-    known = sorted({*built_in, *(point.name for point in points)})
-    raise RegistryError(f"no {what} '{type_name}'; known: {', '.join(known)}")
+    raise RegistryError(unknown(type_name, {*built_in, *(point.name for point in points)}))
 
 
 def _installed(group: str) -> "tuple[EntryPoint, ...]":

@@ -47,7 +47,7 @@ class SwitchResult:
     message: str
 
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 @dataclass(frozen=True, slots=True)

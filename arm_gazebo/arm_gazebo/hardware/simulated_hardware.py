@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from arm_control.hardware.driver import HardwareReturn
 from arm_control.hardware.info import HardwareInfo, InterfaceInfo
 from arm_gazebo.drives.driven_joint import DriveMode
+from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_sensors import SensorStates, SimulatedSensor
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.actuation import RobotJoint
@@ -95,8 +96,10 @@ class SimulatedHardware:
         self._limits = self._limit_interfaces(len(self._interfaces))
         self._sensors = SensorStates(info, sensors)
         self._joint_channels = tuple(f"{joint.name}/{state}" for state, joint in self._states)
-        self.state_interfaces = (*self._joint_channels, *self._sensors.names)
-        self.command_interfaces = tuple(i.name for i in (*self._interfaces, *self._limits))
+        self._gpios = SimulatedGpios(info)
+        self.state_interfaces = (*self._joint_channels, *self._sensors.names, *self._gpios.states)
+        of_joints = tuple(i.name for i in (*self._interfaces, *self._limits))
+        self.command_interfaces = (*of_joints, *self._gpios.commands)
         self._log_left_out()
         self._claimed: set[str] = set()
         self._obeys = False
@@ -111,8 +114,13 @@ class SimulatedHardware:
     def bind(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
         """Store these views; see `Hardware.bind`."""
         self._state_values = states
-        self._sensor_values = states[len(self._states) :]
+        first_gpio = len(states) - len(self._gpios.states)
+        self._sensor_values = states[len(self._states) : first_gpio]
         self._commands = commands
+        self._gpio_values = (
+            states[first_gpio:],
+            commands[len(commands) - len(self._gpios.commands) :],
+        )
         self._taken = b""
         self._find_sources()
 
@@ -143,6 +151,7 @@ class SimulatedHardware:
             self._commands[interface.index] = self._neutral(interface)
         for limit in self._limits:
             self._commands[limit.index] = math.nan
+        self._gpios.start(*self._gpio_values)
         return True
 
     def on_activate(self) -> bool:
@@ -219,6 +228,8 @@ class SimulatedHardware:
             return HardwareReturn.OK
         self._taken = commands
         values = self._commands.tolist()
+        if self._gpios.commands:
+            self._gpios.follow(*self._gpio_values)
         for limit in self._limiting:
             self._servo.limit_effort(limit.drive, values[limit.index])
         for interface in self._active:
@@ -241,6 +252,7 @@ class SimulatedHardware:
             self._commands[interface.index] = self._neutral(interface)
         self._taken = b""
         self._beyond.clear()
+        self._gpios.start(*self._gpio_values)
         self.read(self._simulation.time_s, 0.0)
 
     def save_state(self) -> tuple[frozenset[str], frozenset[str], bytes]:

@@ -6,7 +6,7 @@ prefix. `$(var name)`, which drivers' files use for ROS 2's launch, means the sa
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +31,13 @@ class StartableControllers:
 
     Attributes:
         names: the controllers whose joints no earlier controller claims.
-        remarks: one sentence for each controller that does not start.
+        remarks: one sentence for each controller whose joints another one claims.
+        missing: the types that the suite does not have, by controller.
     """
 
     names: tuple[str, ...]
     remarks: tuple[str, ...]
+    missing: Mapping[str, str] = field(default_factory=dict)
 
 
 def substitute_arguments(path: Path, arguments: Mapping[str, str]) -> Controllers:
@@ -71,23 +73,29 @@ def startable_controllers(
         known_types: controller types that can be loaded.
 
     Raises:
-        SimSettingsError: the file cannot be read, or names no controllers.
+        SimSettingsError: the file cannot be read, names no controllers, or misspells a type.
     """
+    # Imported here, because it takes time that most launches of this project's robots can save.
+    from arm_control.manager.type_names import is_misspelt, unknown_type
+
     content = read_controllers(controllers)
     names: list[str] = []
+    missing: dict[str, str] = {}
     remarks: list[str] = []
     holders: dict[str, str] = {}
     for name, type_name in types_of(content).items():
         joints = _joints(content, name)
         held = next((joint for joint in joints if joint in holders), None)
         if type_name not in known_types:
-            remarks.append(f"{name} does not start: its type {type_name} is unknown")
+            if is_misspelt(type_name, known_types):
+                raise SimSettingsError(f"{name}: {unknown_type(type_name, known_types)}")
+            missing[name] = type_name
         elif held is not None:
             remarks.append(f"{name} does not start: {holders[held]} claims '{held}'")
         else:
             names.append(name)
             holders.update(dict.fromkeys(joints, name))
-    return StartableControllers(tuple(names), tuple(remarks))
+    return StartableControllers(tuple(names), tuple(remarks), missing)
 
 
 def controllers_in_namespace(namespace: str, controllers: Controllers) -> Mapping[str, Any]:

@@ -42,6 +42,8 @@ class RobotSetup:
         spawn_required: whether the user named them, so that a failure to start one is an error.
         package_path: folders that the user named for the description's files.
         remarks: one sentence for each default that was added.
+        left_out: one sentence that counts and names the controllers of types that the suite does
+            not have; empty if there are none.
     """
 
     description: str
@@ -50,6 +52,7 @@ class RobotSetup:
     spawn_required: bool
     package_path: tuple[Path, ...]
     remarks: tuple[str, ...]
+    left_out: str = ""
 
     def parameters(self) -> dict[str, str | bool]:
         """Return the simulation node's parameters for the robot."""
@@ -102,14 +105,9 @@ def set_up_robot(
             f"the description names a file for Gazebo's plugin; to use it: controllers:={file}"
             for file in gz_parameter_files(description)
         )
-    return RobotSetup(
-        description,
-        content,
-        _spawned(spawn, content if controllers else None, joints, remarks),
-        spawn.strip() != SPAWN_AUTO,
-        given,
-        tuple(remarks),
-    )
+    spawned, left_out = _spawned(spawn, content if controllers else None, joints, remarks)
+    required = spawn.strip() != SPAWN_AUTO
+    return RobotSetup(description, content, spawned, required, given, tuple(remarks), left_out)
 
 
 def _expanded(
@@ -187,13 +185,22 @@ def _spawned(
     controllers: Controllers | None,
     joints: HardwareJoints,
     remarks: list[str],
-) -> tuple[str, ...]:
+) -> tuple[tuple[str, ...], str]:
+    """Return the controllers to start, and a sentence about those that the suite does not have."""
     if spawn.strip() != SPAWN_AUTO:
-        return tuple(name for name in spawn.replace(",", " ").split())
+        return tuple(name for name in spawn.replace(",", " ").split()), ""
     if controllers is None:
-        return default_controllers(joints)
+        return default_controllers(joints), ""
     from arm_control.manager.registry import controller_types
 
     startable = startable_controllers(controllers, frozenset(controller_types()))
     remarks += startable.remarks
-    return startable.names
+    return startable.names, _left_out(startable.missing)
+
+
+def _left_out(missing: Mapping[str, str]) -> str:
+    if not missing:
+        return ""
+    count = f"{len(missing)} controller{'s are' if len(missing) > 1 else ' is'} left out"
+    named = ", ".join(f"{name} ({type_name})" for name, type_name in missing.items())
+    return f"{count}, because the suite has no controller of the type: {named}"

@@ -14,7 +14,7 @@ from arm_gazebo.assembly.robot_settings import RobotSettings
 from arm_gazebo.physics.simulation import Simulation
 from arm_node.workarounds.process_clock import ProcessClock
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class ManagedRobot:

@@ -33,10 +33,9 @@ def test_controllers_with_unclaimed_joints_start_in_order(file):
 
 def test_each_that_waits_is_named_with_the_reason(file):
     file.write_text(CONTENT)
-    assert startable_controllers(file, TYPES).remarks == (
-        "position does not start: arm claims 'j1'",
-        "force does not start: its type b/Unheard is unknown",
-    )
+    found = startable_controllers(file, TYPES)
+    assert found.remarks == ("position does not start: arm claims 'j1'",)
+    assert found.missing == {"force": "b/Unheard"}
 
 
 @pytest.mark.parametrize("key", ["/left/controller_manager", "/**/controller_manager"])

@@ -181,7 +181,7 @@ def test_joints_that_depend_in_a_circle_end_it(start, describe, urdf):
     ("arguments", "parameters", "code", "sentence"),
     [
         (["/no/such.urdf"], {}, 1, "cannot read /no/such.urdf: No such file or directory"),
-        ([], {"rate": 0}, 1, "Parameter rate out of range. Min: 1, Max: 10000, value: 0"),
+        ([], {"rate": 0}, 1, "rate must be an integer from 1 to 10000 (Hz), not 0"),
         ([], {"zeros": {"turn": "up"}}, 1, "zeros.turn must be a finite number, not 'up'"),
         (["a", "b"], {}, 2, "unrecognized arguments: b"),
     ],

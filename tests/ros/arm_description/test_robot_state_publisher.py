@@ -139,7 +139,7 @@ def test_another_description_takes_the_place_of_the_first(
     [
         ("", "Empty URDF is not allowed"),
         ("<robot name='r'>\n<link/></robot>", "robot_description, line 2: <link> needs"),
-        (5, "robot_description must be a string"),
+        (5, "Wrong parameter type"),
     ],
 )
 def test_a_description_that_is_no_robot_is_refused_and_the_old_one_stays(

@@ -43,7 +43,7 @@ def test_the_frequency_changes_at_once(tf, send, set_parameters):
 
 def test_a_frequency_out_of_range_is_refused(tf, set_parameters):
     tf()
-    reason = "Parameter publish_frequency out of range. Min: 0.0, Max: 1000.0, value: 1001.0"
+    reason = "Parameter publish_frequency out of range Min: 0.0, Max: 1000.0, value: 1001.0"
     assert set_parameters(NODE, publish_frequency=1001.0) == reason
     assert set_parameters(NODE, publish_frequency=20).startswith("Wrong parameter type")
 

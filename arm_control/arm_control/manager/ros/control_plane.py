@@ -30,7 +30,7 @@ from arm_control.manager.switch_planner import Strictness, SwitchRequest, Switch
 from arm_control.parameters import ParameterSpec
 from arm_description.urdf.document import Description
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 ResultT = TypeVar("ResultT")
 

@@ -14,7 +14,7 @@ from rclpy.parameter import Parameter
 from arm_control.loop.priority import LoopPriority
 from arm_control.manager.node_arguments import manager_arguments
 from arm_control.manager.ros.health_publisher import HealthPublisher
-from arm_control.manager.ros.parameter_node import ParameterNode
+from arm_control.manager.ros.parameter_node import TYPE_OF_CONTROLLER, ParameterNode
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
@@ -93,7 +93,7 @@ class ControllerManagerNode(ParameterNode):
             if self.has_parameter(item.name):
                 # What rclpy declares by itself could be set to a value of any type.
                 about = ParameterDescriptor(type=Parameter.Type.STRING.value)
-                about.description = "type of a controller"
+                about.description = TYPE_OF_CONTROLLER
                 self.set_descriptor(item.name, about)
         return result
 

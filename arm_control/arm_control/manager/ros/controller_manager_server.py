@@ -42,7 +42,7 @@ SERVICE_THREADS = 3
 """One for requests that wait for the control loop, one for requests that only read, and one for the
 emergency stop, which waits for neither."""
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class ControllerManagerServer:

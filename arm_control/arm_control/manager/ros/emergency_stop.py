@@ -21,7 +21,7 @@ NAME = "emergency_stop"
 DEPTH = 10
 LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class EmergencyStopServer:

@@ -35,7 +35,7 @@ STATISTICS_HZ = 10.0
 LOOP_TIMEOUT_S = 1.0
 DEPTH = 10
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class IntrospectionPublisher:

@@ -36,7 +36,7 @@ from arm_control.manager.ros.messages import (
 )
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 SERVICE_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_ALL,

@@ -14,6 +14,15 @@ from arm_control.manager.controller_creation import given_value, strings_of, unk
 from arm_control.parameters import ParameterSpec
 from arm_node.parameters import declare_typed, given_parameters, in_its_type, set_range, type_of
 
+UNKNOWN = "Given, but not known to this node"
+TYPE_OF_CONTROLLER = "Type of the controller"
+_ABOUT = {
+    "type": TYPE_OF_CONTROLLER,
+    "params_file": "Parameter files of the controller",
+    "fallback_controllers": "Controllers to activate if an update of this one fails",
+    "node_options_args": "ROS arguments for the controller's node",
+}
+"""Of what a file gives for a controller, by the part of the name behind the controller's."""
 _TYPES = {
     bool: Parameter.Type.BOOL,
     int: Parameter.Type.INTEGER,
@@ -89,7 +98,7 @@ class ParameterNode(Node):
             if self.has_parameter(name):
                 continue
             kind = type_of(() if value is None else value)
-            about = ParameterDescriptor(description="given, but not a parameter of this node's own")
+            about = ParameterDescriptor(description=_ABOUT.get(name.rpartition(".")[2], UNKNOWN))
             declare_typed(self, name, kind, () if value is None else value, about)
 
     def strings(self, name: str) -> tuple[str, ...]:

@@ -148,7 +148,7 @@ def test_a_stuck_loop_is_reported_while_it_is_stuck(manager: Any, wait_for_repor
 @pytest.mark.parametrize(
     ("node", "name"),
     [
-        ("controller_manager", "arm_control.manager.ros.manager_services"),
+        ("controller_manager", "controller_manager"),
         ("position_controller", "position_controller"),
         ("hardwareinterface", "hardwareinterface"),
     ],

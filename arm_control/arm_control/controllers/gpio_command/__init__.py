@@ -1,0 +1,1 @@
+"""gpio_controllers/GpioCommandController: commands GPIOs and publishes their states."""
