@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from arm_description.errors import DescriptionError, SettingsError
 from arm_description.publishers.static_transform import USAGE, parameters_of, unit_quaternion
+from arm_node.parameter_values import ParameterValueError, Reader, read_number, read_text
 from arm_node.process import NodeProcess, run_process
 
 if TYPE_CHECKING:
@@ -23,6 +24,13 @@ DEFAULTS = {
     "child_frame_id": "",
 }
 """The parameters; an argument sets the same value as its parameter, and wins."""
+ABOUT = {
+    "translation": "Position of the child in the parent frame (m)",
+    "rotation": "Orientation of the child in the parent frame, as a quaternion",
+    "frame_id": "The parent frame",
+    "child_frame_id": "The child frame",
+}
+_readers: dict[type, Reader[float | str]] = {float: read_number, str: read_text}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -42,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         process.executor.add_node(_node(given))
         yield
 
-    return run_process(application, arguments, user_errors=(DescriptionError,))
+    return run_process(application, arguments, user_errors=(DescriptionError, ParameterValueError))
 
 
 def _node(given: Mapping[str, float | str]) -> "Node":
@@ -52,19 +60,19 @@ def _node(given: Mapping[str, float | str]) -> "Node":
         SettingsError: a frame is missing, both are the same, or a value is not finite.
     """
     from geometry_msgs.msg import TransformStamped
-    from rcl_interfaces.msg import ParameterDescriptor
     from rclpy.node import Node
     from rclpy.parameter import Parameter
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
 
+    from arm_node.parameters import declare
+
     # As in ROS: several of them run at once, and nobody names each.
     suffix = "".join(random.choices(string.ascii_letters + string.digits, k=16))
     overrides = [Parameter(name, value=value) for name, value in given.items()]
     node = Node(f"static_transform_publisher_{suffix}", parameter_overrides=overrides)
-    fixed = ParameterDescriptor(read_only=True)
     values: dict[str, Any] = {
-        name: node.declare_parameter(name, default, fixed).value
+        name: declare(node, name, default, _readers[type(default)], ABOUT[name.partition(".")[0]])
         for name, default in DEFAULTS.items()
     }
     parent, child = values["frame_id"], values["child_frame_id"]

@@ -15,6 +15,7 @@ GazeboError
 ├── RecordingError  a recording cannot be written, read or run again
 ├── FaultError      a requested fault is not possible here
 ├── SimSettingsError   invalid parameter of the simulation node
+│   └── ControllerTypeError  a file names a controller's type that does not exist
 └── RequestError    a request to the running world is refused; see `refusal`
 """
 
@@ -61,6 +62,10 @@ class TimingError(GazeboError):
 
 class SimSettingsError(GazeboError):
     """A parameter of the simulation node is invalid; the message names it and the valid values."""
+
+
+class ControllerTypeError(SimSettingsError):
+    """A file misspells the type of a controller; the message has the near names."""
 
 
 class BatchError(GazeboError):

@@ -18,7 +18,7 @@ from launch_py import (
 )
 from launch_py.actions import OpaqueFunction
 from launch_py.conditions import IfCondition
-from launch_py.errors import UsageError
+from launch_py.errors import NodeFileError, UsageError
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_sources import PythonLaunchDescriptionSource
 from launch_py.ros import FindPackageShare, Node
@@ -130,10 +130,12 @@ def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
 def usage_errors() -> Iterator[None]:
     """Turn errors of the packages about arguments into usage errors without a traceback."""
     from arm_description.errors import DescriptionError
-    from arm_gazebo.errors import GazeboError
+    from arm_gazebo.errors import ControllerTypeError, GazeboError
 
     try:
         yield
+    except ControllerTypeError as error:
+        raise NodeFileError(str(error)) from error
     except (DescriptionError, GazeboError) as error:
         raise UsageError(str(error)) from error
 

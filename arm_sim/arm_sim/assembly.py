@@ -1,10 +1,8 @@
 """One robot in its world with its controllers, put together as the node does it."""
 
 import logging
-import warnings
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import ArmControlError
@@ -15,6 +13,7 @@ from arm_gazebo.state.complete_state import CompleteState
 from arm_sim.controllers import Controllers
 from arm_sim.joints import Joints
 from arm_sim.robots import AnyPath
+from arm_sim.user_traceback import warn_caller
 
 if TYPE_CHECKING:
     from arm_gazebo.assembly.robot import AssembledRobot
@@ -156,7 +155,7 @@ def assemble(
     for remark in setup.remarks:
         logger.info("%s", remark)
     if setup.left_out:
-        warnings.warn(setup.left_out, UserWarning, skip_file_prefixes=(str(Path(__file__).parent),))
+        warn_caller(setup.left_out)
     chosen, name = setup.settings, f"/{MANAGER}"
     manager = manager_settings(setup.parameters)
     robot = AssembledRobot(chosen.robots[0])

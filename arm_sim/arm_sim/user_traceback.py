@@ -1,9 +1,11 @@
-"""Tracebacks of the library's errors: they show the caller's lines, not the suite's."""
+"""Errors and warnings of the library: they show the caller's lines, not the suite's."""
 
+import sys
+import warnings
 from collections.abc import Callable
 from functools import wraps
 from inspect import isfunction
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import Any, TypeVar
 
 from arm_control.errors import ArmControlError
@@ -35,6 +37,14 @@ def ends_at_the_caller(cls: ClassT) -> ClassT:
     return cls
 
 
+def warn_caller(message: str) -> None:
+    """Give a Python warning at the line that called the library."""
+    level, frame = 1, sys._getframe()  # pyright: ignore[reportPrivateUsage]
+    while frame is not None and _is_suite(frame):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, stacklevel=level)
+
+
 def _shortened(function: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(function)
     def call(*arguments: Any, **keywords: Any) -> Any:
@@ -61,6 +71,10 @@ def _of_others(traceback: TracebackType | None) -> TracebackType | None:
     if traceback is None:
         return None
     rest = _of_others(traceback.tb_next)
-    if traceback.tb_frame.f_globals.get("__name__", "").partition(".")[0] in _SUITE:
+    if _is_suite(traceback.tb_frame):
         return rest
     return TracebackType(rest, traceback.tb_frame, traceback.tb_lasti, traceback.tb_lineno)
+
+
+def _is_suite(frame: FrameType) -> bool:
+    return frame.f_globals.get("__name__", "").partition(".")[0] in _SUITE

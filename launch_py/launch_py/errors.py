@@ -7,15 +7,23 @@ LaunchError
 +-- NotFoundError          a package, executable or program that does not exist
     +-- UnavailableError   one that is known, but that nothing replaces here
 +-- NodeParameterError     a node parameter that cannot be passed on
++-- NodeFileError          a file for a node that has a mistake
 +-- StartError             a process that could not be started
 """
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import ClassVar
 
 
 class LaunchError(Exception):
-    """Base class of launch_py's errors."""
+    """Base class of launch_py's errors.
+
+    Attributes:
+        exit_code: exit code of a launch that ends with it before anything starts.
+    """
+
+    exit_code: ClassVar[int] = 2
 
 
 class UsageError(LaunchError):
@@ -40,6 +48,12 @@ class UnavailableError(NotFoundError):
 
 class NodeParameterError(LaunchError):
     """A node parameter cannot be passed on."""
+
+
+class NodeFileError(LaunchError):
+    """A file that is meant for a node has a mistake; the command line and launch file are right."""
+
+    exit_code = 1
 
 
 class StartError(LaunchError):
@@ -79,7 +93,7 @@ def errors_located_at(where: str) -> Iterator[None]:
     """
     try:
         yield
-    except UsageError:
+    except (UsageError, NodeFileError):
         raise
     except LaunchError as error:
         if where and ", line " not in str(error):

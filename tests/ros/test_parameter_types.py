@@ -2,7 +2,6 @@
 
 import ast
 import json
-from array import array
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -29,6 +28,7 @@ from arm_controller.ros.publisher_defined import PublisherDefined
 from arm_controller.ros.publisher_terminal import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
+from arm_description.static_transform_publisher_node import _node as static_transform
 from arm_gazebo.assembly.settings import read_settings
 from arm_gazebo.ros.fault_parameter import declare_faults
 from arm_node.parameters import declare
@@ -89,6 +89,9 @@ MAKERS: dict[str, Callable[[], Node]] = {
     ),
     "ControllerManagerNode": lambda: ControllerManagerNode(["manager", *given_arguments()]),
     "arm_gazebo": simulation_node,
+    "static_transform_publisher": lambda: static_transform(
+        {"frame_id": "a", "child_frame_id": "b"}
+    ),
     **{name: partial(controller_node, name) for name in CONTROLLERS},
 }
 

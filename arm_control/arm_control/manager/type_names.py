@@ -37,8 +37,8 @@ ONLY_IN_CPP = frozenset(
         "velocity_controllers/JointVelocityController",
     }
 )
-"""Types of ros2_controllers, and of ROS 1's ros_controllers, whose packages the suite does not have,
-or has without them."""
+"""Types of ros2_controllers, and of ROS 1's ros_controllers, that the suite does not have, although
+it has some of their packages."""
 
 SAME_BUT_FOR_TYPING = 0.92
 """Similarity, 1 for equal, from which a type of another package counts as misspelt."""

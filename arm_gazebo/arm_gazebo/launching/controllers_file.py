@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from arm_gazebo.errors import SimSettingsError
+from arm_gazebo.errors import ControllerTypeError, SimSettingsError
 from arm_gazebo.launching.settings_file import parse_yaml, read_text
 from arm_node.names import listing
 
@@ -73,7 +73,8 @@ def startable_controllers(
         known_types: controller types that can be loaded.
 
     Raises:
-        SimSettingsError: the file cannot be read, names no controllers, or misspells a type.
+        SimSettingsError: the file cannot be read, or names no controllers.
+        ControllerTypeError: the file misspells a type.
     """
     # Imported here, because it takes time that most launches of this project's robots can save.
     from arm_control.manager.type_names import is_misspelt, unknown_type
@@ -88,7 +89,7 @@ def startable_controllers(
         held = next((joint for joint in joints if joint in holders), None)
         if type_name not in known_types:
             if is_misspelt(type_name, known_types):
-                raise SimSettingsError(f"{name}: {unknown_type(type_name, known_types)}")
+                raise ControllerTypeError(f"{name}: {unknown_type(type_name, known_types)}")
             missing[name] = type_name
         elif held is not None:
             remarks.append(f"{name} does not start: {holders[held]} claims '{held}'")

@@ -33,7 +33,6 @@ from launch_py.typed_values import parse_boolean
 if TYPE_CHECKING:
     from launch_py.supervision.terminal_key import KeyCommand
 
-EXIT_USAGE = 2
 EXIT_INTERRUPTED = 130
 
 REPLACE = "replace"
@@ -69,7 +68,8 @@ def run(
     """Execute the command line; return the exit code.
 
     A mistake in the command line or the launch file is reported in one sentence on stderr, with
-    exit code 2. A stop signal before the first process starts is reported, with exit code 0.
+    exit code 2, and one in a file for a node with exit code 1. A stop signal before the first
+    process starts is reported, with exit code 0.
 
     Args:
         argv: the words after the program's name.
@@ -98,7 +98,7 @@ def run(
             if options.debug:
                 traceback.print_exc()
             sys.stderr.write(f"{program}: {printable_message(str(error))}\n")
-            return EXIT_USAGE
+            return error.exit_code
 
 
 def _interrupted(program: str, options: argparse.Namespace) -> int:

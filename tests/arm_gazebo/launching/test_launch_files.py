@@ -283,3 +283,44 @@ def test_ros_1_s_copies_are_below_the_robot_s_name():
 def test_copies_that_cannot_be_are_refused(given, sentence):
     with pytest.raises(UsageError, match=sentence):
         plan_of("arm_gazebo.launch.py", **given)
+
+
+CONTROLLERS = """
+controller_manager:
+  ros__parameters:
+    states: {{type: joint_state_broadcaster/JointStateBroadcaster}}
+    scaled: {{type: {}/ScaledJointTrajectoryController}}
+"""
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Return a function that writes a robot, and controllers with one of a package."""
+
+    def write(package: str) -> dict[str, str]:
+        file, model = tmp_path / "controllers.yaml", tmp_path / "robot.urdf"
+        file.write_text(CONTROLLERS.format(package))
+        model.write_text("<robot name='r'><link name='base'/></robot>")
+        return {"model": str(model), "controllers": str(file)}
+
+    return write
+
+
+def test_a_misspelt_type_of_a_controller_ends_the_launch_with_1(files, capsys):
+    words = [f"{name}:={value}" for name, value in files("joint_trajectory_controller").items()]
+    assert main(["launch", "arm_gazebo", "sim.launch.py", *words, "--print"]) == 1
+    assert capsys.readouterr().err.startswith(
+        "arm launch: scaled: no controller type 'joint_trajectory_controller/Scaled"
+        "JointTrajectoryController'; did you mean 'joint_trajectory_controller/JointTrajectory"
+    )
+
+
+def test_a_type_that_the_suite_lacks_is_a_warning_when_all_is_ready(files):
+    plan = plan_of("sim.launch.py", **files("ur_controllers"))
+    (note,) = [note for panel in plan.panels for note in panel.notes]
+    assert note == (
+        "warning",
+        "1 controller is left out, because the suite has no controller of the type: scaled "
+        "(ur_controllers/ScaledJointTrajectoryController)",
+    )
+    assert '"spawn": "states"' in parameters_of(plan, "arm_gazebo_node")

@@ -16,7 +16,6 @@ from arm_control.controllers.controller import (
     ReturnType,
 )
 from arm_control.errors import ControllerError
-from arm_control.hardware.info import parse_hardware_info
 from arm_control.parameters import (
     ParameterSpec,
     build_parameters,
@@ -27,6 +26,7 @@ from arm_control.parameters import (
     take_group,
 )
 from arm_control.run_inputs import run_input
+from arm_description.urdf.document import as_document
 
 MAX_WAITING = 1000
 """Commands between two cycles; of a faster stream the oldest are lost."""
@@ -226,9 +226,10 @@ class GpioCommandController(Controller[GpioCommandParameters]):
         context = self.context
         described: dict[str, tuple[str, ...]] = {}
         if context.robot_description:
-            for component in parse_hardware_info(context.document or context.robot_description):
-                for gpio in component.gpios:
-                    described[gpio.name] = tuple(state.name for state in gpio.state_interfaces)
+            robot = as_document(context.document or context.robot_description).root
+            for gpio in robot.iterfind("ros2_control/gpio"):
+                states = gpio.iterfind("state_interface")
+                described[gpio.get("name", "")] = tuple(state.get("name", "") for state in states)
         return {gpio: described.get(gpio, ()) for gpio in gpios}
 
 

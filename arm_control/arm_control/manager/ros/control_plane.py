@@ -26,6 +26,7 @@ from arm_control.manager.node_arguments import controller_arguments, parameter_f
 from arm_control.manager.parameter_file import ControllerParameterFile
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_node import ControllerNode
+from arm_control.manager.ros.parameter_node import OF_CONTROLLERS
 from arm_control.manager.switch_planner import Strictness, SwitchRequest, SwitchResult
 from arm_control.parameters import ParameterSpec
 from arm_description.urdf.document import Description
@@ -309,8 +310,6 @@ def _controller_specs(name: str) -> tuple[ParameterSpec, ...]:
     """Return the manager's parameters for one controller."""
     return tuple(
         ParameterSpec(f"{name}.{parameter}", str, True, (), description, read_only=False)
-        for parameter, description in (
-            ("fallback_controllers", "Controllers to activate if an update of this one fails"),
-            ("node_options_args", "ROS arguments for the controller's node"),
-        )
+        for parameter, description in OF_CONTROLLERS.items()
+        if parameter in ("fallback_controllers", "node_options_args")
     )

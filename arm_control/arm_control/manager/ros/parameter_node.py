@@ -16,7 +16,7 @@ from arm_node.parameters import declare_typed, given_parameters, in_its_type, se
 
 UNKNOWN = "Given, but not known to this node"
 TYPE_OF_CONTROLLER = "Type of the controller"
-_ABOUT = {
+OF_CONTROLLERS = {
     "type": TYPE_OF_CONTROLLER,
     "params_file": "Parameter files of the controller",
     "fallback_controllers": "Controllers to activate if an update of this one fails",
@@ -98,7 +98,9 @@ class ParameterNode(Node):
             if self.has_parameter(name):
                 continue
             kind = type_of(() if value is None else value)
-            about = ParameterDescriptor(description=_ABOUT.get(name.rpartition(".")[2], UNKNOWN))
+            about = ParameterDescriptor(
+                description=OF_CONTROLLERS.get(name.rpartition(".")[2], UNKNOWN)
+            )
             declare_typed(self, name, kind, () if value is None else value, about)
 
     def strings(self, name: str) -> tuple[str, ...]:

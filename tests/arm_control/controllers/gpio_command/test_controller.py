@@ -86,7 +86,7 @@ def test_parameters_are_named_after_the_gpios():
         "state_interfaces.valve.interfaces",
     ]
     assert all(spec.read_only for spec in GpioCommandController.parameter_specs(GIVEN))
-    with pytest.raises(ParameterError, match="unknown parameter command_interfaces.door"):
+    with pytest.raises(ParameterError, match=r"unknown parameter command_interfaces\.door"):
         GpioCommandController.build_parameters({**GIVEN, "command_interfaces.door.interfaces": []})
 
 
