@@ -1,6 +1,6 @@
 """Reads mesh files of every kind that a description may name.
 
-STL files have their own reader. trimesh reads the others: .obj .dae .glb .gltf .ply .off .3mf.
+STL and OBJ files have their own readers. trimesh reads the others: .dae .glb .gltf .ply .off .3mf.
 """
 
 import io
@@ -15,6 +15,7 @@ from arm_description.errors import MeshFileError
 from arm_description.mesh.collada import read_collada_unit
 from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
 from arm_description.mesh.gltf import check_gltf
+from arm_description.mesh.obj import read_obj
 from arm_description.mesh.packed import check_packed
 from arm_description.mesh.stl import read_stl
 from arm_node.user_file import check_file, read_bytes
@@ -28,8 +29,7 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     """Return the parts of a mesh file in m, one for each material.
 
     Raises:
-        MeshFileError: trimesh cannot read the file, the file would draw too much, or it has no
-            triangles.
+        MeshFileError: trimesh cannot read the file, or it would draw too much.
     """
     suffix = path.suffix.lower()
     unit = read_collada_unit(path) if suffix == COLLADA_SUFFIX else 1.0
@@ -57,8 +57,6 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     except Exception as error:
         # Each of trimesh's loaders raises its own exceptions, and any of them for a broken file.
         raise MeshFileError(f"{type(error).__name__}: {error}") from error
-    if not parts:
-        raise MeshFileError("no triangles in it")
     return parts
 
 
@@ -95,7 +93,8 @@ def _color(visual: Any) -> Color | None:
 
 STL_SUFFIX = ".stl"
 PACKED_SUFFIX = ".3mf"
-SCENE_SUFFIXES = (".obj", ".dae", ".glb", ".gltf", ".ply", ".off", PACKED_SUFFIX)
+OBJ_SUFFIX = ".obj"
+SCENE_SUFFIXES = (".dae", ".glb", ".gltf", ".ply", ".off", PACKED_SUFFIX)
 
 
 def check_mesh_file(path: Path) -> None:
@@ -105,8 +104,10 @@ def check_mesh_file(path: Path) -> None:
         MeshFileError: it is not a mesh; the message says why.
     """
     suffix = path.suffix.lower()
-    if suffix not in (STL_SUFFIX, *SCENE_SUFFIXES):
-        raise MeshFileError(f"'{suffix}' is not one of {STL_SUFFIX}, {', '.join(SCENE_SUFFIXES)}")
+    if suffix not in (STL_SUFFIX, OBJ_SUFFIX, *SCENE_SUFFIXES):
+        raise MeshFileError(
+            f"'{suffix}' is not one of {', '.join((STL_SUFFIX, OBJ_SUFFIX, *SCENE_SUFFIXES))}"
+        )
     try:
         check_file(path, LARGEST_BYTES)
     except (OSError, ValueError) as error:
@@ -123,7 +124,10 @@ def read_mesh_file(path: Path) -> tuple[MeshData, ...]:
     """
     if path.suffix.lower() == STL_SUFFIX:
         return (read_stl(read_bytes(path, LARGEST_BYTES)),)
-    return read_scene(path)
+    parts = read_obj(path) if path.suffix.lower() == OBJ_SUFFIX else read_scene(path)
+    if not parts:
+        raise MeshFileError("no triangles in it")
+    return parts
 
 
 def _packed_bytes(path: Path) -> int:

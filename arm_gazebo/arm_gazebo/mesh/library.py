@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError, ResourceNotFoundError
 from arm_description.mesh.data import LARGEST_BYTES, Color, Scale
-from arm_description.mesh.file import check_mesh_file, read_mesh_file
+from arm_description.mesh.file import OBJ_SUFFIX, check_mesh_file, read_mesh_file
+from arm_description.mesh.obj import material_files
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Mesh
 from arm_gazebo.errors import MeshError
@@ -177,12 +178,9 @@ def _contents(path: Path) -> Iterator[bytes]:
     """Yield the bytes of a mesh file, and of the material files that an .obj names."""
     content = read_bytes(path, LARGEST_BYTES)
     yield content
-    for name in MATERIALS.findall(content) if path.suffix.lower() == ".obj" else ():
-        try:
-            yield read_bytes(path.parent / name.decode("utf-8", "replace"), LARGEST_BYTES)
-        except (OSError, ValueError):
-            # A missing file is part of the key as well, because it may appear later.
-            yield b""
+    if path.suffix.lower() == OBJ_SUFFIX:
+        # A missing file is part of the key as well, because it may appear later.
+        yield from material_files(path.parent, MATERIALS.findall(content))
 
 
 def _drawable_parts(parts: Iterable[T], convert: Callable[[T], MeshPart]) -> tuple[MeshPart, ...]:
