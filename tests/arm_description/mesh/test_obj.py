@@ -113,7 +113,7 @@ def test_every_form_is_read_as_it_is_meant(tmp_path_factory, shape, seed, form, 
     assert volume == pytest.approx(floor * HEIGHT)
     assert bounds.tolist() == [np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()]
     if shape == "square" and form == "v":
-        # MuJoCo cuts faces with a notch wrongly, wants a normal for each corner, and reads one group.
+        # MuJoCo cuts a notch wrongly, wants a normal for each corner, and reads one group.
         lines = [line for line in path.read_text().splitlines() if line[:1] in ("v", "f")]
         path.write_text("\n".join(" ".join(line.split()) for line in lines))
         assert measures_of_mujoco(path) == pytest.approx((area, volume), rel=1e-5)
