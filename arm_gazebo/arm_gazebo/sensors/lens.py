@@ -24,6 +24,8 @@ RADII = 1025
 """Length of the table from which the first guess is interpolated."""
 BLOCK = 1 << 16
 """Number of pixels that are solved together; more would leave the processor's cache."""
+STEPS_INWARD = np.linspace(0.0, 1.0, 33)[:, np.newaxis]
+"""Places between the principal point and the picture's edge where a model is examined."""
 NEGLIGIBLE = 1e-12
 """Smallest coefficient that counts in the search for the radius where a model folds back."""
 
@@ -109,10 +111,12 @@ class Lens:
                 )
         with np.errstate(all="ignore"):
             x, y = self._undistorted(*wanted)
-            found, slopes = self._distorted(x, y), self._slopes(x, y)
+            found = self._distorted(x, y)
             error = np.maximum(np.abs(found[0] - wanted[0]), np.abs(found[1] - wanted[1]))
-            one_to_one = slopes[0] * slopes[2] > slopes[1] ** 2
-            bad = ~((error < ACCEPTED) & (np.hypot(x, y) < fold) & one_to_one)
+            # The slopes are those of a potential. Where it is convex, no two rays meet.
+            xx, xy, yy = self._slopes(x * STEPS_INWARD, y * STEPS_INWARD)
+            is_convex = ((xx > 0) & (xx * yy > xy * xy)).all(axis=0)
+            bad = ~((error < ACCEPTED) & (np.hypot(x, y) < fold) & is_convex)
         if bad.any():
             nearest = self.fx * float(np.hypot(wanted[0][bad], wanted[1][bad]).min())
             return f"it cannot be undone {nearest:.0f} pixels from the principal point"

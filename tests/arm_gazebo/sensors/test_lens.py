@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from arm_gazebo.sensors.lens import UNDISTORTED, Lens
 
@@ -65,6 +67,26 @@ def test_the_radius_is_where_two_rays_meet():
     assert f"folds back {reached:.0f} pixels" in lens.problem(900, 900)
     assert lens.problem(600, 600) == ""
     assert lens.problem(int(reached / 2**0.5) - 1, int(reached / 2**0.5) - 1) == ""
+
+
+coefficients = st.floats(-2, 2) | st.floats(-0.1, 0.1) | st.just(0.0)
+
+
+@given(
+    st.tuples(st.floats(1, 1e6), st.floats(1, 1e6), st.floats(-1e5, 1e5), st.floats(-1e5, 1e5)),
+    st.tuples(*(coefficients,) * 5),
+)
+def test_a_lens_is_refused_or_its_rays_meet_their_pixels(intrinsics, distortion):
+    lens = Lens(*intrinsics, 0.0, distortion)
+    if lens.problem(16, 12):
+        return
+    x, y = lens.rays(16, 12).reshape(-1, 2).T
+    points = np.stack([x, y, np.ones(len(x))], axis=1)
+    plain = np.eye(3)
+    pixels, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), plain, np.array(distortion))
+    columns, rows = np.meshgrid(np.arange(16) + 0.5, np.arange(12) + 0.5)
+    wanted = np.stack([(columns - lens.cx) / lens.fx, (rows - lens.cy) / lens.fy], axis=2)
+    np.testing.assert_allclose(pixels.reshape(-1, 2), wanted.reshape(-1, 2), rtol=1e-9, atol=1e-9)
 
 
 def test_a_tangential_part_that_cannot_be_undone_is_named():
