@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from arm_description.errors import MeshFileError
 from arm_description.mesh.collada import read_collada_unit
 from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
-from arm_description.mesh.gltf import check_gltf
+from arm_description.mesh.gltf import read_gltf
 from arm_description.mesh.obj import read_obj
-from arm_description.mesh.packed import check_packed
+from arm_description.mesh.packed import read_packed
 from arm_description.mesh.stl import read_stl
 from arm_node.user_file import check_file, read_bytes
 
 COLLADA_SUFFIX = ".dae"
-CHECKS = {".gltf": check_gltf, ".glb": check_gltf, ".3mf": check_packed}
-"""Checks before trimesh reads a file."""
+READERS = {".gltf": read_gltf, ".glb": read_gltf, ".3mf": read_packed}
+"""What checks a file, and corrects what trimesh would read wrongly, before trimesh reads it."""
 
 
 def read_scene(path: Path) -> tuple[MeshData, ...]:
@@ -33,9 +33,8 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     """
     suffix = path.suffix.lower()
     unit = read_collada_unit(path) if suffix == COLLADA_SUFFIX else 1.0
-    if suffix in CHECKS:
-        CHECKS[suffix](path)
-    content = io.BytesIO(read_bytes(path, LARGEST_BYTES))
+    read = READERS.get(suffix)
+    content = io.BytesIO(read(path) if read else read_bytes(path, LARGEST_BYTES))
     # trimesh takes half a second to import, and STL files do not need it.
     import trimesh
 

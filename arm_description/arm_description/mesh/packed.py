@@ -10,7 +10,9 @@ import lxml.etree as etree
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.collada import MAX_TEXT
+from arm_description.mesh.data import LARGEST_BYTES
 from arm_description.mesh.scene_graph import SceneNode, check_scene
+from arm_node.user_file import read_bytes
 
 MODEL = "3d/3dmodel.model"
 EXTERNAL = SceneNode(1, ())
@@ -37,11 +39,11 @@ def unpacked_bytes(path: Path) -> int:
         raise MeshFileError(f"it is not a ZIP file, as 3MF files are: {error}") from error
 
 
-def check_packed(path: Path) -> None:
-    """Refuse a .3mf file that is not 3MF, or that takes too much time or memory.
+def read_packed(path: Path) -> bytes:
+    """Return the content of a .3mf file.
 
     Raises:
-        MeshFileError: the file is refused.
+        MeshFileError: it is not 3MF, or takes too much time or memory.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -55,6 +57,7 @@ def check_packed(path: Path) -> None:
         raise MeshFileError(f"it is not 3MF: {error}") from error
     # Objects that are not in the model are in other files of the archive, one mesh each.
     check_scene(items, lambda name: objects.get(name, EXTERNAL))
+    return read_bytes(path, LARGEST_BYTES)
 
 
 def _read(model: IO[bytes], is_large: bool) -> tuple[dict[str, SceneNode], list[str]]:
