@@ -6,11 +6,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import lxml.etree as etree
+import numpy as np
 
 from arm_description.errors import UrdfError
+from arm_description.transforms import rotation_from_quaternion, rpy_from_rotation
 from arm_description.urdf.robot import Pose, Vector
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+QUATERNION, QUATERNION_VERSIONS = "quat_xyzw", ("1.1", "1.2")
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +139,27 @@ class UrdfElement:
         if origin is None:
             return Pose()
         zero = (0.0, 0.0, 0.0)
-        return Pose(origin.vector("xyz", zero), origin.vector("rpy", zero))
+        rpy = origin._quaternion() or origin.vector("rpy", zero)
+        return Pose(origin.vector("xyz", zero), rpy)
+
+    def _quaternion(self) -> Vector | None:
+        """Return the rotation of a quat_xyzw, which URDF has since version 1.1, as rpy."""
+        if self._element.get(QUATERNION) is None:
+            return None
+        version = next(self._element.iterancestors("robot")).get("version", "1.0")
+        if version not in QUATERNION_VERSIONS:
+            self.warn(
+                f"has {QUATERNION}, which is ignored in URDF {version}; it needs "
+                f'<robot version="{QUATERNION_VERSIONS[0]}">'
+            )
+            return None
+        if self._element.get("rpy") is not None:
+            raise self.error(f"has both rpy and {QUATERNION}")
+        quaternion = np.array(self.numbers(QUATERNION, 4))
+        length = float(np.linalg.norm(quaternion))
+        if not 0.0 < length < math.inf:
+            raise self.error(f"has a {QUATERNION} that is no rotation")
+        return rpy_from_rotation(rotation_from_quaternion(quaternion / length))
 
     def _number(self, attribute: str, word: str) -> float:
         # float() would also accept "nan", "1_000" and digits of other scripts.

@@ -15,7 +15,10 @@ from arm_description.package_search import PackagePlace
 from arm_description.urdf.element import Remark
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Mesh, Robot
+from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.check.mesh_sizes import mesh_sizes
+from arm_gazebo.check.ros_parser import refused_by_ros
+from arm_gazebo.check.units import other_units
 from arm_gazebo.check.unread_elements import unread_elements
 from arm_gazebo.drives.servo_tuning import tune, weak_drives
 from arm_gazebo.errors import GazeboError
@@ -131,7 +134,7 @@ def check_description(
         report.repair(remark.element, remark.problem, remark.line)
 
     with failures(report, source):
-        report.add(*unread_elements(urdf, source))
+        report.add(*unread_elements(urdf, source), *refused_by_ros(urdf, parse_xml(urdf, source)))
     if report.findings and report.findings[-1].outcome is BuildOutcome.FAILED:
         # Without XML no other check is possible.
         return DescriptionCheck(None, report.findings, options.resources.used)
@@ -156,7 +159,7 @@ def check_description(
             )
             report.add(*built.report.findings)
             _check_strength(built, report)
-            report.add(*mesh_sizes(robot, built))
+            report.add(*mesh_sizes(robot, built), *other_units(robot, built))
             summary = _summary(without_independent_mimics(robot, hardware), built, cameras, sensors)
     return DescriptionCheck(summary, _without_repeats(report.findings), options.resources.used)
 

@@ -4,12 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from arm_description.urdf.element import written_name
+from arm_description.urdf.element import QUATERNION, written_name
 from arm_description.urdf.xml_document import is_foreign, parse_xml
 from arm_gazebo.sensors.reader import sensor_type
 from arm_gazebo.sensors.tags import COLOR_FORMATS
 from arm_gazebo.spec.report import BuildOutcome, Finding
 
+UNUSED = "the simulation does not use it"
 _SHAPES = {
     "origin": {},
     "geometry": {"box": {}, "cylinder": {}, "sphere": {}, "capsule": {}, "mesh": {}},
@@ -37,6 +38,34 @@ _READ: dict[str, Any] = {
     "ros2_control": None,
     "transmission": None,
 }
+# The attributes of those elements.
+_ATTRIBUTES = {
+    "robot": ("name", "version"),
+    "material": ("name",),
+    "color": ("rgba",),
+    "texture": ("filename",),
+    "link": ("name",),
+    "inertial": (),
+    "mass": ("value",),
+    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
+    "visual": ("name",),
+    "collision": ("name",),
+    "origin": ("xyz", "rpy", QUATERNION),
+    "geometry": (),
+    "box": ("size",),
+    "cylinder": ("radius", "length"),
+    "sphere": ("radius",),
+    "capsule": ("radius", "length"),
+    "mesh": ("filename", "scale"),
+    "joint": ("name", "type"),
+    "parent": ("link",),
+    "child": ("link",),
+    "axis": ("xyz",),
+    "limit": ("lower", "upper", "effort", "velocity"),
+    "dynamics": ("damping", "friction"),
+    "mimic": ("joint", "multiplier", "offset"),
+    "safety_controller": ("soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"),
+}
 
 
 def unread_elements(urdf_xml: str, source: str = "robot_description") -> tuple[Finding, ...]:
@@ -49,7 +78,8 @@ def unread_elements(urdf_xml: str, source: str = "robot_description") -> tuple[F
     """
     root = parse_xml(urdf_xml, source)
     groups: dict[str, list[Finding]] = {}
-    for kind, finding in (*_unknown(root, _READ, "<robot>"), *_meaningless(root)):
+    own = _unknown_attributes(root, "<robot>") if root.tag == "robot" else ()
+    for kind, finding in (*own, *_unknown(root, _READ, "<robot>"), *_meaningless(root)):
         groups.setdefault(kind, []).append(finding)
     return tuple(_counted(group) for group in groups.values())
 
@@ -66,11 +96,21 @@ def _unknown(element: Any, read: dict[str, Any], owner: str) -> Iterator[tuple[s
             # The reader of the description reports it.
             continue
         if name not in read:
-            yield name, _dropped(child, f"<{name}> in {owner}", "the simulation does not use it")
+            yield name, _dropped(child, f"<{name}> in {owner}", UNUSED)
         elif read[name] is not None:
             called = child.get("name")
             here = f"{name} '{called}'" if called and element.getparent() is None else owner
+            yield from _unknown_attributes(child, here)
             yield from _unknown(child, read[name], here)
+
+
+def _unknown_attributes(element: Any, owner: str) -> Iterator[tuple[str, Finding]]:
+    tag = written_name(element)
+    for key in map(str, element.attrib):
+        # "{...}" is a namespace.
+        if key not in _ATTRIBUTES[tag] and not key.startswith("{"):
+            what = owner if owner.startswith((f"{tag} ", f"<{tag}>")) else f"<{tag}> of {owner}"
+            yield f"{tag} {key}", _dropped(element, f"{key}='{element.get(key)}' of {what}", UNUSED)
 
 
 def _meaningless(root: Any) -> Iterator[tuple[str, Finding]]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from arm_description.transforms import rpy_from_rotation
 from arm_description.urdf.description_source import source_of, with_source
+from arm_description.urdf.element import QUATERNION
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
@@ -61,5 +62,6 @@ def _set_origin(joint: etree._Element, matrix: np.ndarray) -> None:
     origin = joint.find("origin")
     if origin is None:
         origin = etree.SubElement(joint, "origin")
+    origin.attrib.pop(QUATERNION, None)
     origin.set("xyz", " ".join(map(repr, matrix[:3, 3].tolist())))
     origin.set("rpy", " ".join(map(repr, rpy_from_rotation(matrix[:3, :3]))))

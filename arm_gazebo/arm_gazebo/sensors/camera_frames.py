@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.errors import UrdfError
 from arm_description.transforms import rotation_from_rpy
+from arm_description.urdf.element import UrdfElement
+from arm_description.urdf.parser import ignore_remark
 from arm_description.urdf.robot import Pose
 
 Matrix = NDArray[np.float64]
@@ -71,17 +74,7 @@ def _child_of(joint: Any, parent: str) -> str:
 
 def _origin(joint: Any) -> Pose | None:
     """Return the pose of a joint in its parent link; None if the origin is invalid."""
-    origin = joint.find("origin")
-    if origin is None:
-        return Pose()
     try:
-        numbers = [
-            [float(word) for word in str(origin.get(name) or "0 0 0").split()]
-            for name in ("xyz", "rpy")
-        ]
-    except ValueError:
+        return UrdfElement(joint, ignore_remark).origin()
+    except UrdfError:
         return None
-    if any(len(three) != 3 or not all(map(math.isfinite, three)) for three in numbers):
-        return None
-    (x, y, z), (roll, pitch, yaw) = numbers
-    return Pose((x, y, z), (roll, pitch, yaw))

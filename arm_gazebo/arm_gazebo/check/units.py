@@ -1,0 +1,132 @@
+"""Find values of a description that look like another unit: degrees, millimetres, grams."""
+
+import math
+from collections.abc import Iterator
+
+from arm_description.urdf.robot import Box, Capsule, Cylinder, Geometry, Joint, Link, Robot, Sphere
+from arm_gazebo.model.built_model import BuiltModel
+from arm_gazebo.spec.report import BuildOutcome, Finding
+
+MANY_TURNS_RAD = 10.0 * math.tau
+"""Limits beyond this are doubted: no arm's cables take ten turns, and 90 degrees would be 14."""
+FAST_RAD_S = (90.0, 1000.0)
+"""Joints of arms turn with up to about 20 rad/s; faster than the second means no limit."""
+LONG_M = 20.0
+"""A part or a distance of two joints above this is doubted; cranes and bridges are below it."""
+LIFTS = 100.0
+"""A robot whose joints lift this many times its own weight at its reach is doubted."""
+GRAVITY = 9.81
+
+
+def other_units(robot: Robot, built: BuiltModel) -> Iterator[Finding]:
+    """Yield one finding for each kind of value that looks like another unit.
+
+    Args:
+        robot: the description.
+        built: its model, whose masses are those after repairs.
+    """
+    yield from _once(_in_degrees(joint) for joint in robot.joints)
+    yield from _once(_fast(joint) for joint in robot.joints)
+    yield from _once(_long_distance(joint) for joint in robot.joints)
+    yield from _once(_long_shape(link) for link in robot.links)
+    yield from _light(robot, built)
+
+
+def _once(findings: Iterator[Finding | None]) -> Iterator[Finding]:
+    """Yield the first finding, with the number of the others."""
+    found = [finding for finding in findings if finding is not None]
+    if found:
+        first, others = found[0], len(found) - 1
+        name = f"{first.element} and {others} more" if others else first.element
+        yield Finding(first.outcome, name, first.message, first.line, len(found))
+
+
+def _in_degrees(joint: Joint) -> Finding | None:
+    limit = joint.limit
+    if limit is None or not joint.type.turns or not joint.type.needs_limit:
+        return None
+    if max(-limit.lower, limit.upper) <= MANY_TURNS_RAD:
+        return None
+    low, high = math.radians(limit.lower), math.radians(limit.upper)
+    return _doubt(
+        joint,
+        f"its limits {limit.lower:g} and {limit.upper:g} are {limit.upper / math.tau:.0f} turns; "
+        f'in degrees they would be lower="{low:.4g}" upper="{high:.4g}"',
+    )
+
+
+def _fast(joint: Joint) -> Finding | None:
+    if joint.limit is None or not joint.type.turns:
+        return None
+    speed = joint.limit.velocity
+    if not FAST_RAD_S[0] <= speed <= FAST_RAD_S[1]:
+        return None
+    return _doubt(
+        joint,
+        f"its velocity {speed:g} rad/s is {speed / math.tau:.0f} turns a second; in degrees it "
+        f'would be velocity="{math.radians(speed):.4g}"',
+    )
+
+
+def _long_distance(joint: Joint) -> Finding | None:
+    distance = max(map(abs, joint.origin.xyz))
+    if distance <= LONG_M:
+        return None
+    xyz = " ".join(f"{value / 1000:.6g}" for value in joint.origin.xyz)
+    return _doubt(
+        joint,
+        f'its origin is {distance:g} m from its parent; from millimetres it would be xyz="{xyz}"',
+    )
+
+
+def _long_shape(link: Link) -> Finding | None:
+    for shape in (*link.visuals, *link.collisions):
+        length = _length(shape.geometry)
+        if length > LONG_M:
+            kind = type(shape.geometry).__name__.lower()
+            return Finding(
+                BuildOutcome.DOUBTFUL,
+                f"link '{link.name}'",
+                f"its {kind} is {length:g} m long; from millimetres it would be "
+                f"{length / 1000:.4g} m",
+                link.line,
+            )
+    return None
+
+
+def _length(shape: Geometry) -> float:
+    match shape:
+        case Box(size):
+            return max(size)
+        case Cylinder(radius, length) | Capsule(radius, length):
+            return max(2.0 * radius, length)
+        case Sphere(radius):
+            return 2.0 * radius
+        case _:
+            return 0.0  # `mesh_sizes` looks at meshes.
+
+
+def _light(robot: Robot, built: BuiltModel) -> Iterator[Finding]:
+    """Yield whether the joints' efforts could lift the whole robot many times."""
+    mass = float(built.model.body_mass[list(built.bodies.values())].sum())
+    reach = sum(math.hypot(*joint.origin.xyz) for joint in robot.joints)
+    efforts = [j.limit.effort for j in robot.joints if j.limit is not None and j.type.turns]
+    payload = max(efforts, default=0.0) / (GRAVITY * reach) if reach else 0.0
+    given = [link for link in robot.links if link.inertial is not None and link.inertial.mass]
+    if not given or payload < LIFTS * mass:
+        return  # A link without a mass is reported by the builder, which gives it one.
+    yield Finding(
+        BuildOutcome.DOUBTFUL,
+        f"robot '{robot.name}'",
+        f"it weighs {_mass(mass)}, but its joints could lift {_mass(payload)} at its reach of "
+        f"{reach:.2g} m; are its masses in kg, and its efforts in N m?",
+        given[0].line,
+    )
+
+
+def _mass(mass: float) -> str:
+    return f"{mass:.3g} kg" if mass >= 0.1 else f"{mass * 1000:.2g} g"
+
+
+def _doubt(joint: Joint, message: str) -> Finding:
+    return Finding(BuildOutcome.DOUBTFUL, f"joint '{joint.name}'", message, joint.line)
