@@ -4,16 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Self
 
 from launch_py.action import Action, check_actions
 from launch_py.errors import errors_attributed_to
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_entity import LaunchSurvey
 from launch_py.plan.steps import LaunchPlan
+from launch_py.ros_launch import bridged, reading_launch
 
 
 class LaunchDescription:
-    """Actions in the order in which they are expanded."""
+    """Actions in the order in which they are expanded.
+
+    Where ROS 2's own `launch` reads the file, an instance is one of its descriptions, too; see
+    `launch_py.ros_launch`.
+    """
+
+    def __new__(cls, *_args: object, **_options: object) -> Self:
+        """Return an instance, of the bridged class where ROS 2's `launch` reads the file."""
+        launch = reading_launch() if cls is LaunchDescription else None
+        return super().__new__(cls if launch is None else bridged(cls, launch, survey_description))
 
     def __init__(
         self,
@@ -21,12 +32,17 @@ class LaunchDescription:
         *,
         deprecated_reason: str | None = None,
     ) -> None:
-        self.entities: list[Action] = check_actions(initial_entities or (), "LaunchDescription")
-        self.deprecated_reason = deprecated_reason
+        self._entities = check_actions(initial_entities or (), "LaunchDescription")
+        self._deprecated_reason = deprecated_reason
+
+    @property
+    def entities(self) -> list[Action]:
+        """The actions."""
+        return self._entities
 
     def add_action(self, action: Action) -> None:
         """Append one action."""
-        self.entities.extend(check_actions([action], "LaunchDescription.add_action"))
+        self._entities.extend(check_actions([action], "LaunchDescription.add_action"))
 
     def add_entity(self, entity: Action) -> None:
         """Append one action; ROS has both names."""
@@ -34,15 +50,17 @@ class LaunchDescription:
 
     def visit(self, context: LaunchContext) -> None:
         """Expand all actions in this scope."""
-        if self.deprecated_reason is not None:
+        if self._deprecated_reason is not None:
             name = _name(context.launch_file)
-            context.warnings.append(f"launch file [{name}] is deprecated: {self.deprecated_reason}")
-        for entity in self.entities:
+            context.warnings.append(
+                f"launch file [{name}] is deprecated: {self._deprecated_reason}"
+            )
+        for entity in self._entities:
             entity.visit(context)
 
     def survey(self, survey: LaunchSurvey, context: LaunchContext) -> None:
         """Let all actions add to the survey."""
-        for entity in self.entities:
+        for entity in self._entities:
             entity.survey(survey, context)
 
 

@@ -11,6 +11,7 @@ from launch_py.action import LAUNCH_FILE
 from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
 from launch_py.launch_description import LaunchDescription
 from launch_py.ros_imports import MissingRosNameError, ros_imports
+from launch_py.ros_launch import read_by_launch_py
 from launch_py.substitution import LaunchScope, Text, describe_text, perform_text
 from launch_py.system.packages import Packages, describe_missing_launch_file
 
@@ -83,7 +84,7 @@ def _read_python(path: Path) -> LaunchDescription:
     module.__file__ = module.__dict__[LAUNCH_FILE] = str(path)
     try:
         # Compiled by hand: an import would leave a __pycache__ in the installed share folder.
-        with ros_imports():
+        with ros_imports(), read_by_launch_py():
             exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
             generate = getattr(module, "generate_launch_description", None)
             if generate is None:

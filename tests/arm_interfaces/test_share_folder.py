@@ -13,6 +13,7 @@ PACKAGES = [
     "tf2_msgs",
     "control_msgs",
     "controller_manager_msgs",
+    "composition_interfaces",
     "pal_statistics_msgs",
     "simulation_interfaces",
 ]

@@ -25,6 +25,8 @@ from launch_py.near_names import (
 from launch_py.system.stand_ins import NOTHING, SAME, StandIn, stand_ins
 
 MARKERS = "share/ament_index/resource_index/packages"
+STAND_IN_MARK = "stand-in of arm-suite\n"
+"""What the marker of a package holds that stands in the index for ROS 2's own tools only."""
 PROGRAMS = "launch_py.programs"
 """Group of entry points: the name of a program, and the function that replaces it."""
 STAND_INS = "launch_py.packages"
@@ -148,7 +150,7 @@ class Packages:
             NotFoundError: no prefix has the package; the message suggests similar names.
         """
         for prefix in self._prefixes:
-            if os.path.isfile(os.path.join(prefix, MARKERS, package)):
+            if _has_package(prefix, package):
                 return Path(prefix, "share", package)
         raise self._no_package(package, self._indexed_packages())
 
@@ -226,7 +228,11 @@ class Packages:
         for script in own:
             if script.name == name:
                 return script.command()
-        folders = [os.path.join(prefix, "lib", package) for prefix in self._prefixes]
+        folders = [
+            os.path.join(prefix, "lib", package)
+            for prefix in self._prefixes
+            if not _is_stand_in(prefix, package)
+        ]
         files: set[str] = set()
         for folder in folders:
             path = os.path.join(folder, name)
@@ -306,7 +312,7 @@ class Packages:
         for prefix in self._prefixes:
             folder = os.path.join(prefix, MARKERS)
             if os.path.isdir(folder):
-                names.update(os.listdir(folder))
+                names.update(n for n in os.listdir(folder) if not _is_stand_in(prefix, n))
         return names
 
     def _no_package(self, package: str, known: set[str]) -> NotFoundError:
@@ -329,6 +335,20 @@ class Packages:
                 if name.endswith((".dist-info", ".egg-info")):
                     path = os.path.join(folder, name, "entry_points.txt")
                     yield from _read_entry_points(path, group)
+
+
+def _has_package(prefix: str, package: str) -> bool:
+    marker = os.path.join(prefix, MARKERS, package)
+    return os.path.isfile(marker) and not _is_stand_in(prefix, package)
+
+
+def _is_stand_in(prefix: str, package: str) -> bool:
+    """Return whether a prefix has the package for ROS 2's own tools only."""
+    try:
+        with open(os.path.join(prefix, MARKERS, package), encoding="utf-8") as file:
+            return file.read(len(STAND_IN_MARK) + 1) == STAND_IN_MARK
+    except (OSError, UnicodeError):
+        return False
 
 
 def _read_entry_points(path: str, group: str) -> Iterator[tuple[str, str]]:
