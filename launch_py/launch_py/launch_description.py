@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Self
+from typing import Self, cast
 
 from launch_py.action import Action, check_actions
 from launch_py.errors import errors_attributed_to
@@ -24,9 +24,11 @@ class LaunchDescription:
     def __new__(cls, *_args: object, **_options: object) -> Self:
         """Return an instance, of the bridged class where ROS 2's `launch` reads the file."""
         launch = reading_launch() if cls is LaunchDescription else None
-        return super().__new__(cls if launch is None else bridged(cls, launch, survey_description))
+        if launch is None:
+            return super().__new__(cls)
+        return cast("Self", object.__new__(bridged(cls, launch, survey_description)))
 
-    def __init__(
+    def __init__(  # pyright: ignore[reportInconsistentConstructor]
         self,
         initial_entities: Iterable[Action] | None = None,
         *,

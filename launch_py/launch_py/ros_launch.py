@@ -6,6 +6,7 @@ declares its arguments, and starts this package's launcher with its file.
 
 from __future__ import annotations
 
+import inspect
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -48,7 +49,7 @@ def calling_launch_file() -> Path:
     Raises:
         LaunchFileError: the description is not made in a launch file.
     """
-    frame = sys._getframe(1)
+    frame = inspect.currentframe()
     while frame is not None:
         path = frame.f_code.co_filename
         if path.endswith("launch.py") and path != __file__ and os.path.isfile(path):
@@ -69,8 +70,9 @@ def bridged(description: type, launch: ModuleType, survey: Callable[..., Any]) -
         launch: ROS 2's package.
         survey: the function `survey_description` of this package.
     """
+    bases: tuple[Any, ...] = (description, launch.LaunchDescription)
 
-    class BridgedDescription(description, launch.LaunchDescription):
+    class BridgedDescription(*bases):  # pyright: ignore[reportUntypedBaseClass]
         """Declares the arguments, and starts `arm launch` with the file; see the module."""
 
         def __init__(self, *args: Any, **options: Any) -> None:
