@@ -30,6 +30,7 @@ from launch_py.substitutions import (
 
 OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=ros1 replace:=true"
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
+OF_FILE = EqualsSubstitution(LaunchConfiguration("spawn"), "auto")
 IS_ALONE = EqualsSubstitution(LaunchConfiguration("copies"), "1")
 
 
@@ -40,19 +41,24 @@ def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
 
 def panels() -> list[ReadyPanel]:
     """Return the panels shown to the user; sim.launch.py has that of copies."""
+    is_ros2 = AndSubstitution(IS_ALONE, NotSubstitution(IS_ROS1))
     return [
         ReadyPanel(
             title="The arm is up",
-            topics=[
-                ("/position_controller/commands", "std_msgs/msg/Float64MultiArray, j0 to j3"),
-                ("/joint_states", "sensor_msgs/msg/JointState"),
-                ("/videocamera", "sensor_msgs/msg/Image"),
-            ],
+            topics=[("/position_controller/commands", "std_msgs/msg/Float64MultiArray, j0 to j3")],
             commands=[
                 ("type poses", "publisher_terminal"),
                 ("five poses", "publisher_defined"),
             ],
-            condition=IfCondition(AndSubstitution(IS_ALONE, NotSubstitution(IS_ROS1))),
+            condition=IfCondition(AndSubstitution(is_ros2, NotSubstitution(OF_FILE))),
+        ),
+        ReadyPanel(
+            title="The arm is up",
+            topics=[
+                ("/joint_states", "sensor_msgs/msg/JointState"),
+                ("/videocamera", "sensor_msgs/msg/Image"),
+            ],
+            condition=IfCondition(is_ros2),
         ),
         ReadyPanel(
             title="The arm is up, as in ROS 1",
@@ -101,12 +107,19 @@ def controller_node() -> Node:
     )
 
 
+def start_those_of_the_file(context: LaunchContext) -> None:
+    """Start the controllers of a file that the user gives, unless `spawn` names some."""
+    if "controllers" in context.launch_configurations:
+        context.launch_configurations.setdefault("spawn", "auto")
+
+
 def generate_launch_description() -> LaunchDescription:
     """Return the world with controllers, and the controller node without a pose."""
     world = PathJoinSubstitution([FindPackageShare("arm_gazebo"), "launch", "arm_world.launch.py"])
     single = ",".join(f"j{i}p_controller" for i in range(4))
     return LaunchDescription(
         [
+            OpaqueFunction(function=start_those_of_the_file),
             DeclareLaunchArgument("course", **COURSE_ARGUMENT),
             OpaqueFunction(function=take_course),
             DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
@@ -126,7 +139,8 @@ def generate_launch_description() -> LaunchDescription:
                     "joint_state_broadcaster,position_controller",
                     f"joint_state_broadcaster,{single}",
                 ),
-                description="controllers to start with the simulation, separated by commas",
+                description="controllers to start with the simulation, separated by commas; with "
+                "controllers:=FILE those of the file",
             ),
             DeclareLaunchArgument(
                 "copies",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from arm_cli.errors import UnansweredError
 from arm_cli.output import add_json_argument, complain, print_json, say, say_document
-from arm_cli.parameter_values import LABELS, TYPE_NAMES, content_of, read_value
+from arm_cli.parameter_values import LABELS, NOT_SET, TYPE_NAMES, content_of, read_value
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.verb import VerbFunctions
@@ -143,6 +143,8 @@ def get(options: argparse.Namespace) -> None:
     """
     with open_parameters(options.node_name) as parameters:
         value = parameters.value(options.parameter_name)
+        unset = value.type == NOT_SET
+        described = parameters.descriptors([options.parameter_name]) if unset else []
     content = content_of(value)
     if options.json:
         print_json(read_value(value))
@@ -151,6 +153,12 @@ def get(options: argparse.Namespace) -> None:
     else:
         words = [LABELS[value.type]] if content is None else [LABELS[value.type], content]
         say_document(" ".join(map(str, words)))
+    for descriptor in described:
+        about = f" ({descriptor.description})" if descriptor.description else ""
+        complain(
+            f"{options.parameter_name}{about} is declared, but has no value yet; give it one: "
+            f"arm param set {options.node_name} {options.parameter_name} VALUE"
+        )
 
 
 def add_describe_arguments(parser: argparse.ArgumentParser) -> None:

@@ -9,6 +9,7 @@ from arm_control.controllers.controller import Controller, ControllerContext
 from arm_control.errors import ArmControlError, ControllerManagerError, ParameterError
 from arm_control.manager.registry import controller_class
 from arm_control.parameters import ParameterSpec
+from arm_node.names import listing
 from arm_node.printable import first_line
 
 logger = logging.getLogger("controller_manager")
@@ -28,14 +29,24 @@ The manager accepts them after the controller's name and a dot.
 """
 
 
-def only_type(name: str, types: Sequence[str]) -> str:
+def only_type(name: str, types: Sequence[str], parameters: Iterable[str]) -> str:
     """Return the type of a controller from the values that its parameter has.
+
+    Args:
+        name: the controller's name.
+        types: the values.
+        parameters: names of the manager's parameters, for the message.
 
     Raises:
         ControllerManagerError: it has none, or several.
     """
     if len(types) != 1:
-        raise ControllerManagerError(f"The 'type' param was not defined for '{name}'.")
+        suffix = ".type"
+        named = [each.removesuffix(suffix) for each in parameters if each.endswith(suffix)]
+        raise ControllerManagerError(
+            f"The 'type' param was not defined for '{name}'. It is defined for "
+            f"{listing(sorted(named))}."
+        )
     return types[0]
 
 

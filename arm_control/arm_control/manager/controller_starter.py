@@ -88,7 +88,8 @@ class ControllerStarter:
         Raises:
             ArmControlError: its type is unknown, or its name is taken.
         """
-        type_name = only_type(name, self._strings(f"{name}.type") or self._own_type(name))
+        types = self._strings(f"{name}.type") or self._own_type(name)
+        type_name = only_type(name, types, self._of_manager)
         context = ControllerContext.of(name, self._manager.update_rate_hz, self._robot_description)
         controller = create_controller(type_name, context)
         fallbacks = self._strings(f"{name}.fallback_controllers")

@@ -65,7 +65,7 @@ def test_parameters_of_a_namespace_are_found():
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (file({}), "The 'type' param was not defined for 'ctrl'"),
+        (file({}), "The 'type' param was not defined for 'ctrl'. It is defined for nothing"),
         (file({"ctrl": {"type": 3}}), "'ctrl.type' must be a string or a list of strings, not 3"),
         (file({"ctrl": {"type": "no/Type"}}), "no controller type 'no/Type'; known:"),
         (file({"ctrl": {"type": FORWARD}}), "'joints' parameter was empty"),

@@ -293,6 +293,21 @@ controller_manager:
 """
 
 
+def test_a_file_of_controllers_starts_what_it_has(tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text(CONTROLLERS.format("ur_controllers"))
+    plan = plan_of("arm_gazebo.launch.py", controllers=str(file))
+    assert '"spawn": "states"' in parameters_of(plan, "arm_gazebo_node")
+    shown = [topic for panel in plan.panels for topic, _ in panel.topics]
+    assert shown == ["/joint_states", "/videocamera"]
+    plan = plan_of("arm_gazebo.launch.py", controllers=str(file), spawn="states,scaled")
+    assert '"spawn": "states,scaled"' in parameters_of(plan, "arm_gazebo_node")
+    plan = plan_of("arm_gazebo.launch.py", course="S1")
+    assert '"spawn": "joint_state_broadcaster,position_controller"' in parameters_of(
+        plan, "arm_gazebo_node"
+    )
+
+
 @pytest.fixture
 def files(tmp_path):
     """Return a function that writes a robot, and controllers with one of a package."""

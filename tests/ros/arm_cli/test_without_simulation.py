@@ -5,6 +5,7 @@ import shlex
 from typing import Any
 
 import pytest
+from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
 from std_srvs.srv import SetBool
@@ -94,6 +95,15 @@ def test_tab_knows_parameters_and_their_values(client, offered):
         ("arm service call /test_client/set", ["/test_client/set_parameters"]),
     ):
         client.wait_until(lambda line=line, words=words: offers(line, *words), f"{line}: {words}")
+
+
+def test_what_is_not_set_is_said_with_how_to_set_it(client, start):
+    client.node.declare_parameter("goal", Parameter.Type.DOUBLE)
+    command = start("arm param get /test_client goal")
+    assert command.wait() == 0
+    assert command.out == "Parameter not set.\n"
+    assert "goal is declared, but has no value yet" in command.err
+    assert "arm param set /test_client goal VALUE" in command.err
 
 
 NO_ROS = "ROS_LOG_DIR=/dev/null"

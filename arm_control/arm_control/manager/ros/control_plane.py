@@ -93,7 +93,8 @@ class ControlPlane:
                 raise ControllerManagerError(
                     f"a controller cannot have the controller manager's name '{name}'"
                 )
-            type_name = only_type(name, self._node.strings(f"{name}.type") or self._own_type(name))
+            types = self._node.strings(f"{name}.type") or self._own_type(name)
+            type_name = only_type(name, types, self._node.get_parameters_by_prefix(""))
             self._node.declare_specs(_controller_specs(name))
             fallbacks = self._node.strings(f"{name}.fallback_controllers")
             node = self._make_node(name, type_name)

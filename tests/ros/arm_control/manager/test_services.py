@@ -89,7 +89,7 @@ def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> Non
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("nothere", "The 'type' param was not defined for 'nothere'."),
+        ("nothere", "The 'type' param was not defined for 'nothere'. It is defined for "),
         (
             "strange_controller",
             "no controller type 'strange_controllers/StrangeController'; known: ",
