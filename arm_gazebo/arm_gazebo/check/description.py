@@ -22,6 +22,7 @@ from arm_gazebo.check.units import other_units
 from arm_gazebo.check.unread_elements import unread_elements
 from arm_gazebo.drives.servo_tuning import tune, weak_drives
 from arm_gazebo.errors import GazeboError
+from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_hardware import MAX_EFFORT, STATES
 from arm_gazebo.launching.default_control import commandable_joints, with_hardware
 from arm_gazebo.model.builder import build_model
@@ -193,7 +194,15 @@ def _check_interfaces(
         offered = {
             *(f"{joint.name}/{name}" for joint in component.joints for name in JOINT_INTERFACES),
             *(f"{sensor.name}/{channel}" for sensor in sensors for channel in sensor.channels),
+            *(gpios := SimulatedGpios(component)).states,
+            *gpios.commands,
         }
+        if gpios.unset:
+            report.inform(
+                f"<ros2_control name='{component.name}'>",
+                f"nothing sets {', '.join(gpios.unset)}, and no initial_value is given: NaN",
+                component.line,
+            )
         every = (*component.command_interface_names, *component.state_interface_names)
         left_out = [name for name in dict.fromkeys(every) if name not in offered]
         if left_out:

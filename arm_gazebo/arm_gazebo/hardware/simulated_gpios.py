@@ -17,6 +17,7 @@ class SimulatedGpios:
     Attributes:
         states: full names of the state interfaces, in the order of the block.
         commands: full names of the command interfaces, likewise.
+        unset: the states that are NaN as long as the simulation runs.
     """
 
     def __init__(self, info: HardwareInfo) -> None:
@@ -34,6 +35,7 @@ class SimulatedGpios:
         self._from = np.array([self.commands.index(name) for name in followed], dtype=np.intp)
         self._to = np.array([self.states.index(name) for name in followed], dtype=np.intp)
         self._initial = [initial.get(name, math.nan) for name in self.states]
+        self.unset = tuple(n for n in self.states if n not in initial and n not in followed)
 
     def start(self, states: NDArray[np.float64], commands: NDArray[np.float64]) -> None:
         """Set the states to their initial values; no command is given.

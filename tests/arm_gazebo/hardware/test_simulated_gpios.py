@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
+
 GPIO = """
 <gpio name="lamp">
   <param name="pin">7</param>
@@ -45,6 +47,10 @@ def test_they_are_listed_after_the_joints(arm):
     assert hardware.command_interfaces[-2:] == COMMANDS
     assert hardware.info.gpios[0].parameters == {"pin": "7"}
     assert hardware.info.data_types["lamp/on"] == "bool"
+
+
+def test_what_nothing_sets_is_known(arm):
+    assert SimulatedGpios(arm.hardware.info).unset == ("valve/flow",)
 
 
 def test_states_begin_with_their_initial_values(gpios):
