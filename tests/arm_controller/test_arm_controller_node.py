@@ -28,6 +28,7 @@ def set_pose(robot) -> Callable:
     types = {
         "double_array_value": ParameterType.PARAMETER_DOUBLE_ARRAY,
         "integer_array_value": ParameterType.PARAMETER_INTEGER_ARRAY,
+        "bool_array_value": ParameterType.PARAMETER_BOOL_ARRAY,
         "string_value": ParameterType.PARAMETER_STRING,
     }
 

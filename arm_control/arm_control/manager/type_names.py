@@ -42,15 +42,21 @@ it has some of their packages."""
 
 SAME_BUT_FOR_TYPING = 0.92
 """Similarity, 1 for equal, from which a type of another package counts as misspelt."""
-MIN_SIMILARITY = 0.7
+MIN_SIMILARITY = 0.8
 _PLUGIN = re.compile(r"[A-Za-z]\w*(::\w+)*/[A-Za-z]\w*(::\w+)*")
 
 
 def near_types(type_name: str, known: Collection[str]) -> tuple[str, ...]:
-    """Return the types with similar names, the most similar one first; at most three."""
+    """Return at most three types with similar names, or else of that class, or of that package."""
     folded = {name.lower(): name for name in sorted(known)}
-    near = get_close_matches(type_name.strip().lower(), folded, 3, MIN_SIMILARITY)
-    return tuple(folded[name] for name in near)
+    text = type_name.strip().lower()
+    package, _, class_name = text.rpartition("/")
+    near = (
+        get_close_matches(text, folded, 3, MIN_SIMILARITY)
+        or [name for name in folded if name.rpartition("/")[2] == class_name]
+        or [name for name in folded if name.partition("/")[0] == package]
+    )
+    return tuple(folded[name] for name in near[:3])
 
 
 def is_misspelt(type_name: str, known: Collection[str]) -> bool:

@@ -45,4 +45,8 @@ def test_the_sentence_has_the_near_names_or_else_all():
         f"no controller type '{slip}'; did you mean "
         "'joint_trajectory_controller/JointTrajectoryController'?"
     )
+    assert near_types("JointTrajectoryController", KNOWN) == (
+        "joint_trajectory_controller/JointTrajectoryController",
+    )
+    assert near_types("pid_controller/Pid", KNOWN) == ("pid_controller/PidController",)
     assert unknown_type("x/Y", {"a/B", "c/D"}) == "no controller type 'x/Y'; known: a/B, c/D"
