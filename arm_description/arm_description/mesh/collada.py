@@ -1,5 +1,6 @@
 """Checks a COLLADA file before trimesh reads it: its unit, and how much it draws."""
 
+import io
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -7,19 +8,23 @@ import lxml.etree as etree
 import numpy as np
 
 from arm_description.errors import MeshFileError
+from arm_description.mesh.collada_forms import rewrite
+from arm_description.mesh.data import LARGEST_BYTES
 from arm_description.mesh.scene_graph import SceneNode, check_scene
-from arm_node.user_file import open_file
+from arm_node.user_file import read_bytes
 
 MAX_TEXT = 10_000_000
 """Bytes that libxml2 accepts in one element, unless told to accept any size."""
 
 
-def read_collada_unit(path: Path) -> float:
-    """Return the length of a file's unit in m, because trimesh ignores COLLADA's <unit>.
+def read_collada(path: Path) -> tuple[bytes, float]:
+    """Return the content of a file as trimesh reads it rightly, and the length of its unit in m.
+
+    trimesh ignores COLLADA's <unit>.
 
     Raises:
-        MeshFileError: the file is not XML, or has a DOCTYPE, an invalid unit, or nodes that use
-            each other without bound.
+        MeshFileError: the file is not XML, or has a DOCTYPE, an invalid unit, broken numbers, or
+            nodes that use each other without bound.
     """
     parser = etree.XMLParser(
         resolve_entities=False,
@@ -28,15 +33,16 @@ def read_collada_unit(path: Path) -> float:
         huge_tree=path.stat().st_size > MAX_TEXT,
     )
     try:
-        with open_file(path) as file:
-            document = etree.parse(file, parser)
+        content = read_bytes(path, LARGEST_BYTES)
+        document = etree.parse(io.BytesIO(content), parser)
     except etree.XMLSyntaxError as error:
         raise MeshFileError(f"it is not XML: {error.msg}") from error
     if document.docinfo.internalDTD is not None:
         raise MeshFileError("it has a DOCTYPE, which is not accepted; remove it")
     root = document.getroot()
     _check_instances(root)
-    return _unit(root)
+    unit = _unit(root)
+    return (etree.tostring(root) if rewrite(root) else content), unit
 
 
 def _unit(root: etree._Element) -> float:

@@ -1,6 +1,8 @@
 """Triangles in memory, which every mesh file is converted to."""
 
+import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +62,27 @@ class MeshData:
         faces = self.faces[start : start + FACES_AT_ONCE]
         sides = self.vertices[faces[:, 1:]] - self.vertices[faces[:, :1]]
         return bool(np.cross(sides[:, 0], sides[:, 1]).any())
+
+
+def numbers_in(text: bytes | str, what: str, kind: type) -> NDArray[Any]:
+    """Return the numbers of a text that are separated by white space.
+
+    Args:
+        text: the text.
+        what: what one of them is, for the message.
+        kind: numpy's type of the numbers.
+
+    Raises:
+        MeshFileError: something else stands between them.
+    """
+    with warnings.catch_warnings():
+        # numpy only warns where it stops at what is no number.
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            words = text if isinstance(text, str) else text.decode("ascii")
+            return np.fromstring(words, dtype=kind, sep=" ")
+        except (ValueError, DeprecationWarning) as error:
+            raise MeshFileError(f"{what} is not a number: {error}") from error
 
 
 def merged(vertices: NDArray[np.float32]) -> MeshData:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
-from arm_description.mesh.collada import read_collada_unit
+from arm_description.mesh.collada import read_collada
 from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
 from arm_description.mesh.gltf import read_gltf
 from arm_description.mesh.obj import read_obj
@@ -32,9 +32,11 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         MeshFileError: trimesh cannot read the file, or it would draw too much.
     """
     suffix = path.suffix.lower()
-    unit = read_collada_unit(path) if suffix == COLLADA_SUFFIX else 1.0
-    read = READERS.get(suffix)
-    content = io.BytesIO(read(path) if read else read_bytes(path, LARGEST_BYTES))
+    if suffix == COLLADA_SUFFIX:
+        content, unit = read_collada(path)
+    else:
+        read = READERS.get(suffix)
+        content, unit = read(path) if read else read_bytes(path, LARGEST_BYTES), 1.0
     # trimesh takes half a second to import, and STL files do not need it.
     import trimesh
 
@@ -42,7 +44,7 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
 
     try:
         scene = trimesh.load_scene(
-            content,
+            io.BytesIO(content),
             file_type=suffix.removeprefix("."),
             resolver=SideFiles(path),
             process=False,

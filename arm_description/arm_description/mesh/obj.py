@@ -5,7 +5,6 @@ fills the notches of polygons, and takes every material for opaque.
 """
 
 import re
-import warnings
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
-from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
+from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData, numbers_in
 from arm_description.mesh.polygons import triangulated
 from arm_node.user_file import read_bytes
 
@@ -99,13 +98,15 @@ class _Lines:
 def _vertices(lines: list[bytes]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     """Return the points, shape (v, 3), and their colours, shape (v, 3), if all have one."""
     width = len(lines[0].split()) if lines else 3
-    table = _numbers(b"\n".join(lines), "a coordinate", np.float64)
+    table = numbers_in(b"\n".join(lines), "a coordinate", np.float64)
     if width < 3 or len(table) != width * len(lines):
         rows = [line.split() for line in lines]
         if min(map(len, rows)) < 3:
             raise MeshFileError("a vertex lacks coordinates, or a face is not a triangle")
         width = 3
-        table = _numbers(b" ".join(b" ".join(row[:3]) for row in rows), "a coordinate", np.float64)
+        table = numbers_in(
+            b" ".join(b" ".join(row[:3]) for row in rows), "a coordinate", np.float64
+        )
     table = table.reshape(-1, width)
     # A fourth number is a weight, which means nothing outside curves; three more are a colour.
     return table[:, :3], table[:, -3:] if width >= 6 else None
@@ -130,24 +131,14 @@ def _first_numbers(faces: list[bytes], counts: NDArray[np.int64]) -> NDArray[Any
     text = b"\n".join(faces)
     slashes = faces[0].split()[0].count(b"/") if len(counts) and counts[0] else 0
     if b"/" not in text:
-        return _numbers(text, "a face's vertex", np.int64)
+        return numbers_in(text, "a face's vertex", np.int64)
     if [face.count(b"/") for face in faces] == (slashes * counts).tolist():
-        table = _numbers(
+        table = numbers_in(
             text.replace(b"//", b"/0/").replace(b"/", b" "), "a face's vertex", np.int64
         )
         if len(table) == (slashes + 1) * counts.sum():
             return table[:: slashes + 1]
-    return _numbers(AFTER_SLASH.sub(b"", text), "a face's vertex", np.int64)
-
-
-def _numbers(text: bytes, what: str, kind: type) -> NDArray[Any]:
-    with warnings.catch_warnings():
-        # numpy only warns where it stops at what is no number.
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            return np.fromstring(text.decode("ascii"), dtype=kind, sep=" ")
-        except (ValueError, DeprecationWarning) as error:
-            raise MeshFileError(f"{what} is not a number: {error}") from error
+    return numbers_in(AFTER_SLASH.sub(b"", text), "a face's vertex", np.int64)
 
 
 def _part(
