@@ -15,6 +15,8 @@ FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")
 TOPIC = re.compile(r"~?/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 HARMLESS = ("always_on", "visualize", "enable_metrics")
 """Tags that change no reading: a sensor works while somebody listens."""
+UNCHANGED = ("", "false", "0", "euler_rpy")
+"""Values of attributes that say what holds without them."""
 COUNTS = {2: "two", 6: "six"}
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
 _SLASHES = re.compile(r"/+")
@@ -139,6 +141,7 @@ class SensorTags:
 
     def attribute(self, tag: str, name: str) -> str:
         """Return an attribute of the first tag of this name; empty if there is none."""
+        self._known.add(f"{tag}@{name}")
         found = self._find(tag)
         return str(found[0].get(name, "")).strip() if found else ""
 
@@ -216,6 +219,8 @@ class SensorTags:
         for child in element.iterchildren(tag="*"):
             name = written_name(child)
             here = path + name
+            if here in self._known:
+                yield from self._unread_attributes(child, here)
             if not path and name == self._below and element is self._element:
                 yield from self._unread(child, "", seen)
             elif any(known.startswith(here + "/") for known in self._known):
@@ -227,6 +232,12 @@ class SensorTags:
                 problem = "there is another one, and only one counts"
                 yield self._finding(BuildOutcome.DOUBTFUL, child, here, problem)
             seen.add(here)
+
+    def _unread_attributes(self, element: Any, path: str) -> Iterator[Finding]:
+        for name, value in element.attrib.items():
+            if f"{path}@{name}" not in self._known and value.strip() not in UNCHANGED:
+                problem = f"the simulation does not use {name}='{value}'"
+                yield self._finding(BuildOutcome.DROPPED, element, path, problem)
 
     def _finding(self, outcome: BuildOutcome, element: Any, tag: str, problem: str) -> Finding:
         owner = f"{self.type} '{self.name}'"

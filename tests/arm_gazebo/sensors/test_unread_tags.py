@@ -86,6 +86,16 @@ def test_tags_that_are_read_or_change_nothing_are_not_listed(type_name, inside):
     assert findings(type_name, inside) == []
 
 
+def test_attributes_that_nobody_reads_are_listed():
+    pose = "<pose relative_to='base' degrees='true' rotation_format='euler_rpy'>0 0 0 0 0 0</pose>"
+    said = "<pose> of imu 's' (line 7): the simulation does not use {}"
+    assert findings("imu", pose) == [
+        said.format("relative_to='base'"),
+        said.format("degrees='true'"),
+    ]
+    assert findings("imu", "<pose relative_to='' degrees='false'>0 0 0 0 0 0</pose>") == []
+
+
 def test_one_of_several_shapes_of_a_contact_sensor_is_listed():
     inside = "<contact><collision>l_collision</collision></contact>"
     second = '<collision><geometry><sphere radius="1"/></geometry></collision></link>'
