@@ -7,10 +7,11 @@ from typing import Any, Protocol
 
 from ament_index_python.packages import get_package_share_directory
 
+from arm_node.parameter_file import PARAMETERS, read_parameters
+
 NO_COURSE = "none"
 COURSES = ("S0", "S1", "S2", "S3")
 LAUNCH_ARGUMENTS = "launch_arguments"
-PARAMETERS = "ros__parameters"
 COURSE_ARGUMENT: Mapping[str, Any] = {
     "default_value": NO_COURSE,
     "description": "whose tutorial to follow: a file in arm_control/config/courses",
@@ -71,8 +72,6 @@ def course_parameters(course: str, node: str) -> Mapping[str, Any]:
     """Return the parameters that a course gives to a node of this name, in any namespace."""
     if course == NO_COURSE:
         return {}
-    import yaml  # Imported here, because most launches follow no course.
-
-    sections = yaml.safe_load(course_file(course).read_text())
+    sections = read_parameters(course_file(course).read_text())
     own = {name.rpartition("/")[2]: section[PARAMETERS] for name, section in sections.items()}
     return own.get(node, {})

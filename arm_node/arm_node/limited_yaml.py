@@ -42,6 +42,16 @@ def compose_yaml(text: str) -> "yaml.Node | None":
     return _guarded(text, lambda yaml: yaml.compose(text, Loader=_loader()))
 
 
+def compose_yaml_documents(text: str, loader: Any) -> "list[yaml.Node]":
+    """Return the nodes of all documents of a YAML text; raises like `load_yaml`.
+
+    Args:
+        text: the text.
+        loader: the class that composes the nodes.
+    """
+    return _guarded(text, lambda yaml: list(yaml.compose_all(text, Loader=loader)))
+
+
 def check_yaml(text: str) -> None:
     """Raise like `load_yaml`; for a library that loads the text itself."""
     _guarded(text, lambda yaml: None)

@@ -10,10 +10,15 @@ from arm_cli.output import add_json_argument, complain, print_json, say, say_doc
 from arm_cli.param.access import add_node_argument, open_parameters
 from arm_cli.parameter_values import read_value
 from arm_cli.verb import VerbFunctions
-from arm_node.limited_yaml import YamlError, load_yaml
+from arm_node.limited_yaml import YamlError
+from arm_node.parameter_file import (
+    PARAMETERS,
+    flat_parameters,
+    nested_parameters,
+    parameters_text,
+)
+from arm_node.parameter_file import read_parameters as read_file_parameters
 from arm_node.user_file import read_text
-
-PARAMETERS = "ros__parameters"
 
 
 def add_dump_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,15 +47,13 @@ def dump(options: argparse.Namespace) -> None:
         values = [read_value(value) for value in parameters.values(names)] if names else []
     content = {
         absolute_name(options.node_name): {
-            "ros__parameters": nest(dict(zip(names, values, strict=True)))
+            PARAMETERS: nested_parameters(dict(sorted(zip(names, values, strict=True))))
         }
     }
     if options.json:
         print_json(content)
         return
-    import yaml
-
-    text = yaml.safe_dump(content, default_flow_style=False)
+    text = parameters_text(content)
     if options.output_dir is None:
         say_document(text)
     else:
@@ -64,21 +67,6 @@ def _save(text: str, folder: Path, node: str) -> None:
     except OSError as error:
         raise CommandUsageError(f"cannot write {path}: {error.strerror}") from error
     say(f"Saving to:  {path}")
-
-
-def nest(values: dict[str, Any]) -> dict[str, Any]:
-    """Return values by dotted names as nested dicts.
-
-    If `a` is itself a value, `a.b` keeps its dot; both forms mean the same.
-    """
-    nested: dict[str, Any] = {}
-    # A name is sorted before the names that start with it.
-    for name, value in sorted(values.items()):
-        group, (first, dot, rest) = nested, name.partition(".")
-        while dot and isinstance(group.setdefault(first, {}), dict):
-            group, (first, dot, rest) = group[first], rest.partition(".")
-        group[f"{first}{dot}{rest}"] = value
-    return nested
 
 
 def add_load_arguments(parser: argparse.ArgumentParser) -> None:
@@ -127,35 +115,24 @@ def read_parameters(path: Path, sections: list[str]) -> dict[str, Any]:
         MessageError: the file is not a parameter file.
     """
     try:
-        content = load_yaml(read_text(path))
+        content = read_file_parameters(read_text(path))
     except OSError as error:
         raise NoSuchNameError(f"no parameter file {path}: {error.strerror}") from error
     except (YamlError, UnicodeDecodeError) as error:
         raise MessageError(f"{path} is not YAML: {error}") from error
-    if not isinstance(content, dict):
+    if not content:
         raise MessageError(f"{path} is not a parameter file: it has no 'node: {PARAMETERS}:'")
-    found = {absolute_name(str(key)): value for key, value in content.items()}
-    chosen = [found[section] for section in sections if section in found]
+    found = [(absolute_name(key), entry) for key, entry in content.items()]
+    chosen = [entry for section in sections for key, entry in found if key == section]
     if not chosen:
-        raise NoSuchNameError(
-            f"{path} has no section for {sections[-1]}, only for {', '.join(found)}"
-        )
+        known = ", ".join(key for key, _ in found)
+        raise NoSuchNameError(f"{path} has no section for {sections[-1]}, only for {known}")
     values: dict[str, Any] = {}
-    for section in chosen:
-        if not isinstance(section, dict) or not isinstance(section.get(PARAMETERS), dict):
+    for entry in chosen:
+        if PARAMETERS not in entry:
             raise MessageError(f"{path}: no '{PARAMETERS}:' below the node's name")
-        values |= _flatten(section[PARAMETERS], "")
+        values |= dict(flat_parameters(entry[PARAMETERS]))
     return values
-
-
-def _flatten(values: dict[str, Any], prefix: str) -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for name, value in values.items():
-        if isinstance(value, dict):
-            flat |= _flatten(value, f"{prefix}{name}.")
-        else:
-            flat[f"{prefix}{name}"] = value
-    return flat
 
 
 DUMP = VerbFunctions(add_dump_arguments, dump)

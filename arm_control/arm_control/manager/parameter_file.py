@@ -2,13 +2,19 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from arm_control.errors import ParameterError
-from arm_node.limited_yaml import YamlError, load_yaml
+from arm_node.limited_yaml import YamlError
+from arm_node.parameter_file import (
+    PARAMETERS,
+    applies,
+    given_parameters,
+    parameters_by_node,
+    read_parameters,
+)
 from arm_node.user_file import read_text
 
-_PARAMETERS = "ros__parameters"
 _ANY = "/**"
 _MANAGER = "controller_manager"
 
@@ -22,7 +28,7 @@ class ParametersByNode:
 
     def __init__(self, content: Mapping[str, Any], source: str) -> None:
         self.source = source
-        self._content = content
+        self._content = parameters_by_node(content)
 
     def given(self, node: str, namespace: str) -> dict[str, Any]:
         """Return all parameters that apply to a node by their full names, with dots.
@@ -34,10 +40,8 @@ class ParametersByNode:
         Raises:
             ParameterError: an entry for the node has no ros__parameters.
         """
-        values: dict[str, Any] = {}
-        for entry in reversed([*self._entries(node, namespace)]):
-            values.update(_flat(entry))
-        return values
+        list(self._entries(node, namespace))  # Each of them must have parameters.
+        return given_parameters(self._content, _full_name(node, namespace))
 
     def mentions(self, controller: str, namespace: str) -> bool:
         """Return whether the file has parameters of a controller's own node.
@@ -95,27 +99,20 @@ class ParametersByNode:
     def _entries(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
         """Yield the parameters that apply to a node, the most specific ones first."""
         yield from self._entries_by_name(node, namespace)
-        every = self._content.get(_ANY)
-        if isinstance(every, Mapping) and _PARAMETERS in every:
-            yield self._parameters(every, _ANY)
+        if PARAMETERS in self._content.get(_ANY, {}):
+            yield self._content[_ANY][PARAMETERS]
 
     def _entries_by_name(self, node: str, namespace: str) -> Iterator[Mapping[str, Any]]:
         full_name = _full_name(node, namespace)
-        bare = (node,) if namespace == "/" else ()
-        every = self._content.get(_ANY)
-        for place, where, keys in (
-            (self._content, "", (full_name, *bare, f"{_ANY}{full_name}", f"{_ANY}/{node}")),
-            (every if isinstance(every, Mapping) else {}, f"{_ANY}: ", (full_name, node)),
-        ):
-            for key in dict.fromkeys(keys):
-                if key in place:
-                    yield self._parameters(place[key], f"{where}{key}")
-
-    def _parameters(self, entry: object, key: str) -> Mapping[str, Any]:
-        parameters = entry.get(_PARAMETERS) if isinstance(entry, Mapping) else None
-        if not isinstance(parameters, Mapping):
-            raise ParameterError(f"{self.source}: '{key}' has no mapping {_PARAMETERS}")
-        return parameters
+        found = [
+            key
+            for key in self._content
+            if key.rpartition("/")[2] == node and applies(key, full_name)
+        ]
+        for key in sorted(found, key=lambda key: (key.count("*"), len(found) - len(key))):
+            if PARAMETERS not in self._content[key]:
+                raise ParameterError(f"{self.source}: '{key}' has no mapping {PARAMETERS}")
+            yield self._content[key][PARAMETERS]
 
 
 class ControllerParameterFile(ParametersByNode):
@@ -134,15 +131,15 @@ class ControllerParameterFile(ParametersByNode):
         self.path = Path(path).absolute()
         source = f"parameter file '{self.path}'"
         try:
-            content = load_yaml(read_text(self.path))
+            content = read_parameters(read_text(self.path))
         except YamlError as error:
             raise ParameterError(f"{source} is not YAML: {error}") from error
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else error
             raise ParameterError(f"cannot read {source}: {reason}") from error
-        if not isinstance(content, dict):
+        if not content:
             raise ParameterError(f"{source} contains no nodes")
-        super().__init__(cast(dict[str, Any], content), source)
+        super().__init__(content, source)
 
 
 def manager_parameters(
@@ -179,15 +176,6 @@ def manager_parameters(
             )
         parameters[f"{controller}.fallback_controllers"] = fallbacks
     return parameters
-
-
-def _flat(values: Mapping[Any, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the values of nested mappings by their full names."""
-    for key, value in values.items():
-        if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
 
 
 def _full_name(node: str, namespace: str) -> str:

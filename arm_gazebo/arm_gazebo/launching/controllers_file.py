@@ -5,17 +5,18 @@ prefix. `$(var name)`, which drivers' files use for ROS 2's launch, means the sa
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from arm_gazebo.errors import ControllerTypeError, SimSettingsError
-from arm_gazebo.launching.settings_file import parse_yaml, read_text
+from arm_gazebo.launching.settings_file import read_text
+from arm_node.limited_yaml import YamlError
 from arm_node.names import listing
+from arm_node.parameter_file import PARAMETERS, parameters_by_node, read_parameters
 
 MANAGER = "controller_manager"
-PARAMETERS = "ros__parameters"
 TITLE = "the controllers' file"
 Controllers = Path | Mapping[str, Any]
 """A controller parameter file, or its content by node name, flattened down to `ros__parameters`."""
@@ -133,7 +134,10 @@ def read_controllers(controllers: Controllers) -> Mapping[str, Any]:
 
 
 def _content(text: str, path: Path) -> Mapping[str, Any]:
-    return checked_controllers(parse_yaml(text, path, TITLE), f"{TITLE} {path}")
+    try:
+        return checked_controllers(read_parameters(text), f"{TITLE} {path}")
+    except YamlError as error:
+        raise SimSettingsError(f"{TITLE} {path} is not YAML: {error}") from error
 
 
 def checked_controllers(content: object, source: str) -> Mapping[str, Any]:
@@ -146,29 +150,14 @@ def checked_controllers(content: object, source: str) -> Mapping[str, Any]:
     Raises:
         SimSettingsError: it names no controllers.
     """
-    by_node: dict[str, dict[str, Any]] = {}
-    for node, parameters in _nodes(content) if isinstance(content, Mapping) else ():
-        by_node.setdefault(node, {PARAMETERS: {}})[PARAMETERS].update(parameters)
+    every = parameters_by_node(content) if isinstance(content, Mapping) else {}
+    by_node = {node: entry for node, entry in every.items() if PARAMETERS in entry}
     if not types_of(by_node):
         raise SimSettingsError(
             f"{source} names no controllers; it needs "
             f"{MANAGER}: {PARAMETERS}: NAME: type: TYPE, or NAME: {PARAMETERS}: type: TYPE"
         )
     return by_node
-
-
-def _nodes(content: Mapping[Any, Any], above: str = "") -> Iterator[tuple[str, Mapping[Any, Any]]]:
-    """Yield nodes and their parameters; nested keys form a node's name, as rcl reads a file.
-
-    A node in a namespace has its full name, any other node its bare name.
-    """
-    for key, entry in content.items():
-        if not isinstance(entry, Mapping):
-            continue
-        if key == PARAMETERS:
-            yield (f"/{above}" if "/" in above and above[0] != "/" else above), entry
-        else:
-            yield from _nodes(entry, f"{above}/{key}" if above else str(key))
 
 
 def types_of(content: Mapping[str, Any]) -> dict[str, str]:
@@ -182,8 +171,6 @@ def types_of(content: Mapping[str, Any]) -> dict[str, str]:
         for name, value in entry[PARAMETERS].items() if _ends(node, MANAGER) else ():
             if isinstance(value, Mapping) and "type" in value:
                 types[str(name)] = str(value["type"])
-            elif str(name).endswith(".type"):
-                types[str(name).removesuffix(".type")] = str(value)
     for node, entry in content.items():
         own_type = entry[PARAMETERS].get("type")
         if isinstance(own_type, str) and "/" in own_type and not _ends(node, MANAGER):

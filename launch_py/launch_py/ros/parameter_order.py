@@ -205,4 +205,5 @@ def _leaf(node: yaml.Node) -> str:
     if not isinstance(node, yaml.ScalarNode):
         raise _FormError
     text = str(node.value)
-    return text if PLAIN.fullmatch(text) and node.tag != STRING_TAG else dump_value(text)
+    is_text = node.tag == STRING_TAG and node.style not in ("|", ">")
+    return text if PLAIN.fullmatch(text) and not is_text else dump_value(text)

@@ -37,6 +37,12 @@ def lookup(path: Path, text: str, namespace: str = "/") -> object:
         f"{{ctrl: {TYPE}, /**: {{ros__parameters: {{type: c/D}}}}}}",
         f"{{/**/ctrl: {{ros__parameters: {{x: 1}}}}, /**: {{ctrl: {TYPE}}}}}",
         f"/**: {{other: {{no: parameters}}, ctrl: {TYPE}}}",
+        f"/**: {{ctrl: {TYPE}}}\n/**: {{ctrl: {{ros__parameters: {{x: 1}}}}}}",
+        f"ctrl: {TYPE}\nctrl: {{ros__parameters: {{x: 1}}}}",
+        "controller_manager: {ros__parameters: {ctrl: {type: a/B}}}\n"
+        "controller_manager: {ros__parameters: {update_rate: 100, ctrl: {x: 1}}}",
+        "/*: {ros__parameters: {x: 1}}\n/**: {ros__parameters: {ctrl.type: c/D}}\n"
+        f"ctrl: {TYPE}",
     ],
 )
 def test_it_is_found(path: Path, text: str) -> None:
@@ -57,6 +63,17 @@ def test_it_is_found(path: Path, text: str) -> None:
 )
 def test_it_is_found_in_a_namespace(path: Path, text: str) -> None:
     assert lookup(path, text, "/ns") == "a/B"
+
+
+def test_all_that_a_node_is_given_is_what_rcl_gives_it(path: Path) -> None:
+    path.write_text(
+        "ctrl: {ros__parameters: {a: 1, gains: {j0: {p: 1e3}}}}\n"
+        "/**: {ros__parameters: {a: 2, ids: [010, 011]}}\n"
+        "ctrl: {ros__parameters: {gains: {j0: {i: 08}}}}\n"
+        "other: {ros__parameters: {a: 3}}\n"
+    )
+    given = ControllerParameterFile(str(path)).given("ctrl", "/")
+    assert given == {"a": 2, "gains.j0.p": 1000.0, "gains.j0.i": 8.0, "ids": [8, 9]}
 
 
 def test_the_own_entry_wins_over_the_managers(path: Path) -> None:

@@ -76,6 +76,25 @@ def test_namespaces_may_be_keys_above_the_nodes(file, namespace):
     assert startable.remarks == ("hand does not start: arm claims 'j0'",)
 
 
+REPEATED = """
+/**:
+  controller_manager: {ros__parameters: {update_rate: 100, states: {type: a/Broadcaster}}}
+/**:
+  arm: {ros__parameters: {joints: [j0]}}
+/**:
+  controller_manager: {ros__parameters: {arm: {type: a/Trajectory}, arm: {fallback: x}}}
+  hand: {ros__parameters: {type: a/Position}}
+/**/hand: {ros__parameters: {joint: j0}}
+"""
+
+
+def test_keys_that_are_repeated_are_merged_as_by_rcl(file):
+    file.write_text(REPEATED)
+    startable = startable_controllers(file, TYPES)
+    assert startable.names == ("states", "arm")
+    assert startable.remarks == ("hand does not start: arm claims 'j0'",)
+
+
 def test_a_controller_that_two_managers_have_starts_once(file):
     file.write_text(f"left: {CONTENT}right: {CONTENT}".replace("\n", "\n  "))
     assert startable_controllers(file, TYPES).names == ("states", "arm", "hand")

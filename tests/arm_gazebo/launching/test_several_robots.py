@@ -52,7 +52,7 @@ def test_parameters_of_controllers_name_the_joints_of_the_copy(setup):
     assert arm["joints"] == ["lab_1_shoulder"]
     assert arm["command_joints"] == ["pid/lab_1_shoulder"]
     assert arm["gains"] == {"lab_1_shoulder": {"p": 1.0}}
-    assert arm["constraints.lab_1_shoulder.goal"] == 0.1
+    assert arm["constraints"] == {"lab_1_shoulder": {"goal": 0.1}}
     assert arm["table"] == "/shoulder/table.csv"
     assert "arm" in parameters_of(robot, "controller_manager")
 

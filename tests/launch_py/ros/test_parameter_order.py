@@ -71,6 +71,7 @@ def test_a_dict_after_a_file_wins_and_a_file_after_a_dict(seen, pattern, options
         (["/**: {n: {ros__parameters: {b: 1}}}", section("ns/n", b=2.0)], {"b": 2.0}),
         (["ns: {n: {ros__parameters: {b: 1}}}", {"b": 2.0}], {"b": 2.0}),
         ([f"{every(b=1)}---\n{every(c=1)}", {"b": 2}], {"b": 2, "c": 1}),
+        ([every(b=1, c=1), every(b="|-\n      5.5", c=2)], {"b": 5.5, "c": 2}),
         ([section("/other", b=1), {"b": 2}], {"b": 2}),
         (["", every(b=1), {"b": 2}], {"b": 2}),
     ],
