@@ -7,7 +7,6 @@ from setuptools import find_packages, setup
 PACKAGE = "arm_control"
 NEIGHBOURS = ["../arm_description", "../arm_node"]
 REQUIREMENTS = [
-    "PyYAML>=6.0",
     "lxml>=5.0",
     "numpy>=2",
     "ros-jazzy-common-interfaces==5.3.6",
