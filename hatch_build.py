@@ -36,7 +36,7 @@ class LibFolders(BuildHookInterface):
             path.write_text(SCRIPT.format(words=shlex.quote(script)))
             path.chmod(0o755)
             build_data["shared_data"][str(path)] = f"lib/{package}/{name}"
-        for package in {package for package, *_ in files} - set(self._packages()):
+        for package in sorted({package for package, *_ in files} - set(self._packages())):
             path = self._folder / package
             path.write_text(MARK)
             build_data["shared_data"][str(path)] = f"{MARKERS}/{package}"

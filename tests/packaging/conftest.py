@@ -145,7 +145,7 @@ def copy_sources(folder: Path) -> Project:
     project = Project(ROOT)
     for package in (*project.packages, *project.data_packages.values()):
         shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns(*ignored))
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, folder / name)
     return Project(folder)
 

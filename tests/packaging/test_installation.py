@@ -65,3 +65,14 @@ def test_the_wheel_holds_the_packages_and_nothing_else(wheel, project):
         tops = {name.split("/")[0] for name in archive.namelist()}
     stem = "-".join(wheel.name.split("-")[:2])
     assert tops == {*project.packages, f"{stem}.data", f"{stem}.dist-info"}
+
+
+def test_the_wheel_has_the_executables_where_ros_2_looks_for_them(wheel, project):
+    with zipfile.ZipFile(wheel) as archive:
+        modes = {
+            info.filename.partition(".data/data/")[2]: info.external_attr >> 16
+            for info in archive.infolist()
+        }
+    wanted = {f"lib/{t.partition('.')[0]}/{name}" for name, t in project.scripts.items()}
+    wanted.add("lib/tf2_ros/static_transform_publisher")
+    assert {name for name in wanted if modes.get(name, 0) & 0o111 != 0o111} == set()

@@ -26,7 +26,6 @@ def run(options: argparse.Namespace) -> None:
     Raises:
         CommandUsageError: there is one frame; all frames, or two, can be shown.
         NoSuchNameError: there is no such frame, or the two are in different trees.
-        UnansweredError: nobody publishes transforms.
     """
     ends = [f.lstrip("/") for f in (options.source_frame, options.target_frame) if f is not None]
     if len(ends) == 1:
@@ -34,7 +33,8 @@ def run(options: argparse.Namespace) -> None:
     with connect() as session:
         from arm_cli.tf.ros_listener import listen
 
-        log = listen(session, SETTLE_S)
+        # As tf2_monitor, which a launch file may start before anybody publishes.
+        log = listen(session, SETTLE_S, timeout_s=None)
         while True:
             say_document("\n".join(describe_delays(log, ends)))
             if options.once:

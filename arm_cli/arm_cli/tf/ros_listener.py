@@ -15,8 +15,15 @@ from arm_node.rigid_transform import RigidTransform
 FIRST_TIMEOUT_S = 10.0
 
 
-def listen(session: CommandSession, duration_s: float) -> FrameLog:
+def listen(
+    session: CommandSession, duration_s: float, timeout_s: float | None = FIRST_TIMEOUT_S
+) -> FrameLog:
     """Return the frames received within a duration after the first transform.
+
+    Args:
+        session: receives them.
+        duration_s: how long to listen.
+        timeout_s: how long to wait for the first transform; None waits for ever.
 
     Raises:
         UnansweredError: nobody publishes transforms.
@@ -25,10 +32,10 @@ def listen(session: CommandSession, duration_s: float) -> FrameLog:
     received = session.wait_until(
         lambda: bool(log.frames),
         lambda: f"waiting for transforms on /tf and /tf_static, {this_domain()}",
-        FIRST_TIMEOUT_S,
+        timeout_s,
     )
     if not received:
-        raise UnansweredError(f"no transforms on /tf or /tf_static within {FIRST_TIMEOUT_S:g} s")
+        raise UnansweredError(f"no transforms on /tf or /tf_static within {timeout_s:g} s")
     session.spin_for(duration_s)
     return log
 
