@@ -16,7 +16,7 @@ from arm_control.manager.managed_controller import ManagedController
 EMERGENCY = ""
 """Stands for the emergency stop where others are halted by a component, which has a name."""
 
-logger = logging.getLogger(__name__)
+logger = logging.getLogger("controller_manager")
 
 
 class ControllerHalts:
