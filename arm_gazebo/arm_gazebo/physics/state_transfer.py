@@ -19,7 +19,7 @@ Pair = tuple[int, int]
 OBJECT = mujoco.mjtObj
 
 
-class Element(Enum):
+class ModelElement(Enum):
     """The elements of a model whose state is copied."""
 
     WORLD = auto()
@@ -33,31 +33,31 @@ class Element(Enum):
     FLEX = auto()
 
 
-OF_VELOCITIES = "nv", {"jnt_dofadr": Element.JOINT}
-OF_MOCAPS = "nmocap", {"body_mocapid": Element.MOCAP}
-LAYOUT: Mapping[str, tuple[str, Mapping[str, Element]]] = {
-    "qpos": ("nq", {"jnt_qposadr": Element.JOINT}),
+OF_VELOCITIES = "nv", {"jnt_dofadr": ModelElement.JOINT}
+OF_MOCAPS = "nmocap", {"body_mocapid": ModelElement.MOCAP}
+LAYOUT: Mapping[str, tuple[str, Mapping[str, ModelElement]]] = {
+    "qpos": ("nq", {"jnt_qposadr": ModelElement.JOINT}),
     "qvel": OF_VELOCITIES,
-    "act": ("na", {"actuator_actadr": Element.ACTUATOR}),
+    "act": ("na", {"actuator_actadr": ModelElement.ACTUATOR}),
     "history": (
         "nhistory",
-        {"actuator_historyadr": Element.ACTUATOR, "sensor_historyadr": Element.SENSOR},
+        {"actuator_historyadr": ModelElement.ACTUATOR, "sensor_historyadr": ModelElement.SENSOR},
     ),
     "qacc_warmstart": OF_VELOCITIES,
-    "ctrl": ("nu", {"actuator_ctrladr": Element.ACTUATOR}),
+    "ctrl": ("nu", {"actuator_ctrladr": ModelElement.ACTUATOR}),
     "qfrc_applied": OF_VELOCITIES,
-    "xfrc_applied": ("nbody", {"": Element.BODY}),
-    "eq_active": ("neq", {"": Element.EQUALITY}),
+    "xfrc_applied": ("nbody", {"": ModelElement.BODY}),
+    "eq_active": ("neq", {"": ModelElement.EQUALITY}),
     "mocap_pos": OF_MOCAPS,
     "mocap_quat": OF_MOCAPS,
-    "userdata": ("nuserdata", {"": Element.WORLD}),
-    "plugin_state": ("npluginstate", {"": Element.WORLD}),
+    "userdata": ("nuserdata", {"": ModelElement.WORLD}),
+    "plugin_state": ("npluginstate", {"": ModelElement.WORLD}),
     "plastic": (
         "nplastic",
         {
-            "jnt_plasticadr": Element.JOINT,
-            "tendon_plasticadr": Element.TENDON,
-            "flex_plasticadr": Element.FLEX,
+            "jnt_plasticadr": ModelElement.JOINT,
+            "tendon_plasticadr": ModelElement.TENDON,
+            "flex_plasticadr": ModelElement.FLEX,
         },
     ),
 }
@@ -88,7 +88,7 @@ class StateTransfer:
             name: _indices(source, target, length, fields, pairs)
             for name, (length, fields) in LAYOUT.items()
         }
-        drives = np.array(pairs[Element.ACTUATOR], dtype=np.intp).reshape(-1, 2)
+        drives = np.array(pairs[ModelElement.ACTUATOR], dtype=np.intp).reshape(-1, 2)
         self._drives = drives[:, 0], drives[:, 1]
 
     def carry(self, source: mujoco.MjData, target: mujoco.MjData) -> None:
@@ -116,7 +116,7 @@ class StateTransfer:
 
 def _pairs(
     source: mujoco.MjModel, target: mujoco.MjModel, roots: Collection[str]
-) -> dict[Element, list[Pair]]:
+) -> dict[ModelElement, list[Pair]]:
     """Return the numbers in both models of the elements that continue."""
     same_world = source.body(0).name in roots
     joints = list(_joints(source, target, roots))
@@ -124,18 +124,18 @@ def _pairs(
     others = {
         element: list(_namesakes(source, target, kind, count)) if same_world else []
         for element, kind, count in (
-            (Element.SENSOR, OBJECT.mjOBJ_SENSOR, source.nsensor),
-            (Element.TENDON, OBJECT.mjOBJ_TENDON, source.ntendon),
-            (Element.FLEX, OBJECT.mjOBJ_FLEX, source.nflex),
+            (ModelElement.SENSOR, OBJECT.mjOBJ_SENSOR, source.nsensor),
+            (ModelElement.TENDON, OBJECT.mjOBJ_TENDON, source.ntendon),
+            (ModelElement.FLEX, OBJECT.mjOBJ_FLEX, source.nflex),
         )
     }
     return {
-        Element.WORLD: [(0, 0)] if same_world else [],
-        Element.BODY: bodies,
-        Element.MOCAP: list(_mocaps(source, target, bodies)),
-        Element.JOINT: joints,
-        Element.ACTUATOR: list(_actuators(source, target, of_joints, same_world)),
-        Element.EQUALITY: list(_equalities(source, target, of_joints, same_world)),
+        ModelElement.WORLD: [(0, 0)] if same_world else [],
+        ModelElement.BODY: bodies,
+        ModelElement.MOCAP: list(_mocaps(source, target, bodies)),
+        ModelElement.JOINT: joints,
+        ModelElement.ACTUATOR: list(_actuators(source, target, of_joints, same_world)),
+        ModelElement.EQUALITY: list(_equalities(source, target, of_joints, same_world)),
         **others,
     }
 
@@ -210,8 +210,8 @@ def _indices(
     source: mujoco.MjModel,
     target: mujoco.MjModel,
     length: str,
-    fields: Mapping[str, Element],
-    pairs: Mapping[Element, Sequence[Pair]],
+    fields: Mapping[str, ModelElement],
+    pairs: Mapping[ModelElement, Sequence[Pair]],
 ) -> tuple[Indices, Indices]:
     """Return where the same values are in an array of both models, shape (n,) each."""
     there, here = (_parts(model, length, fields) for model in (source, target))
@@ -228,14 +228,14 @@ def _indices(
 
 
 def _parts(
-    model: mujoco.MjModel, length: str, fields: Mapping[str, Element]
+    model: mujoco.MjModel, length: str, fields: Mapping[str, ModelElement]
 ) -> dict[str, list[range]]:
     """Return for each field which values of an array belong to each element."""
     total = getattr(model, length)
     starts: dict[str, Sequence[int]] = {
         name: getattr(model, name).tolist()
         if name
-        else range(1 if element is Element.WORLD else total)
+        else range(1 if element is ModelElement.WORLD else total)
         for name, element in fields.items()
     }
     ends = [*sorted(start for each in starts.values() for start in each if start >= 0), total]
