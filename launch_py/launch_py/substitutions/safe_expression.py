@@ -300,9 +300,8 @@ class _Evaluation:
 
     def _formatted(self, node: ast.FormattedValue, local: Mapping[str, Any]) -> str:
         value = self.value(node.value, local)
-        conversions: dict[int, Callable[[Any], str]] = {ord("s"): str, ord("r"): repr, ord("a"): ascii}
-        if node.conversion in conversions:
-            value = conversions[node.conversion](value)
+        if node.conversion != -1:
+            value = {"s": str, "r": repr, "a": ascii}[chr(node.conversion)](value)
         spec = "" if node.format_spec is None else self.value(node.format_spec, local)
         if WIDTH.search(spec):
             raise SubstitutionError(f"the format {spec!r} makes too long a text")
