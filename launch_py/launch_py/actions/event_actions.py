@@ -92,6 +92,12 @@ class EmitEvent(Action):
         return found
 
 
+def _checked(handler: EventHandler, action: str) -> EventHandler:
+    if not isinstance(handler, EventHandler):
+        raise LaunchFileError(f"{action} takes an event handler, not {handler!r}")
+    return handler
+
+
 def _signal_number(number: int | str) -> int:
     try:
         return int(signal.Signals[number] if isinstance(number, str) else signal.Signals(number))
@@ -104,7 +110,7 @@ class RegisterEventHandler(Action):
 
     def __init__(self, event_handler: EventHandler, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.event_handler = event_handler
+        self.event_handler = _checked(event_handler, "RegisterEventHandler")
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the handler's actions, which wait for the event."""
@@ -122,6 +128,7 @@ class UnregisterEventHandler(Action):
 
     def __init__(self, event_handler: EventHandler, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
+        _checked(event_handler, "UnregisterEventHandler")
         if event_handler.was_expanded and not event_handler.removable:
             raise LaunchFileError(
                 "an UnregisterEventHandler must exist before its handler is registered: make it "

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Unpack
 
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
+from launch_py.errors import LaunchFileError
 from launch_py.substitution import Text
 
 
@@ -43,6 +44,8 @@ class ExecuteLocal(ExecuteProcess):
         **options: Unpack[ProcessOptions],
     ) -> None:
         self.process_description = described = process_description
+        if not isinstance(described, Executable):
+            raise LaunchFileError(f"process_description= takes an Executable, not {described!r}")
         own: ProcessOptions = {
             "prefix": described.prefix,
             "cwd": described.cwd,

@@ -12,7 +12,7 @@ from typing import Any
 
 from launch_py.action import Action
 from launch_py.conditions import Condition
-from launch_py.errors import NotFoundError
+from launch_py.errors import LaunchFileError, NotFoundError
 from launch_py.launch_context import LaunchContext
 from launch_py.launch_description_entity import LaunchSurvey
 from launch_py.ros.actions import Node
@@ -130,7 +130,12 @@ class LoadComposableNodes(Action):
     ) -> None:
         super().__init__(condition=condition)
         self.target_container = target_container
-        self.nodes = [node.node() for node in composable_node_descriptions]
+        self.nodes: list[Node] = []
+        for node in composable_node_descriptions:
+            if not isinstance(node, ComposableNode):
+                name = type(self).__name__
+                raise LaunchFileError(f"{name} takes ComposableNodes, not {node!r}")
+            self.nodes.append(node.node())
 
     def expand(self, context: LaunchContext) -> None:
         """Add the processes to the plan."""

@@ -145,11 +145,10 @@ class LifecycleTransition(Action):
         Raises:
             LaunchFileError: a node or a transition is unknown.
         """
-        numbers = [
-            number if isinstance(number, int) else int(perform_text(context, number))
-            for number in self.transition_ids
-        ]
-        unknown = [number for number in numbers if number not in TRANSITION_LABELS]
+        known_ids = {str(number): number for number in TRANSITION_LABELS}
+        ids = [n if isinstance(n, int) else perform_text(context, n) for n in self.transition_ids]
+        unknown = [number for number in ids if str(number) not in known_ids]
+        numbers = [known_ids[str(number)] for number in ids if number not in unknown]
         nodes = {node.full_name: node for node in _nodes(context)}
         for name in self.lifecycle_node_names:
             full_name = join_names("", perform_text(context, name))

@@ -119,6 +119,10 @@ def test_without_a_node_every_managed_node_is_watched(expand):
             LifecycleTransition(lifecycle_node_names=["/demo/talker"], transition_ids=[77]),
             "LifecycleTransition: no transition 77",
         ),
+        (
+            LifecycleTransition(lifecycle_node_names=["/demo/talker"], transition_ids=["one"]),
+            "LifecycleTransition: no transition one",
+        ),
     ],
 )
 def test_what_does_not_exist_is_named(expand, action, said):

@@ -7,6 +7,7 @@ import pytest
 
 from launch_py import (
     EmitEvent,
+    ExecuteLocal,
     GroupAction,
     LogInfo,
     OpaqueCoroutine,
@@ -36,6 +37,7 @@ from launch_py.events import (
     matches_pid,
 )
 from launch_py.launch_description import LaunchDescription
+from launch_py.ros import LoadComposableNodes
 from launch_py.testing import fake_process
 
 
@@ -216,6 +218,24 @@ def test_events_that_cannot_be_emitted_are_refused(trial):
         trial(
             EmitEvent(event=SignalProcess(signal_number="SIGNONE", process_matcher=lambda _: True))
         )
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: RegisterEventHandler("x"), "RegisterEventHandler takes an event handler, not 'x'"),
+        (lambda: UnregisterEventHandler("x"), "UnregisterEventHandler takes an event handler, not"),
+        (lambda: ExecuteLocal(process_description="ls"), "takes an Executable, not 'ls'"),
+        (
+            lambda: LoadComposableNodes(composable_node_descriptions=["x"]),
+            "LoadComposableNodes takes ComposableNodes, not 'x'",
+        ),
+    ],
+)
+def test_what_has_the_wrong_type_is_named(make, said):
+    with pytest.raises(LaunchFileError) as caught:
+        make()
+    assert said in str(caught.value)
 
 
 def test_an_emitted_description_is_included(trial):
