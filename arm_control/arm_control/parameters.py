@@ -10,10 +10,14 @@ import math
 import operator
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass
+from difflib import SequenceMatcher
 from functools import cache
 from typing import Any, TypeGuard, get_args, get_origin, get_type_hints
 
 from arm_control.errors import ParameterError
+
+NEAREST, MANY = 5, 15
+"""How many known parameters a message names, if there are more than the second."""
 
 _METADATA_KEY = "arm_control.parameter"
 _SCALARS = (bool, int, float, str)
@@ -103,8 +107,10 @@ class ParameterSpec:
         if self.type is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
         if type(value) is not self.type:
+            is_bare = self.type is str and isinstance(value, int | float)
+            hint = "; a text that looks like a number needs quotes in YAML" if is_bare else ""
             raise ParameterError(
-                f"parameter '{name}' must be of type {self.type.__name__}, not {value!r}"
+                f"parameter '{name}' must be of type {self.type.__name__}, not {value!r}{hint}"
             )
         # Not `value <= above`: a comparison with NaN is false, so NaN would pass.
         too_low = self.above is not None and not value > self.above
@@ -201,12 +207,33 @@ def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise ParameterError(
-            f"unknown parameter {', '.join(unknown)}; known: {', '.join(known) or 'none'}"
+            f"unknown parameter {', '.join(unknown)}; {known_parameters(unknown[0], known)}"
         )
     converted = {
         spec.name: spec.convert(values[spec.name]) for spec in specs if spec.name in values
     }
     return _build(parameters_type, converted, "")
+
+
+def known_parameters(unknown: str, known: Iterable[str]) -> str:
+    """Return the second half of a message about an unknown parameter: those that are known.
+
+    Of many it gives the `NEAREST`, which resemble it as a whole or in one part.
+    """
+    names = list(known)
+    if len(names) <= MANY:
+        return f"known: {', '.join(names) or 'none'}"
+    matcher = SequenceMatcher(b=unknown)
+
+    def likeness(name: str) -> float:
+        ratios: list[float] = []
+        for part in {name, *name.split(".")}:
+            matcher.set_seq1(part)
+            ratios.append(matcher.ratio())
+        return max(ratios)
+
+    nearest = ", ".join(sorted(names, key=likeness, reverse=True)[:NEAREST])
+    return f"the nearest of {len(names)} are {nearest}; arm param list shows all"
 
 
 def take_group(parameters_type: type[Any], prefix: str, values: dict[str, Any]) -> Any:

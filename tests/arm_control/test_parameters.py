@@ -7,7 +7,13 @@ from typing import Any
 import pytest
 
 from arm_control.errors import ParameterError
-from arm_control.parameters import build_parameters, check_values, parameter, specs_of
+from arm_control.parameters import (
+    build_parameters,
+    check_values,
+    known_parameters,
+    parameter,
+    specs_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +125,21 @@ def test_an_instance_made_by_hand_can_be_checked() -> None:
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
     with pytest.raises(ParameterError, match=r"unknown parameter gain; known: joint, count, on"):
         build_parameters(Example, {"gain": 1.0})
+
+
+def test_of_many_parameters_the_five_nearest_are_named_and_where_the_list_is() -> None:
+    many = [f"gains.j{joint}.{term}" for joint in range(9) for term in ("p", "i", "i_clamp_max")]
+    known = [*many, "constraints.goal_time", "constraints.stopped_velocity_tolerance", "joints"]
+    said = known_parameters("constrains.goal_time", known)
+    assert said.startswith("the nearest of 30 are constraints.goal_time, ")
+    assert said.count(",") == 4
+    assert said.endswith("; arm param list shows all")
+    assert "the nearest of 30 are joints" in known_parameters("joint", known)
+
+
+def test_a_text_that_yaml_reads_as_a_number_needs_quotes() -> None:
+    with pytest.raises(ParameterError, match="type str, not 1; a text that looks like a number"):
+        build_parameters(Example, {"joint": 1})
 
 
 def test_a_field_that_cannot_be_a_parameter_is_the_authors_mistake() -> None:

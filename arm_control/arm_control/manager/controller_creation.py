@@ -8,7 +8,7 @@ from typing import Any
 from arm_control.controllers.controller import Controller, ControllerContext
 from arm_control.errors import ArmControlError, ControllerManagerError, ParameterError
 from arm_control.manager.registry import controller_class
-from arm_control.parameters import ParameterSpec
+from arm_control.parameters import ParameterSpec, known_parameters
 from arm_node.names import listing
 from arm_node.printable import first_line
 
@@ -140,7 +140,7 @@ def unknown_parameters(
         return ""
     return (
         f"parameter {', '.join(repr(name) for name in sorted(unknown))} is not known to {owner} "
-        f"and has no effect; it knows {', '.join(names)}"
+        f"and has no effect; {known_parameters(sorted(unknown)[0], names)}"
     )
 
 

@@ -20,7 +20,7 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.parameter_file import ControllerParameterFile, ParametersByNode
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
-from arm_control.parameters import build_parameters, specs_of
+from arm_control.parameters import build_parameters, known_parameters, specs_of
 from arm_description.urdf.document import Description
 
 MANAGER = "controller_manager"
@@ -128,8 +128,9 @@ class ControllerStarter:
             specs = {spec.name: spec for spec in controller.parameter_specs(given)}
             for changed in changes:
                 if changed not in specs:
-                    known = ", ".join(specs) or "none"
-                    raise ParameterError(f"unknown parameter {changed}; known: {known}")
+                    raise ParameterError(
+                        f"unknown parameter {changed}; {known_parameters(changed, specs)}"
+                    )
                 if specs[changed].read_only:
                     raise ParameterError(f"parameter '{changed}' is read-only")
                 if specs[changed].at_configuration:

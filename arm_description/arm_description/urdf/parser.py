@@ -21,6 +21,12 @@ from arm_node.names import listing
 
 _logger = logging.getLogger(__name__)
 
+WORLDS = {
+    "mujoco": ". MuJoCo's XML is a world: world:=FILE, or world=FILE in Python",
+    "sdf": ". SDF is a world or a model: world:=FILE, or arm sim spawn FILE",
+}
+"""What to do with other files, by their outermost element."""
+
 
 def _log(remark: Remark) -> None:
     _logger.warning("%s", remark)
@@ -79,7 +85,8 @@ def _warn_of_foreign(robot: etree._Element, remark: Callable[[Remark], None]) ->
 
 def _read_robot(root: UrdfElement) -> Robot:
     if root.tag != "robot":
-        raise root.error("is not a robot; a URDF's outermost element is <robot>")
+        hint = WORLDS.get(root.tag, "")
+        raise root.error(f"is not a robot; a URDF's outermost element is <robot>{hint}")
     name = root.needed_text("name")
     links = [read_link(link) for link in root.children("link")]
     return Robot(

@@ -18,6 +18,7 @@ from arm_gazebo.world.spawn_model import ModelSource
 from arm_node.user_file import read_text
 
 SUFFIXES = (*SDF_SUFFIXES, ".xml", ".mjcf")
+FREE = mujoco.mjtJoint.mjJNT_FREE
 WORLD_ROOTS = ("sdf", "mujoco")
 
 
@@ -28,7 +29,8 @@ class WorldSummary:
     Attributes:
         name: name of the world or model.
         things: names of the top-level bodies.
-        moving: number of top-level bodies that can move.
+        free: number of top-level bodies that move freely.
+        jointed: number of other top-level bodies with parts that move.
         shapes: number of visual and collision shapes.
         lights: number of lights.
         left_out: what is missing, in one line; "" if nothing is.
@@ -36,14 +38,16 @@ class WorldSummary:
 
     name: str
     things: tuple[str, ...]
-    moving: int
+    free: int
+    jointed: int
     shapes: int
     lights: int
     left_out: str
 
     def __str__(self) -> str:
         parts = [
-            f"{counted(len(self.things), 'thing')}, {self.moving} of them free to move",
+            f"{counted(len(self.things), 'thing')}, {self.free} of them free to move",
+            *([f"{self.jointed} with joints"] if self.jointed else []),
             counted(self.shapes, "shape"),
             counted(self.lights, "light"),
         ]
@@ -101,10 +105,15 @@ def _summary(path: Path, report: BuildReport) -> WorldSummary:
     name_elements(spec)
     model = spec.compile()
     below = np.flatnonzero(model.body_parentid == 0)[1:]
+    moving = [body for body in below if model.body_dofnum[body]]
+    free = {body for body in moving if model.jnt_type[model.body_jntadr[body]] == FREE}
     return WorldSummary(
         name=path.stem,
         things=tuple(model.body(body).name for body in below),
-        moving=sum(bool(model.body_dofnum[model.body_rootid == body].any()) for body in below),
+        free=len(free),
+        jointed=sum(
+            bool(model.body_dofnum[model.body_rootid == body].any()) for body in {*below} - free
+        ),
         shapes=int(model.ngeom),
         lights=int(model.nlight),
         left_out=report.left_out,

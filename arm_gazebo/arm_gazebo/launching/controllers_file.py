@@ -59,7 +59,7 @@ def substitute_arguments(path: Path, arguments: Mapping[str, str]) -> Controller
     if unknown:
         raise SimSettingsError(
             f"{TITLE} {path} has {unknown[0]}, which is not an argument of the "
-            f"robot; it has {listing(sorted(arguments))}"
+            f"robot, which model_args sets; it has {listing(sorted(arguments))}"
         )
     return _content(_ARGUMENT.sub(lambda match: arguments[_name(match)], text), path)
 

@@ -214,7 +214,8 @@ class BodyTree:
             return lower, upper
         self._report.warn(
             f"joint '{joint.name}'",
-            f"its limits of {lower:g} and {upper:g} leave it no room to move",
+            f"its limits of {lower:g} and {upper:g} leave it no room to move; it gets "
+            f"{LOCKED_RANGE:g} to each side",
             joint.line,
         )
         return lower - LOCKED_RANGE, lower + LOCKED_RANGE

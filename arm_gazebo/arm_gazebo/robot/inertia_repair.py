@@ -1,5 +1,6 @@
 """Repair the inertias of a URDF so that a rigid body can have them."""
 
+import math
 from dataclasses import dataclass
 
 import mujoco
@@ -18,7 +19,9 @@ DEFAULT_INERTIA = 1e-6
 HOLLOW_KG_M3 = 300.0
 """Mass of a link divided by the volume of its bounding box; 200 to 500 in practice."""
 MAX_GYRATION_M2 = 4.0
-"""Ratio of inertia to mass above which a mesh in millimetres was probably taken for metres."""
+"""Ratio of inertia to mass above which the inertia is doubted: the mass would be 2 m away."""
+MILLIMETRES_M = 10.0
+"""Radius of gyration above which it probably was a mesh in millimetres."""
 MAX_MOMENT = 1e300
 """Limit in kg m2 that keeps sums of absurd moments from overflowing."""
 ROUNDING = 1e-3
@@ -104,10 +107,13 @@ def _replaced_implausible(
     mass: float, moments: Array, axes: Array, box: Array | None, remarks: list[str]
 ) -> tuple[Array, Array]:
     """Replace an inertia that would need the mass metres from its centre; without box, warn."""
+    radius = math.sqrt(moments[2] / mass)
     finding = (
-        f"an inertia of {moments[2]:.3g} kg m2 on {mass:g} kg looks like a mesh in millimetres "
-        "taken for metres"
+        f"an inertia of {moments[2]:.3g} kg m2 on {mass:g} kg puts the mass {radius:.3g} m from "
+        "its centre"
     )
+    if radius > MILLIMETRES_M:
+        finding += ", as a mesh in millimetres taken for metres does"
     if box is None:
         remarks.append(f"{finding}; it is used unchanged")
         return moments, axes
@@ -128,22 +134,24 @@ def _physical(moments: Array, remarks: list[str]) -> Array:
     if moments.max() < MIN_INERTIA:
         remarks.append(f"it has no inertia; {DEFAULT_INERTIA:g} kg m2 is used")
         return np.full(3, DEFAULT_INERTIA)
-    largest = moments.max()
-    if moments.min() < -ROUNDING * largest:
-        remarks.append(f"its inertia has a principal moment below 0 ({moments.min():.3g} kg m2)")
+    problem = ""
+    if moments.min() < -ROUNDING * moments.max():
+        problem = f"a principal moment is below 0 ({moments.min():.3g} kg m2)"
     # A rod has very little inertia about its axis, and rolls accordingly; only 0 is replaced.
-    there = np.where(moments > RELATIVE_ZERO * largest, moments, ROUNDING * largest)
+    there = np.where(moments > RELATIVE_ZERO * moments.max(), moments, ROUNDING * moments.max())
     moments = np.maximum(there, MIN_INERTIA)
     largest = moments.max()
     others = moments.sum() - largest
     # The margin keeps rounding from failing MuJoCo's own check.
     missing = (1 + 1e-9) * largest - others
     if missing > ROUNDING * largest:
-        remarks.append(
-            f"its inertia is impossible: {largest:.4g} kg m2 about one principal axis exceeds "
-            "the sum about the other two; those were raised"
+        problem = problem or (
+            f"{largest:.4g} kg m2 about one principal axis exceeds the sum about the other two"
         )
     if missing > 0:
         # In proportion, because rounding along a rod is many times the inertia about its axis.
         moments = np.where(moments == largest, moments, moments * (1 + missing / others))
+    if problem:
+        used = " ".join(f"{moment:.3g}" for moment in moments)
+        remarks.append(f"its inertia is impossible: {problem}; {used} kg m2 is used")
     return moments

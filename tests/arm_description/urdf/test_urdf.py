@@ -70,7 +70,8 @@ def test_text_that_is_not_xml_is_an_xml_error():
     [
         (
             "\n<sdf version='1.6'/>",
-            "arm.urdf, line 2: <sdf> is not a robot; a URDF's outermost element is <robot>",
+            "arm.urdf, line 2: <sdf> is not a robot; a URDF's outermost element is <robot>. SDF is "
+            "a world or a model: world:=FILE, or arm sim spawn FILE",
         ),
         ("<robot>\n</robot>", "arm.urdf, line 1: <robot> needs the attribute 'name'"),
         ("<robot name='r'/>", "arm.urdf, the robot has no links"),

@@ -63,3 +63,14 @@ def test_a_mistake_is_a_finding(file, text):
 )
 def test_worlds_and_robots_are_distinguished(file, name, text, world):
     assert is_world(file(text, name)) is world
+
+
+def test_a_body_on_a_hinge_is_not_free_to_move(tmp_path):
+    world = tmp_path / "w.xml"
+    geom = '<geom size="0.1"/>'
+    hinge = f'<body><joint axis="0 0 1"/>{geom}</body>'
+    free = f'<body pos="1 0 0"><freejoint/>{geom}</body>'
+    fixed = f'<body pos="2 0 0">{geom}</body>'
+    world.write_text(f"<mujoco><worldbody>{hinge}{free}{fixed}</worldbody></mujoco>")
+    said = str(check_world_file(world).world)
+    assert said.startswith("world 'w': 3 things, 1 of them free to move, 1 with joints, 3 shapes")

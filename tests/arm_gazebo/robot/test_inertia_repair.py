@@ -87,6 +87,11 @@ def test_moments_that_overflow_are_repaired_and_reported(nonsense):
     assert "its inertia is impossible" in inertia.remarks[-1]
 
 
+def test_a_repaired_inertia_says_what_replaces_it():
+    (remark,) = repair_inertia(inertial(1.0, 1.0, 3.0)).remarks
+    assert remark.endswith("exceeds the sum about the other two; 1.5 1.5 3 kg m2 is used")
+
+
 def test_a_zero_inertia_is_reported():
     inertia = repair_inertia(inertial(0, 0, 0))
     assert inertia.moments.tolist() == [1e-6] * 3
@@ -102,7 +107,13 @@ def test_a_zero_mass_is_reported():
 def test_inertia_in_the_wrong_unit_is_used_with_a_warning():
     inertia = repair_inertia(inertial(1e8, 1e8, 1e8, mass=0.1))
     assert inertia.moments == pytest.approx([1e8] * 3)
-    assert "looks like a mesh in millimetres" in inertia.remarks[0]
+    assert "as a mesh in millimetres taken for metres does" in inertia.remarks[0]
+
+
+def test_a_light_body_with_too_much_inertia_is_not_called_a_mesh_in_millimetres():
+    box = np.array([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]])
+    (remark,) = repair_inertia(inertial(0.1, 0.1, 0.1, mass=0.005), box).remarks
+    assert "on 0.005 kg puts the mass 4.47 m from its centre; its bounding box's" in remark
 
 
 def test_an_inertia_in_the_wrong_unit_is_replaced_from_the_shapes_if_there_are_any():

@@ -168,7 +168,7 @@ def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
     )
     line = program.wait_for_line(f"is not known to {POSITION}")
     assert f"parameter 'open', 'state_publish_rate' is not known to {POSITION}" in line
-    assert "it knows command_timeout, interface_name, is_async, joints" in line
+    assert "known: command_timeout, interface_name, is_async, joints" in line
     own = "is not known to controller_manager and has no effect; did you mean"
     for given, meant in (
         ("updaterate", "update_rate"),
