@@ -7,6 +7,7 @@ from action_msgs.msg import GoalStatus
 from rclpy.action.client import ActionClient, ClientGoalHandle
 from rclpy.task import Future
 
+from arm_cli.action.ros_refusal import RefusalListener
 from arm_cli.errors import StoppedError, UnansweredError
 from arm_cli.messages.filling import FilledMessage
 from arm_cli.messages.text import to_yaml
@@ -39,10 +40,12 @@ class GoalSender:
         self.name = name
         self._session = session
         self._client = ActionClient(session.node, action_class, name)
+        self._refusals = RefusalListener(session, name)
 
     def close(self) -> None:
         """Destroy the action client, because its node does not."""
         self._client.destroy()
+        self._refusals.close()
 
     def is_ready(self) -> bool:
         """Return whether the action has a server."""
@@ -73,6 +76,7 @@ class GoalSender:
         goal.stamp(self._session.node.get_clock().now().to_msg())
         say_document(f"Sending goal:\n     {to_yaml(goal.message)}")
         feedback = _print_feedback if with_feedback else None
+        self._refusals.begin(time.time_ns())
         sent = self._client.send_goal_async(goal.message, feedback)
         try:
             if self._wait_for_result(sent, timeout_s):
@@ -93,6 +97,7 @@ class GoalSender:
             return False
         if not handle.accepted:
             say("Goal was rejected.")
+            self._explain()
             return True
         say_document(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
         left_s = None if timeout_s is None else timeout_s - (time.monotonic() - start_s)
@@ -103,7 +108,14 @@ class GoalSender:
             return False
         say_document(f"Result:\n    {to_yaml(answer.result)}")
         say(f"Goal finished with status: {_STATUS_NAMES.get(answer.status, 'UNKNOWN')}")
+        if answer.status == GoalStatus.STATUS_ABORTED and not _has_reason(answer.result):
+            self._explain()
         return True
+
+    def _explain(self) -> None:
+        """Print why the goal failed, if its server logs that."""
+        if reason := self._refusals.reason():
+            say(f"Reason, from the server's log: {reason}")
 
     def _cancel(self, sent: Future) -> None:
         # The server may have accepted the goal although its response has not arrived yet.
@@ -118,6 +130,10 @@ class GoalSender:
         if answer is None or not answer.goals_canceling:
             raise UnansweredError(f"{self.name} did not cancel the goal")
         say("Goal canceled.")
+
+
+def _has_reason(result: Any) -> bool:
+    return bool(getattr(result, "error_string", ""))
 
 
 def _print_feedback(message: Any) -> None:

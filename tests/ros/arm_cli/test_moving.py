@@ -106,13 +106,54 @@ def test_controllers_are_switched_and_a_goal_is_executed(run, run_until, start, 
     assert done.out.endswith("Goal finished with status: SUCCEEDED\n")
     arrives(0.3, 0.2, 0.1, 0.0)
     _a_goal_is_cancelled_by_ctrl_c(start)
-    rejected = run(f'{FOLLOW} "{{trajectory: {{joint_names: [j9]}}}}"')
-    assert rejected.endswith("Goal was rejected.\n")
+    faulty = "Empty trajectory received."
+    assert faulty in _rejected(run, "{trajectory: {joint_names: [j9]}}")
+    _what_nothing_obeys_says_so(run, arrives)
     assert run(f"{state} inactive") == "Successfully deactivated joint_trajectory_controller\n"
+    assert "Controller is not running" in _rejected(run, TRAJECTORY % ("0.1, 0, 0, 0", "1"))
     unload = "arm control unload_controller joint_trajectory_controller"
     assert run(unload) == "Successfully unloaded controller joint_trajectory_controller\n"
     again = run("arm control switch_controllers --activate position_controller")
     assert again.startswith("Successfully switched controllers!\n")
+
+
+def _rejected(run, goal):
+    """Return the reason that the command prints for a goal that is rejected."""
+    _, _, answer = run(f'{FOLLOW} "{goal}"').partition("Goal was rejected.\n")
+    title, _, reason = answer.partition(": ")
+    assert title == "Reason, from the server's log", answer
+    return reason
+
+
+def _what_nothing_obeys_says_so(run, arrives):
+    goal, hardware = TRAJECTORY % ("0.4, 0.3, 0.2, 0.1", "1"), "HardwareInterface_MuJoCo"
+    set_hardware = f"arm control set_hardware_component_state {hardware}"
+    inactive = f"Can't accept new action goals: hardware component '{hardware}' is inactive.\n"
+    stopped = "Can't accept new action goals: emergency stop.\n"
+    run(f"{set_hardware} inactive")
+    listed = run("arm control list_controllers").splitlines()
+    [line] = [line for line in listed if line.startswith("joint_trajectory_controller")]
+    assert line.split()[-1] == "active"
+    assert _rejected(run, goal) == inactive
+    assert run("arm stop") == "/emergency_stop: stopped\n"
+    assert _rejected(run, goal) == stopped
+    run(f"{set_hardware} active")
+    assert _rejected(run, goal) == stopped
+    run(f"{set_hardware} inactive")
+    run("arm stop --release")
+    assert _rejected(run, goal) == inactive
+    run(f"{set_hardware} active")
+    assert run(f'{FOLLOW} "{goal}"').endswith("Goal finished with status: SUCCEEDED\n")
+    arrives(0.4, 0.3, 0.2, 0.1)
+    # Unconfigured hardware stops its controllers, which say so and start again.
+    run(f"{set_hardware} unconfigured")
+    assert "Controller is not running" in _rejected(run, goal)
+    run(f"{set_hardware} active")
+    switch = "arm control switch_controllers --activate"
+    run(f"{switch} joint_trajectory_controller joint_state_broadcaster")
+    goal = TRAJECTORY % ("0.1, 0.2, 0.1, 0.0", "1")
+    assert run(f'{FOLLOW} "{goal}"').endswith("Goal finished with status: SUCCEEDED\n")
+    arrives(0.1, 0.2, 0.1, 0.0)
 
 
 def _a_goal_is_cancelled_by_ctrl_c(start):

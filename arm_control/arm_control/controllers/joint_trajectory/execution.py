@@ -229,6 +229,8 @@ class Execution:
         age_s: the controller's time since the plan's start; ahead of `elapsed_s` if the speed is
             scaled down.
         is_first: whether this is its first cycle.
+        far_at_end: distance of each joint from its end when some were too far, shape (n,).
+        far_since_s: `late_s` at that time.
     """
 
     plan: MotionPlan
@@ -239,6 +241,8 @@ class Execution:
     elapsed_s: float = 0.0
     age_s: float = 0.0
     is_first: bool = True
+    far_at_end: NDArray[np.float64] | None = None
+    far_since_s: float = 0.0
 
     def advance(self, period_s: float, speed_scaling: float) -> None:
         """Advance by a period."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.controllers.angles import shortest_angular_distance
+from arm_control.controllers.joint_trajectory.arrival import result_at_end
 from arm_control.controllers.joint_trajectory.commander import Commander
 from arm_control.controllers.joint_trajectory.configuration import Configuration
 from arm_control.controllers.joint_trajectory.execution import (
@@ -33,7 +34,6 @@ from arm_control.controllers.joint_trajectory.goals import (
     GoalRefusal,
     GoalRequest,
     GoalResult,
-    not_checkable,
     too_late,
 )
 from arm_control.controllers.joint_trajectory.plans import (
@@ -57,6 +57,8 @@ from arm_control.controllers.joint_trajectory.tolerances import Bounds, Toleranc
 from arm_control.controllers.joint_trajectory.trajectory import Trajectory
 from arm_control.controllers.joint_trajectory.validation import describe_lateness
 from arm_control.controllers.loaned_interfaces import LoanedInterfaces, describe_unmeasured
+
+ENDED = (ExecutionStatus.GOAL_REACHED, ExecutionStatus.SETTLING)
 
 
 class TrajectoryExecutor:
@@ -359,15 +361,16 @@ class TrajectoryExecutor:
         execution = self._execution
         tolerances, late_s = execution.tolerances, execution.late_s
         timeout_s = self._configuration.command_timeout_s
-        if (
-            status in (ExecutionStatus.GOAL_REACHED, ExecutionStatus.SETTLING)
-            and execution.serves_goal
-        ):
+        if execution.serves_goal and status in ENDED:
             names = self._unmeasured()
-            if names:
-                if late_s > tolerances.goal_time_s - RESOLUTION_S:
-                    self._goals.end(not_checkable(names))
+            result = result_at_end(status, execution, error, names, self._configuration)
+            if result is not None:
+                self._goals.end(result)
+                if result is GOAL_REACHED:
+                    execution.settle()
+                else:
                     self._execution = self._stop()
+            if result is not None or names:
                 return
         if status is ExecutionStatus.PATH_TOLERANCE_VIOLATED:
             text = "Holding position due to state tolerance violation"
@@ -375,9 +378,6 @@ class TrajectoryExecutor:
         elif status is ExecutionStatus.GOAL_TIME_EXCEEDED:
             text = "Exceeded goal_time_tolerance: holding position..."
             self._give_up(too_late(late_s), text, tolerances.goal, error)
-        elif status is ExecutionStatus.GOAL_REACHED and execution.serves_goal:
-            self._goals.end(GOAL_REACHED)
-            execution.settle()
         elif not execution.is_stop and 0.0 < timeout_s < late_s - RESOLUTION_S:
             self._logger.warning("Aborted due to command timeout")
             self._execution = self._hold(self._present()[POSITION])

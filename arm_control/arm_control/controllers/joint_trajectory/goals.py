@@ -233,6 +233,15 @@ def not_checkable(names: Sequence[str]) -> GoalResult:
     )
 
 
+def stalled(joint: str, distance: float, unit: str) -> GoalResult:
+    """Return the result of a goal one of whose joints rests short of the end."""
+    return GoalResult.aborted(
+        ErrorCode.GOAL_TOLERANCE_VIOLATED,
+        f"Aborted: joint {joint} does not follow: it rests {distance:.4g} {unit} from the goal; "
+        f"constraints.{joint}.goal allows a larger error",
+    )
+
+
 def too_late(late_s: float) -> GoalResult:
     """Return the result of a goal that was not reached within the goal time tolerance."""
     return GoalResult.aborted(

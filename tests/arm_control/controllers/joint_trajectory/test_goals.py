@@ -125,7 +125,10 @@ class TestTolerances:
         rig = make_rig(**PATH_TOLERANCES)
         rig.moves = False
         rig.goal(ONE_POINT, path_tolerance=[JointTolerance(f"j{i}", -1.0) for i in range(3)])
-        rig.run(1.0)
+        rig.run(0.9)
+        assert rig.result is None
+        rig.place([1.0, 2.0, 3.0])
+        rig.tick()
 
         assert rig.result == SUCCESS
 
