@@ -10,6 +10,9 @@ PATH = "/typed_numbers"
 MAX_LENGTH = 100
 """Longest text of a number; a longer one is a programming error."""
 
+ROUNDING = 1e-9
+"""How far beyond a limit a number may be, in rad or m; it counts as the limit."""
+
 Take = Callable[[str, str], str]
 """Takes a slider's identifier and the text typed beside it; returns the problem, or ""."""
 
@@ -41,9 +44,9 @@ def number_typed(text: str, name: str, lower: float, upper: float) -> float:
     except ValueError:
         raise ValueError(f"'{text}' is not a number; write it like -0.5 or 1e-2") from None
     # Also rejects NaN.
-    if not lower <= number <= upper:
+    if not lower - ROUNDING <= number <= upper + ROUNDING:
         raise ValueError(f"'{name}' goes from {lower:g} to {upper:g}; {number:g} is outside")
-    return number
+    return min(max(number, lower), upper)
 
 
 def _read(message: str | bytes) -> tuple[int, str | None, str | None]:

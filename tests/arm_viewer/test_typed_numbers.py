@@ -17,6 +17,11 @@ def test_a_number_is_what_was_typed(text, number):
     assert number_typed(text, "j0", -1.0, 1.0) == number
 
 
+def test_a_number_beyond_a_limit_by_rounding_is_the_limit():
+    assert number_typed("-1e-20", "j0", 0.0, 1.0) == 0.0
+    assert number_typed("1.0000000001", "j0", 0.0, 1.0) == 1.0
+
+
 @pytest.mark.parametrize("text", ["", "-", "0,5", "1e", "half"])
 def test_an_invalid_number_is_reported(text):
     with pytest.raises(ValueError, match="is not a number"):
