@@ -85,9 +85,9 @@ LINES = {
         r"^- Rotation: in Quaternion \(xyzw\) \[",
     ],
     "arm tf tree": [r"^world$", r"── base_turn_rot  \(\d+\.\d Hz\)$"],
-    "arm tf monitor --once base_link dyn4": [
-        r"^Chain is: base_link -> .*dyn4$",
-        r"^Frame: dyn4, published by <default_authority>, Average Delay: \d",
+    "arm tf monitor --once": [
+        r"^RESULTS: for all Frames$",
+        r"^Frame: base_turn_rot, published by <default_authority>, Average Delay: \d",
     ],
     "arm tf view_frames -t 1 -o drawn && cat drawn.gv": [r'^  "base_link" -> "base_turn" \[label='],
     "arm graph": [r'^  v\d+\["/joint_states"\]$', r'^  v\d+\(\["/joint_state_broadcaster"\]\)$'],
