@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -108,23 +108,28 @@ def bridged(description: type, launch: ModuleType, survey: Callable[..., Any]) -
                 return survey(self, os.environ, self._file).arguments.values()
 
         def _declarations(self) -> list[Any]:
-            return [
-                launch.actions.DeclareLaunchArgument(
-                    argument.name,
-                    default_value=argument.default,
-                    description=argument.description,
-                    choices=list(argument.choices) or None,
-                )
-                for argument in self._arguments()
-            ]
+            return [_declaration(launch, argument) for argument in self._arguments()]
 
         def _process(self, given: dict[str, str]) -> Any:
-            words = [f"{name}:={value}" for name, value in given.items()]
-            return launch.actions.ExecuteProcess(
-                cmd=[sys.executable, "-m", "launch_py", str(self._file), *words],
-                name=self._file.name.partition(".")[0],
-                output="screen",
-                sigterm_timeout=STOP_S,
-            )
+            return _launcher(launch, self._file, given)
 
     return BridgedDescription
+
+
+def _declaration(launch: ModuleType, argument: ArgumentInfo) -> Any:
+    return launch.actions.DeclareLaunchArgument(
+        argument.name,
+        default_value=argument.default,
+        description=argument.description,
+        choices=list(argument.choices) or None,
+    )
+
+
+def _launcher(launch: ModuleType, file: Path, arguments: Mapping[str, str]) -> Any:
+    words = [f"{name}:={value}" for name, value in arguments.items()]
+    return launch.actions.ExecuteProcess(
+        cmd=[sys.executable, "-m", "launch_py", str(file), *words],
+        name=file.name.partition(".")[0],
+        output="screen",
+        sigterm_timeout=STOP_S,
+    )
