@@ -52,4 +52,5 @@ def test_a_misspelt_type_is_an_error():
 def test_what_the_user_leaves_out_himself_is_not_mentioned():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        Simulation(controllers=CONTROLLERS, spawn=["position_controller"]).close()
+        with Simulation(controllers=CONTROLLERS, spawn=["position_controller"]) as sim:
+            assert list(sim.controllers) == ["position_controller"]

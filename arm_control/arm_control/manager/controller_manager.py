@@ -118,7 +118,12 @@ class ControllerManager:
             self._emergency,
             self._limiter,
         )
-        self.state = ManagerState(
+        self.state = self._state()
+        self._observers: list[ManagerObserver] = []
+        self._changes = 0
+
+    def _state(self) -> ManagerState:
+        return ManagerState(
             self._controllers,
             self.resources,
             self._limiter,
@@ -128,8 +133,6 @@ class ControllerManager:
             self._hardware_lifecycle,
             self._tracking_changes,
         )
-        self._observers: list[ManagerObserver] = []
-        self._changes = 0
 
     def add_observer(self, observer: ManagerObserver) -> None:
         """Notify this observer of every change from now on."""
