@@ -20,9 +20,10 @@ from arm_description.mesh.packed import read_packed
 from arm_description.mesh.stl import read_stl
 from arm_node.user_file import check_file, read_bytes
 
-COLLADA_SUFFIX = ".dae"
-READERS = {".gltf": read_gltf, ".glb": read_gltf, ".3mf": read_packed}
+READERS = {".gltf": read_gltf, ".glb": read_gltf}
 """What checks a file, and corrects what trimesh would read wrongly, before trimesh reads it."""
+READERS_WITH_UNIT = {".dae": read_collada, ".3mf": read_packed}
+"""The same for files that name their unit; other formats are in m."""
 
 
 def read_scene(path: Path) -> tuple[MeshData, ...]:
@@ -32,8 +33,8 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         MeshFileError: trimesh cannot read the file, or it would draw too much.
     """
     suffix = path.suffix.lower()
-    if suffix == COLLADA_SUFFIX:
-        content, unit = read_collada(path)
+    if suffix in READERS_WITH_UNIT:
+        content, unit = READERS_WITH_UNIT[suffix](path)
     else:
         read = READERS.get(suffix)
         content, unit = read(path) if read else read_bytes(path, LARGEST_BYTES), 1.0

@@ -1,4 +1,4 @@
-"""Checks a 3MF file before trimesh reads it: how large it is, and how much it draws."""
+"""Checks a 3MF file before trimesh reads it: its unit, its size, and how much it draws."""
 
 import struct
 import zipfile
@@ -15,6 +15,12 @@ from arm_description.mesh.scene_graph import SceneNode, check_scene
 from arm_node.user_file import read_bytes
 
 MODEL = "3d/3dmodel.model"
+UNITS_M = {
+    **{"micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0},
+    **{"inch": 0.0254, "foot": 0.3048},
+}
+"""Length of the units that the format knows, in m."""
+DEFAULT_UNIT = "millimeter"
 EXTERNAL = SceneNode(1, ())
 BROKEN = (
     *(zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError),
@@ -39,11 +45,11 @@ def unpacked_bytes(path: Path) -> int:
         raise MeshFileError(f"it is not a ZIP file, as 3MF files are: {error}") from error
 
 
-def read_packed(path: Path) -> bytes:
-    """Return the content of a .3mf file.
+def read_packed(path: Path) -> tuple[bytes, float]:
+    """Return the content of a .3mf file, and the length of its unit in m, which trimesh ignores.
 
     Raises:
-        MeshFileError: it is not 3MF, or takes too much time or memory.
+        MeshFileError: it is not 3MF, its unit is unknown, or it takes too much time or memory.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -52,16 +58,18 @@ def read_packed(path: Path) -> bytes:
                 raise MeshFileError(f"it is not 3MF: it does not contain {MODEL}")
             is_large = archive.getinfo(name).file_size > MAX_TEXT
             with archive.open(name) as model:
-                objects, items = _read(model, is_large)
+                objects, items, unit = _read(model, is_large)
     except BROKEN as error:
         raise MeshFileError(f"it is not 3MF: {error}") from error
     # Objects that are not in the model are in other files of the archive, one mesh each.
     check_scene(items, lambda name: objects.get(name, EXTERNAL))
-    return read_bytes(path, LARGEST_BYTES)
+    if unit not in UNITS_M:
+        raise MeshFileError(f"its unit '{unit}' is not one of {', '.join(UNITS_M)}")
+    return read_bytes(path, LARGEST_BYTES), UNITS_M[unit]
 
 
-def _read(model: IO[bytes], is_large: bool) -> tuple[dict[str, SceneNode], list[str]]:
-    """Return the objects by id, and the ids of those that are built."""
+def _read(model: IO[bytes], is_large: bool) -> tuple[dict[str, SceneNode], list[str], str]:
+    """Return the objects by id, the ids of those that are built, and the name of the unit."""
     objects: dict[str, SceneNode] = {}
     items: list[str] = []
     elements = etree.iterparse(
@@ -82,4 +90,4 @@ def _read(model: IO[bytes], is_large: bool) -> tuple[dict[str, SceneNode], list[
         meshes = sum(1 for _ in element.iter("{*}mesh"))
         objects[element.get("id", "")] = SceneNode(meshes, used, 3 * triangles)
         element.clear()
-    return objects, items
+    return objects, items, elements.root.get("unit", DEFAULT_UNIT)

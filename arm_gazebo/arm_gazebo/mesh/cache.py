@@ -19,7 +19,7 @@ from arm_gazebo.mesh.part import MeshPart
 
 logger = logging.getLogger(__name__)
 
-VERSION = "2"
+VERSION = "3"
 """Part of every key. Raise it when the same file is parsed to a different result."""
 MAX_CACHE_BYTES = 1_000_000_000
 """Limit on the size of all entries; the least recently used are deleted first."""

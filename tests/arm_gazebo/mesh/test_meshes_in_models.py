@@ -67,7 +67,7 @@ def box():
     return trimesh.creation.box(SIZE)
 
 
-@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "off", "3mf"])
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "off"])
 def test_formats(parts, tmp_path, box, suffix):
     file = tmp_path / f"box.{suffix}"
     box.export(file)
