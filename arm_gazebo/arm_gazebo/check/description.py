@@ -21,6 +21,7 @@ from arm_gazebo.check.ros_parser import refused_by_ros
 from arm_gazebo.check.units import other_units
 from arm_gazebo.check.unread_elements import unread_elements
 from arm_gazebo.drives.servo_tuning import tune, weak_drives
+from arm_gazebo.drives.slow_joints import slow_joints
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_hardware import MAX_EFFORT, STATES
@@ -231,6 +232,8 @@ def _check_strength(built: BuiltModel, report: BuildReport) -> None:
     tuning = tune(built.model, driven, built.qpos, PERIOD_S)
     for name, problem in weak_drives(built.model, driven, tuning):
         report.warn(f"joint '{name}'", problem)
+    for name, problem in slow_joints(built.model, driven, tuning, built.qpos):
+        report.inform(f"joint '{name}'", problem)
 
 
 def _summary(

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.drives.braking_law import BrakingLaw
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import CHECK_EVERY_S, SETTLE_S, Servo
 from arm_gazebo.drives.servo_tuning import TIME_CONSTANT_S, resistance
@@ -29,6 +30,7 @@ class DriveConstants:
         velocity_limit: velocity limits of the joints.
         lower: lowest positions, rad or m.
         upper: highest positions.
+        law: the bounds on braking, by the pose.
         braking: see `MotionBounds`, as the next two.
         jerkless: see there.
         slack: see there.
@@ -53,6 +55,7 @@ class DriveConstants:
     velocity_limit: Array
     lower: Array
     upper: Array
+    law: BrakingLaw
     braking: Array
     jerkless: Array
     slack: Array
@@ -89,6 +92,7 @@ def drive_constants(model: mujoco.MjModel, servo: Servo) -> DriveConstants:
         velocity_limit=np.array([joint.velocity_limit for joint in joints]),
         lower=np.array([joint.lower for joint in joints]),
         upper=np.array([joint.upper for joint in joints]),
+        law=servo.law,
         braking=np.array([bound.braking for bound in bounds]),
         jerkless=np.array([bound.jerkless for bound in bounds]),
         slack=np.array([bound.slack for bound in bounds]),

@@ -3,7 +3,8 @@
 from enum import Enum
 from typing import Any
 
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, MotionBounds
+from arm_gazebo.drives.braking_law import FLOOR, budget
+from arm_gazebo.drives.servo_tuning import MotionBounds
 from arm_gazebo.drives.setpoint import Setpoint
 from arm_gazebo.robot.actuation import RobotJoint
 
@@ -29,6 +30,9 @@ SERVOED = frozenset({DriveMode.HOLD, DriveMode.POSITION, DriveMode.VELOCITY})
 
 LANDING_SPEED = 1e-5
 """A proportional approach ends below this speed (rad/s or m/s)."""
+
+NEAREST = 1e-9
+"""Distance in rad or m to which a need for braking refers at least."""
 
 MAX_INTERVAL_S = 0.05
 """Commands farther apart than this are steps; closer ones are samples of one motion."""
@@ -56,10 +60,10 @@ class CommandStream:
         self._left = 0
         self._last_change = -1_000_000
 
-    def command(self, position: float, tick: int) -> None:
-        """Take the command of the control period with number `tick`."""
+    def command(self, position: float, tick: int) -> bool:
+        """Take the command of control period `tick`; return whether it differs from the last."""
         if position == self._command:
-            return
+            return False
         interval = tick - self._last_change
         self._command = position
         self._last_change = tick
@@ -70,6 +74,7 @@ class CommandStream:
         else:
             self._left = max(interval, 1)
             self.velocity = (position - self.target) / (self._left * self._period_s)
+        return True
 
     def save_state(self) -> tuple[float, float, float, int, int]:
         """Return the target and the last command."""
@@ -99,6 +104,9 @@ class DrivenJoint:
         mode: how it is driven.
         effort: commanded effort, in the mode EFFORT.
         effort_limit: largest effort of the drive now, at most the joint's own limit.
+        sure_braking: deceleration that it can reach in any pose, whatever the others do.
+        part: part of its present acceleration that it may brake with; see `BrakingLaw`.
+        braking: deceleration that stops are planned with now.
         setpoint: the set-point at the end of the current control period.
         start_position: position of the set-point at the start of the period.
         start_velocity: velocity of the set-point at the start of the period.
@@ -106,7 +114,6 @@ class DrivenJoint:
 
     __slots__ = (
         "_bounds",
-        "_braking",
         "_jerkless",
         "_period_s",
         "_rate_per_s",
@@ -114,13 +121,16 @@ class DrivenJoint:
         "_speed",
         "_stream",
         "_velocity",
+        "braking",
         "effort",
         "effort_limit",
         "joint",
         "mode",
+        "part",
         "setpoint",
         "start_position",
         "start_velocity",
+        "sure_braking",
     )
 
     def __init__(
@@ -152,6 +162,7 @@ class DrivenJoint:
         self._slack = bounds.slack
         self._bounds = bounds
         self.limit_effort(joint.effort, 1.0)
+        self.part, self.braking = 0.0, self.sure_braking
         self._period_s = period_s
         self._rate_per_s = proportional_gain / period_s
         self._stream = CommandStream(joint.initial, period_s)
@@ -165,7 +176,7 @@ class DrivenJoint:
             share: fraction of the normal braking deceleration that this effort allows.
         """
         self.effort_limit = limit
-        self._braking = share * self._bounds.braking
+        self.sure_braking = share * self._bounds.braking
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
         """Change the mode; a new set-point starts from the state of the joint."""
@@ -184,35 +195,62 @@ class DrivenJoint:
             self.mode,
             self.effort,
             self.effort_limit,
-            self._braking,
+            self.sure_braking,
             self._velocity,
             setpoint.position,
             setpoint.velocity,
             self.start_position,
             self.start_velocity,
             *self._stream.save_state(),
+            self.braking,
+            self.part,
         )
 
     def load_state(self, state: tuple[Any, ...]) -> None:
         """Continue from a saved state."""
-        self.mode, self.effort, self.effort_limit, self._braking, self._velocity = state[:5]
+        self.mode, self.effort, self.effort_limit, self.sure_braking, self._velocity = state[:5]
         self.setpoint = Setpoint(*state[5:7])
         self.start_position, self.start_velocity = state[7:9]
-        self._stream.load_state(state[9:])
+        self._stream.load_state(state[9:14])
+        # States of older versions end here.
+        self.braking, self.part = state[14:] or (self.sure_braking, 0.0)
 
     def stopping_point(self) -> float:
         """Return where the joint will stop without a new command, within its limits."""
-        point = self.setpoint.stopping_point(self._braking)
+        point = self.setpoint.stopping_point(self.braking)
         return min(max(point, self.joint.lower), self.joint.upper)
 
-    def command(self, value: float, tick: int) -> None:
-        """Take a command in the unit of the mode; HOLD and FREE ignore it."""
+    def command(self, value: float, tick: int) -> bool:
+        """Take a command in the unit of the mode; return whether a resting set-point may start.
+
+        HOLD and FREE ignore commands.
+        """
+        differs = False
         if self.mode is DriveMode.POSITION:
-            self._stream.command(value, tick)
+            differs = self._stream.command(value, tick)
         elif self.mode is DriveMode.VELOCITY:
+            differs = value != self._velocity
             self._velocity = value
         elif self.mode is DriveMode.EFFORT:
             self.effort = value
+        return differs and self.setpoint.velocity == 0.0
+
+    def needed_braking(self) -> float:
+        """Return the deceleration that stops the present motion at its target.
+
+        -1 at rest, and for a target that moves.
+        """
+        position, velocity = self.setpoint.position, self.setpoint.velocity
+        if self.mode is DriveMode.VELOCITY:
+            if not velocity and not self._velocity:
+                return -1.0
+            target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
+        else:
+            stream = self._stream
+            target = stream.target
+            if stream.velocity or (not velocity and target == position):
+                return -1.0
+        return 0.5 * velocity * velocity / max(abs(target - position), NEAREST)
 
     def plan(self, position: float, velocity: float, inertia: float, gravity: float) -> bool:
         """Advance the set-point by one control period; return whether it moves.
@@ -254,14 +292,18 @@ class DrivenJoint:
                 return False
             if self._rate_per_s and self.mode is DriveMode.POSITION:
                 target_velocity, speed = 0.0, self._proportional_speed(target)
-        acceleration = EFFORT_SHARE * (self.effort_limit - abs(gravity)) / inertia
+        acceleration = budget(self.effort_limit, gravity) / inertia
+        braking, sure = self.part * acceleration, self.sure_braking
+        if braking > self._jerkless:
+            braking = self._jerkless
+        if braking < FLOOR * sure:
+            braking = FLOOR * sure
         if acceleration > self._jerkless:
             acceleration = self._jerkless
-        if acceleration < self._braking:
-            acceleration = self._braking
-        setpoint.approach(
-            target, target_velocity, speed, acceleration, self._braking, self._period_s
-        )
+        if acceleration < sure:
+            acceleration = sure
+        self.braking = braking
+        setpoint.approach(target, target_velocity, speed, acceleration, braking, self._period_s)
         return setpoint.velocity != 0.0 or setpoint.position != start
 
     def _proportional_speed(self, target: float) -> float:

@@ -19,6 +19,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.drives.braking_law import FLOOR, RENEW_EVERY, RESTING, BrakingLaw, budget
 from arm_gazebo.drives.driven_joint import SERVOED, DriveMode, DrivenJoint
 from arm_gazebo.drives.servo_tuning import (
     EFFORT_SHARE,
@@ -60,7 +61,10 @@ class Servo:
     Attributes:
         timing: control period and physics step.
         proportional_gain: see `DrivenJoint`.
+        law: the bounds on braking, by the pose.
     """
+
+    law: BrakingLaw
 
     def __init__(
         self,
@@ -90,6 +94,7 @@ class Servo:
         self._still: list[float] = []
         self._settle_ticks = math.ceil(SETTLE_S / timing.period_s)
         self._check_ticks = max(1, round(CHECK_EVERY_S / timing.period_s))
+        self._way_to_renew = 0.0
         self._tick = 0
         self._awake_ticks = self._settle_ticks
 
@@ -133,6 +138,7 @@ class Servo:
         self._act, self._ctrl = data.act[activations], data.ctrl[controls]
         dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
         addresses = np.array([joint.qpos_address for joint in joints], dtype=np.intp)
+        self.law = BrakingLaw(model, tuning, dofs)
         self._dofs, self._addresses = as_slice(dofs), as_slice(addresses)
         self._diagonal = as_slice(model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1)
         self._qpos, self._qvel = data.qpos, data.qvel
@@ -159,11 +165,12 @@ class Servo:
         driven.enter(mode, position, float(self._qvel[driven.joint.dof_address]))
         self._set_gains(index, mode)
         self._find_servoed()
-        self._awake_ticks = self._settle_ticks
+        self._awake_ticks, self._way_to_renew = self._settle_ticks, 0.0
 
     def command(self, index: int, value: float) -> None:
         """Take a finite command, within the joint's limits, in the unit of the joint's mode."""
-        self._joints[index].command(value, self._tick)
+        if self._joints[index].command(value, self._tick):
+            self._way_to_renew = 0.0
         self._awake_ticks = self._settle_ticks
 
     def limit_effort(self, index: int, limit: float) -> None:
@@ -174,7 +181,7 @@ class Servo:
         needed = self._tuning.braking_efforts[index]
         driven.limit_effort(limit, min(1.0, EFFORT_SHARE * limit / needed))
         self._set_gains(index, driven.mode)
-        self._awake_ticks = self._settle_ticks
+        self._awake_ticks, self._way_to_renew = self._settle_ticks, 0.0
 
     def stopping_point(self, index: int) -> float:
         """Return where a joint will stop without a new command, in rad or m."""
@@ -185,6 +192,7 @@ class Servo:
         for index, driven in enumerate(self._joints):
             mode = driven.mode
             driven.mode = DriveMode.FREE
+            driven.part, driven.braking = 0.0, driven.sure_braking
             self.set_mode(index, mode)
         self._tick = 0
 
@@ -196,6 +204,7 @@ class Servo:
             "still": self._still,
             "tick": self._tick,
             "awake_ticks": self._awake_ticks,
+            "way_to_renew": self._way_to_renew,
         }
 
     def load_state(self, state: dict[str, Any]) -> None:
@@ -206,10 +215,12 @@ class Servo:
         self.set_friction_solvers()
         self._gains, self._still = list(state["gains"]), list(state["still"])
         self._tick, self._awake_ticks = state["tick"], state["awake_ticks"]
+        # States of older versions have no bounds that are renewed.
+        self._way_to_renew = state.get("way_to_renew", 0.0)
 
     def fingerprint(self) -> bytes:
         """Return bytes that differ if the state does."""
-        numbers: list[float] = [self._tick, self._awake_ticks]
+        numbers: list[float] = [self._tick, self._awake_ticks, self._way_to_renew]
         for driven in self._joints:
             mode, *rest = driven.save_state()
             numbers.append(MODE_NUMBERS[mode])
@@ -224,6 +235,8 @@ class Servo:
                 return
             self._awake_ticks = self._settle_ticks
         gravity = self._felt(self._bias)
+        if self._way_to_renew <= 0.0:
+            self._renew_braking(gravity)
         if self._plan(gravity) or len(self._servoed) < len(self._joints):
             self._awake_ticks = self._settle_ticks
         else:
@@ -240,16 +253,39 @@ class Servo:
     def _has_moved(self) -> bool:
         return math.dist(self._qpos[self._addresses].tolist(), self._still) > WAKE_DISTANCE
 
+    def _renew_braking(self, gravity: list[float]) -> None:
+        """Bound the braking of the joints that move by the present pose."""
+        self._way_to_renew = RENEW_EVERY
+        count = len(self._joints)
+        needs, floors, room = [-1.0] * count, [0.0] * count, [0.0] * count
+        stops = False
+        for index, driven in self._servoed:
+            needs[index] = need = driven.needed_braking()
+            stops = stops or need >= 0.0
+            floors[index] = FLOOR * driven.sure_braking
+            room[index] = 1.0 / budget(driven.effort_limit, gravity[index])
+            if need < 0.0 and not driven.setpoint.velocity:
+                room[index] *= RESTING
+        if stops:
+            parts = self.law.parts(self._inertia, room, floors, needs)
+            for index, driven in self._servoed:
+                if needs[index] >= 0.0:
+                    driven.part = parts[index]
+
     def _plan(self, gravity: list[float]) -> bool:
         """Advance every set-point; return whether any of them moves."""
         positions = self._qpos[self._addresses].tolist()
         velocities = self._qvel[self._dofs].tolist()
         inertias = self._inertia[self._diagonal].tolist()
-        moving = False
+        moving, farthest = False, 0.0
         for index, driven in self._servoed:
             inertia = inertias[index] + self._followers[index]
             if driven.plan(positions[index], velocities[index], inertia, gravity[index]):
                 moving = True
+                way = abs(driven.setpoint.position - driven.start_position)
+                if way > farthest:
+                    farthest = way
+        self._way_to_renew -= farthest
         return moving
 
     def _planned_efforts(self, gravity: list[float]) -> list[float]:
@@ -331,10 +367,17 @@ class Servo:
         model.actuator_forcelimited[actuator] = math.isfinite(limit)
         model.actuator_gainprm[actuator, 0] = gain
         model.actuator_biasprm[actuator, :3] = 0.0, -stiffness, -damping
-        set_armature(model, self._joints[index].joint.dof_address, rotor)
+        self._set_rotor(self._joints[index].joint.dof_address, rotor)
         for follower, gear in tuning.gears[index]:
-            set_armature(model, follower, 0.0 if mode is DriveMode.FREE else gear)
+            self._set_rotor(follower, 0.0 if mode is DriveMode.FREE else gear)
         self._set_friction_solver(index)
+
+    def _set_rotor(self, dof: int, armature: float) -> None:
+        """Change a rotor, also in the last inertia, which the next period plans with."""
+        model = self._model
+        diagonal = model.M_rowadr[dof] + model.M_rownnz[dof] - 1
+        self._inertia[diagonal] += armature - model.dof_armature[dof]
+        set_armature(model, dof, armature)
 
     def set_friction_solvers(self) -> None:
         """Let dry friction yield or stick, after a change of modes or frictions from outside."""

@@ -12,11 +12,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.drives.braking_law import FLOOR, RENEW_EVERY, RESTING, budgets
 from arm_gazebo.drives.drive_constants import drive_constants
-from arm_gazebo.drives.driven_joint import LANDING_SPEED, SERVOED, DriveMode
+from arm_gazebo.drives.driven_joint import LANDING_SPEED, NEAREST, SERVOED, DriveMode
 from arm_gazebo.drives.inertia_product import InertiaProduct
 from arm_gazebo.drives.servo import USABLE_EFFORT, WAKE_DISTANCE, Servo
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE
 from arm_gazebo.drives.setpoint_batch import CommandStreams, approach, held_back
 from arm_node.index_slice import as_slice
 
@@ -45,7 +45,9 @@ class ServoBatch:
         self._effort, self._speed = constants.effort, constants.speed
         self._velocity_limit = constants.velocity_limit
         self._lower, self._upper = constants.lower, constants.upper
-        self._braking, self._jerkless = constants.braking, constants.jerkless
+        self._law = constants.law
+        self._sure, self._floor = constants.braking, FLOOR * constants.braking
+        self._jerkless = constants.jerkless
         self._slack = constants.slack
         self._friction, self._drag = constants.friction, constants.drag
         self._compliance = constants.compliance
@@ -59,6 +61,8 @@ class ServoBatch:
         self._check_ticks = constants.check_ticks
         shape = (copies, count)
         self._ticks = np.zeros((copies, 1), dtype=np.int64)
+        self._way_to_renew = np.zeros(copies)
+        self._part = np.zeros(shape)
         self._awake_ticks = np.full(copies, self._settle_ticks)
         self._still = np.zeros(shape)
         self._position, self._velocity = np.zeros(shape), np.zeros(shape)
@@ -90,13 +94,13 @@ class ServoBatch:
         position = qpos[:, self._addresses]
         limit = self._velocity_limit
         velocity = np.minimum(np.maximum(qvel[:, self._dofs], -limit), limit)
-        stop = position + 0.5 * velocity * np.abs(velocity) / self._braking
+        stop = position + 0.5 * velocity * np.abs(velocity) / self._sure
         self._position[rows], self._velocity[rows] = position, velocity
         self._start_position[rows], self._start_velocity[rows] = position, velocity
         self._streams.put(
             rows, CommandStreams.at(np.minimum(np.maximum(stop, self._lower), self._upper))
         )
-        self._ticks[rows] = 0
+        self._ticks[rows], self._way_to_renew[rows], self._part[rows] = 0, 0.0, 0.0
         self._awake_ticks[rows] = self._settle_ticks
         self._taken[rows] = np.nan
 
@@ -111,10 +115,23 @@ class ServoBatch:
         new = (values.view(np.int64) != self._taken.view(np.int64)).any(axis=1)
         if not new.any():
             return
+        self._renew_where_one_starts(values, new)
         np.copyto(self._taken, values, where=new[:, None])
         self._awake_ticks[new] = self._settle_ticks
         positions = np.where(self._by_position & new[:, None], values, self._streams.command)
         self._streams.take(positions, self._ticks, self._period_s)
+
+    def _renew_where_one_starts(self, values: Array, new: Rows) -> None:
+        """See `DrivenJoint.command`."""
+        differs = np.zeros(values.shape, dtype=bool)
+        np.not_equal(values, self._streams.command, out=differs, where=self._by_position)
+        np.not_equal(values, self._asked(), out=differs, where=self._by_velocity)
+        starts = (differs & (self._velocity == 0.0)).any(axis=1)
+        self._way_to_renew[new & starts] = 0.0
+
+    def _asked(self) -> Array:
+        """Return the last commands, 0 for none."""
+        return np.where(np.isnan(self._taken), 0.0, self._taken)
 
     def update(self, qpos: Array, qvel: Array, inertia: Array, bias: Array) -> None:
         """Drive the joints of all copies for one control period; see `Servo.update`.
@@ -131,6 +148,11 @@ class ServoBatch:
             return
         where = None if rows is None else rows[:, None]
         gravity = self._felt(bias)
+        due = self._way_to_renew <= 0.0
+        if rows is not None:
+            due &= rows
+        if due.any():
+            self._renew_braking(np.flatnonzero(due), inertia, gravity)
         moving = self._plan(where, qpos, qvel, inertia, gravity)
         efforts = self._planned_efforts(where, inertia, bias, gravity)
         self._write(where, efforts)
@@ -160,6 +182,24 @@ class ServoBatch:
                 self._awake_ticks[row], rows[row] = self._settle_ticks, True
         return rows
 
+    def _renew_braking(self, rows: NDArray[np.intp], inertia: Array, gravity: Array) -> None:
+        """See `Servo`."""
+        self._way_to_renew[rows] = RENEW_EVERY
+        position, velocity = self._position[rows], self._velocity[rows]
+        streams, asked = self._streams, self._asked()[rows]
+        target, followed = streams.target[rows], streams.velocity[rows]
+        rests = (followed != 0.0) | ((velocity == 0.0) & (target == position))
+        if self._by_velocity.any():
+            by = self._by_velocity
+            rests = np.where(by, (velocity == 0.0) & (asked == 0.0), rests)
+            target = np.where(by, np.where(asked > 0.0, self._upper, self._lower), target)
+        needs = 0.5 * velocity * velocity / np.maximum(np.abs(target - position), NEAREST)
+        needs = np.where(rests | ~self._servoed, -1.0, needs)
+        room = np.where(self._servoed, 1.0 / budgets(self._effort, gravity[rows]), 0.0)
+        room = np.where((needs < 0.0) & (velocity == 0.0), RESTING * room, room)
+        parts = self._law.parts_of_many(inertia[rows], room, self._floor, needs)
+        self._part[rows] = np.where(needs >= 0.0, parts, self._part[rows])
+
     def _plan(
         self, where: Rows | None, qpos: Array, qvel: Array, inertia: Array, gravity: Array
     ) -> Rows:
@@ -183,15 +223,16 @@ class ServoBatch:
         else:
             rests = (target == position) & (target_velocity == 0.0) & (velocity == 0.0)
         if self._by_velocity.any():
-            asked = np.where(np.isnan(self._taken), 0.0, self._taken)
-            by = self._by_velocity
+            asked, by = self._asked(), self._by_velocity
             speed = np.where(by, np.abs(asked), speed)
             target = np.where(by, np.where(asked > 0.0, self._upper, self._lower), target)
             target_velocity = np.where(by, 0.0, target_velocity)
             rests = rests & ~by
         felt = inertia[:, self._diagonal] + self._followers_inertia
-        acceleration = EFFORT_SHARE * (self._effort - np.abs(gravity)) / felt
-        acceleration = np.maximum(np.minimum(acceleration, self._jerkless), self._braking)
+        acceleration = budgets(self._effort, gravity) / felt
+        braking = np.minimum(self._part * acceleration, self._jerkless)
+        braking = np.maximum(braking, self._floor)
+        acceleration = np.maximum(np.minimum(acceleration, self._jerkless), self._sure)
         end, end_velocity = approach(
             position,
             velocity,
@@ -199,12 +240,14 @@ class ServoBatch:
             target_velocity,
             speed,
             acceleration,
-            self._braking,
+            braking,
             self._period_s,
         )
         end = np.where(rests, position, end)
         end_velocity = np.where(rests, velocity, end_velocity)
         moving = ~rests & ((end_velocity != 0.0) | (end != position)) & self._servoed
+        farthest = np.maximum.reduce(np.where(moving, np.abs(end - position), 0.0), axis=1)
+        self._way_to_renew -= farthest if where is None else np.where(where[:, 0], farthest, 0.0)
         self._commit(where, position, velocity, end, end_velocity)
         return moving.any(axis=1)
 

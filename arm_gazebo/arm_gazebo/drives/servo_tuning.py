@@ -16,7 +16,7 @@ tuning follows from these:
   drive therefore cannot chatter, in any pose and with any coupling between joints.
 * stiffness: damping / 20 ms, which makes a well-damped loop at every inertia.
 * braking: accelerations that all joints can reach at once in the worst pose, with half of the
-  effort that gravity leaves.
+  effort that gravity leaves. `braking_law` has what they can do in the present pose.
 """
 
 import math
@@ -323,9 +323,7 @@ def _sample(
         alone, shape (n,); absolute efforts against gravity, shape (n,).
     """
     data = mujoco.MjData(model)
-    random = np.random.default_rng(POSE_SEED)
     full, efforts = np.zeros((model.nv, model.nv)), np.zeros(model.nv)
-    lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
     addresses = [joint.qpos_address for joint in joints]
     dofs = [joint.dof_address for joint in joints]
     # Multiply only the few rows of mimic joints, not thousands of zeros and ones.
@@ -335,8 +333,8 @@ def _sample(
     ratios = others[followers]
     inertia, own, gravity = np.zeros((len(dofs),) * 2), np.zeros(len(dofs)), np.zeros(len(dofs))
     data.qpos[:] = qpos
-    for _ in range(POSES):
-        data.qpos[addresses] = random.uniform(lower, upper)
+    for pose in random_poses(joints, POSES):
+        data.qpos[addresses] = pose
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_crb(model, data)
@@ -349,6 +347,14 @@ def _sample(
         np.maximum(own, full[dofs, dofs], out=own)
         np.maximum(gravity, np.abs(coupling.T @ efforts), out=gravity)
     return inertia, own, gravity
+
+
+def random_poses(joints: Sequence[RobotJoint], count: int) -> Iterator[Array]:
+    """Yield positions (n,) of joints within their limits, the same ones each time."""
+    random = np.random.default_rng(POSE_SEED)
+    lower, upper = np.array([_range(joint) for joint in joints]).reshape(-1, 2).T
+    for _ in range(count):
+        yield random.uniform(lower, upper)
 
 
 def _range(joint: RobotJoint) -> tuple[float, float]:

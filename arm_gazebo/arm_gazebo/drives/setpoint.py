@@ -2,6 +2,10 @@
 
 from math import inf, sqrt
 
+LATE_BRAKING = 1.8
+"""Most that a set-point brakes with when it is late, in units of the braking that it plans with.
+
+Plans use half of the effort that gravity leaves a joint; this uses nine tenths."""
 LANDING_SLACK = 1.0001
 """Rounding allowance on the speed in the last period."""
 
@@ -38,8 +42,8 @@ class Setpoint:
             target: position of the target at the end of this period; may be infinite.
             target_velocity: velocity of the target; 0 for a fixed target.
             speed: highest speed, at least 0.
-            acceleration: acceleration that the joint can reach now, at least `braking`.
-            braking: deceleration that it can reach in any pose, above 0; stops are planned with it.
+            acceleration: acceleration that the joint can reach now.
+            braking: deceleration that stops are planned with, above 0.
             period_s: length of the period.
         """
         # Comparisons instead of min, max and abs: this runs for every joint in every tick.
@@ -70,12 +74,16 @@ class Setpoint:
         root = brake * (0.25 * brake - velocity) + 2.0 * braking * distance
         fastest = sqrt(root) - 0.5 * brake if root > 0.0 else -inf
         cruise = speed - sign * target_velocity
+        hardest = change
         if fastest > cruise:
             fastest = cruise
+        elif LATE_BRAKING * brake > change:
+            # What the stop was planned with may have become too little.
+            hardest = LATE_BRAKING * brake
         if fastest > velocity + change:
             fastest = velocity + change
-        elif fastest < velocity - change:
-            fastest = velocity - change
+        elif fastest < velocity - hardest:
+            fastest = velocity - hardest
         end = target_velocity + sign * fastest
         self.position += 0.5 * period_s * (self.velocity + end)
         self.velocity = end

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.drives.driven_joint import MAX_INTERVAL_S
-from arm_gazebo.drives.setpoint import LANDING_SLACK
+from arm_gazebo.drives.setpoint import LANDING_SLACK, LATE_BRAKING
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -118,7 +118,7 @@ def approach(
         target_velocity: velocities of the targets; 0 for fixed targets.
         speed: highest speeds.
         acceleration: accelerations that the joints can reach now.
-        braking: decelerations that they can reach in any pose.
+        braking: decelerations that stops are planned with.
         period_s: control period.
     """
     followed = np.minimum(np.maximum(target_velocity, -speed), speed)
@@ -137,8 +137,10 @@ def approach(
     distance, velocity = distance * sign, velocity * sign
     root = brake * (0.25 * brake - velocity) + 2.0 * braking * distance
     fastest = np.where(root > 0.0, np.sqrt(np.maximum(root, 0.0)) - 0.5 * brake, -np.inf)
-    fastest = np.minimum(fastest, speed - sign * followed)
-    fastest = np.maximum(np.minimum(fastest, velocity + change), velocity - change)
+    cruise = speed - sign * followed
+    hardest = np.where(fastest > cruise, change, np.maximum(LATE_BRAKING * brake, change))
+    fastest = np.minimum(fastest, cruise)
+    fastest = np.maximum(np.minimum(fastest, velocity + change), velocity - hardest)
     end = followed + sign * fastest
     moved = position + 0.5 * period_s * (start_velocity + end)
     return np.where(lands, target, moved), np.where(lands, followed, end)

@@ -5,19 +5,28 @@ In 64 bits and without fused multiplications, so that every number has the same 
 
 import warp as wp
 
+from arm_gazebo.batch.gpu.braking_kernels import (
+    FLOOR,
+    RESTING,
+    RESTS,
+    budget,
+    needed_braking,
+    renew_parts,
+)
+from arm_gazebo.batch.gpu.drive_states import DriveLaw, DriveStates
 from arm_gazebo.batch.gpu.setpoint_kernels import (
     HALF,
+    ONE,
     ZERO,
-    Streams,
     advance,
     approach,
     held_back,
     proportional_speed,
     take,
 )
+from arm_gazebo.drives.braking_law import RENEW_EVERY
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import MODE_NUMBERS, USABLE_EFFORT, WAKE_DISTANCE
-from arm_gazebo.drives.servo_tuning import EFFORT_SHARE
 from arm_gazebo.drives.setpoint_batch import LONG_AGO
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -26,69 +35,9 @@ POSITION, VELOCITY, EFFORT = (
     wp.constant(MODE_NUMBERS[mode])
     for mode in (DriveMode.POSITION, DriveMode.VELOCITY, DriveMode.EFFORT)
 )
-PLANNED, USABLE = wp.constant(wp.float64(EFFORT_SHARE)), wp.constant(wp.float64(USABLE_EFFORT))
+USABLE = wp.constant(wp.float64(USABLE_EFFORT))
+RENEWS = wp.constant(wp.float64(RENEW_EVERY))
 WAKES = wp.constant(wp.float64(WAKE_DISTANCE))
-
-
-@wp.struct
-class DriveLaw:
-    """What stays the same: the joints, arrays of shape (joints,) if not said otherwise."""
-
-    count: wp.int32
-    mode: wp.array[wp.int32]
-    servoed: wp.array[wp.int32]
-    address: wp.array[wp.int32]
-    dof: wp.array[wp.int32]
-    control: wp.array[wp.int32]
-    activation: wp.array[wp.int32]
-    diagonal: wp.array[wp.int32]
-    effort: wp.array[wp.float64]
-    speed: wp.array[wp.float64]
-    lower: wp.array[wp.float64]
-    upper: wp.array[wp.float64]
-    braking: wp.array[wp.float64]
-    jerkless: wp.array[wp.float64]
-    slack: wp.array[wp.float64]
-    friction: wp.array[wp.float64]
-    drag: wp.array[wp.float64]
-    compliance: wp.array[wp.float64]
-    followers_inertia: wp.array[wp.float64]
-    # Mimic joints, shape (followers,).
-    follower_joint: wp.array[wp.int32]
-    follower_dof: wp.array[wp.int32]
-    follower_ratio: wp.array[wp.float64]
-    # Terms of the product with the inertia matrix, shape (terms,).
-    term_row: wp.array[wp.int32]
-    term_entry: wp.array[wp.int32]
-    term_joint: wp.array[wp.int32]
-    term_factor: wp.array[wp.float64]
-    period_s: wp.float64
-    per_period: wp.float64
-    rate_per_s: wp.float64
-    lead_s: wp.float64
-    settle_ticks: wp.int32
-    check_ticks: wp.int32
-
-
-@wp.struct
-class DriveStates:
-    """The state of the drives: shape (copies, joints) if not said otherwise."""
-
-    # Shape (copies,).
-    tick: wp.array[wp.int32]
-    awake: wp.array[wp.int32]
-    still: wp.array2d[wp.float64]
-    position: wp.array2d[wp.float64]
-    velocity: wp.array2d[wp.float64]
-    taken: wp.array2d[wp.float64]
-    streams: Streams
-    # Of this period only.
-    start_position: wp.array2d[wp.float64]
-    start_velocity: wp.array2d[wp.float64]
-    gravity: wp.array2d[wp.float64]
-    planned: wp.array2d[wp.float64]
-    # Shape (copies, nv).
-    load: wp.array2d[wp.float64]
 
 
 @wp.kernel
@@ -102,7 +51,9 @@ def restart(
     copy = rows[wp.tid()]
     drives.tick[copy] = 0
     drives.awake[copy] = joints.settle_ticks
+    drives.bounds.way_to_renew[copy] = ZERO
     for joint in range(joints.count):
+        drives.bounds.part[copy, joint] = ZERO
         position = start[joints.address[joint]]
         stop = wp.min(wp.max(position, joints.lower[joint]), joints.upper[joint])
         drives.position[copy, joint] = position
@@ -130,6 +81,8 @@ def command(joints: DriveLaw, drives: DriveStates, values: wp.array2d[wp.float64
         drives.awake[copy] = joints.settle_ticks
         for joint in range(joints.count):
             value = values[copy, joint]
+            if drives.velocity[copy, joint] == ZERO and differs(joints, drives, copy, joint, value):
+                drives.bounds.way_to_renew[copy] = ZERO
             drives.taken[copy, joint] = value
             if joints.mode[joint] == POSITION:
                 take(drives.streams, copy, joint, value, drives.tick[copy], joints.period_s)
@@ -160,10 +113,19 @@ def update(
         joint = joints.follower_joint[each]
         felt = joints.follower_ratio[each] * wp.float64(bias[copy, joints.follower_dof[each]])
         drives.gravity[copy, joint] = drives.gravity[copy, joint] + felt
+    if drives.bounds.way_to_renew[copy] <= ZERO:
+        renew_braking(joints, drives, copy, inertia)
     stays = wp.int32(0)
+    farthest = wp.float64(0.0)
     for joint in range(joints.count):
-        if plan(joints, drives, copy, joint, qpos, qvel, inertia) or joints.servoed[joint] == 0:
+        if joints.servoed[joint] == 0:
+            advance(drives.streams, copy, joint, joints.period_s)
             stays = 1
+        elif plan(joints, drives, copy, joint, qpos, qvel, inertia):
+            way = drives.position[copy, joint] - drives.start_position[copy, joint]
+            farthest = wp.max(farthest, wp.abs(way))
+            stays = 1
+    drives.bounds.way_to_renew[copy] = drives.bounds.way_to_renew[copy] - farthest
     plan_efforts(joints, drives, copy, inertia, bias)
     if slow_down(joints, drives, copy):
         plan_efforts(joints, drives, copy, inertia, bias)
@@ -189,6 +151,52 @@ def moved(
 
 
 @wp.func
+def last_command(drives: DriveStates, copy: wp.int32, joint: wp.int32) -> wp.float64:
+    """Return a joint's last command, 0 for none."""
+    asked = drives.taken[copy, joint]
+    return wp.where(wp.isnan(asked), wp.float64(0.0), asked)
+
+
+@wp.func
+def differs(
+    joints: DriveLaw, drives: DriveStates, copy: wp.int32, joint: wp.int32, value: wp.float64
+) -> wp.bool:
+    """Return whether a command may move a resting set-point; see `DrivenJoint.command`."""
+    if joints.mode[joint] == POSITION:
+        return value != drives.streams.command[copy, joint]
+    return joints.mode[joint] == VELOCITY and value != last_command(drives, copy, joint)
+
+
+@wp.func
+def renew_braking(
+    joints: DriveLaw, drives: DriveStates, copy: wp.int32, inertia: wp.array2d[wp.float32]
+) -> None:
+    """Bound the braking of the joints that move by the present pose; see `Servo`."""
+    bounds = drives.bounds
+    bounds.way_to_renew[copy] = RENEWS
+    for joint in range(joints.count):
+        position, velocity = drives.position[copy, joint], drives.velocity[copy, joint]
+        target = drives.streams.target[copy, joint]
+        rests = drives.streams.velocity[copy, joint] != ZERO or (
+            velocity == ZERO and target == position
+        )
+        if joints.mode[joint] == VELOCITY:
+            asked = last_command(drives, copy, joint)
+            rests = velocity == ZERO and asked == ZERO
+            target = wp.where(asked > ZERO, joints.upper[joint], joints.lower[joint])
+        bounds.need[copy, joint] = needed_braking(target - position, velocity)
+        bounds.room[copy, joint] = ONE / budget(joints.effort[joint], drives.gravity[copy, joint])
+        if joints.servoed[joint] == 0:
+            rests = True
+            bounds.room[copy, joint] = ZERO
+        if rests:
+            bounds.need[copy, joint] = RESTS
+            if velocity == ZERO:
+                bounds.room[copy, joint] = bounds.room[copy, joint] * RESTING
+    renew_parts(joints.coupled, bounds, copy, inertia)
+
+
+@wp.func
 def plan(
     joints: DriveLaw,
     drives: DriveStates,
@@ -198,10 +206,8 @@ def plan(
     qvel: wp.array2d[wp.float32],
     inertia: wp.array2d[wp.float32],
 ) -> wp.bool:
-    """Advance the set-point of a joint; return whether it moves."""
+    """Advance the set-point of a joint that has one; return whether it moves."""
     advance(drives.streams, copy, joint, joints.period_s)
-    if joints.servoed[joint] == 0:
-        return False
     position, velocity = held_back(
         drives.position[copy, joint],
         drives.velocity[copy, joint],
@@ -214,9 +220,7 @@ def plan(
     target_velocity = drives.streams.velocity[copy, joint]
     rests = target == position and target_velocity == ZERO and velocity == ZERO
     if joints.mode[joint] == VELOCITY:
-        asked = drives.taken[copy, joint]
-        if wp.isnan(asked):
-            asked = wp.float64(0.0)
+        asked = last_command(drives, copy, joint)
         rests = False
         speed = wp.abs(asked)
         target = wp.where(asked > ZERO, joints.upper[joint], joints.lower[joint])
@@ -227,9 +231,10 @@ def plan(
             target - position, velocity, speed, joints.rate_per_s, joints.period_s
         )
     felt = wp.float64(inertia[copy, joints.diagonal[joint]]) + joints.followers_inertia[joint]
-    left = joints.effort[joint] - wp.abs(drives.gravity[copy, joint])
-    acceleration = wp.min(PLANNED * left / felt, joints.jerkless[joint])
-    acceleration = wp.max(acceleration, joints.braking[joint])
+    acceleration = budget(joints.effort[joint], drives.gravity[copy, joint]) / felt
+    braking = wp.min(drives.bounds.part[copy, joint] * acceleration, joints.jerkless[joint])
+    braking = wp.max(braking, FLOOR * joints.sure[joint])
+    acceleration = wp.max(wp.min(acceleration, joints.jerkless[joint]), joints.sure[joint])
     end, end_velocity = approach(
         position,
         velocity,
@@ -237,7 +242,7 @@ def plan(
         target_velocity,
         speed,
         acceleration,
-        joints.braking[joint],
+        braking,
         joints.period_s,
     )
     if rests:

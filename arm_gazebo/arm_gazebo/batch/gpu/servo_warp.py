@@ -8,7 +8,9 @@ import numpy as np
 import warp as wp
 from numpy.typing import NDArray
 
-from arm_gazebo.batch.gpu.servo_kernels import DriveLaw, DriveStates, command, restart, update
+from arm_gazebo.batch.gpu.braking_kernels import BrakingStates, CoupledJoints
+from arm_gazebo.batch.gpu.drive_states import DriveLaw, DriveStates
+from arm_gazebo.batch.gpu.servo_kernels import command, restart, update
 from arm_gazebo.batch.gpu.setpoint_kernels import Streams
 from arm_gazebo.drives.drive_constants import DriveConstants, drive_constants
 from arm_gazebo.drives.driven_joint import SERVOED
@@ -107,7 +109,6 @@ def _joints(constants: DriveConstants, product: InertiaProduct) -> DriveLaw:
         "speed",
         "lower",
         "upper",
-        "braking",
         "jerkless",
         "slack",
         "friction",
@@ -116,6 +117,8 @@ def _joints(constants: DriveConstants, product: InertiaProduct) -> DriveLaw:
         "followers_inertia",
     ):
         setattr(joints, name, _numbers(getattr(constants, name)))
+    joints.sure = _numbers(constants.braking)
+    joints.coupled = _coupled(constants)
     joints.follower_joint = _integers([follower[0] for follower in constants.followers])
     joints.follower_dof = _integers([follower[1] for follower in constants.followers])
     joints.follower_ratio = _numbers([follower[2] for follower in constants.followers])
@@ -128,6 +131,18 @@ def _joints(constants: DriveConstants, product: InertiaProduct) -> DriveLaw:
     joints.rate_per_s, joints.lead_s = constants.rate_per_s, constants.lead_s
     joints.settle_ticks, joints.check_ticks = constants.settle_ticks, constants.check_ticks
     return joints
+
+
+def _coupled(constants: DriveConstants) -> CoupledJoints:
+    law, coupled = constants.law, CoupledJoints()
+    layers, count, _ = law.entries.shape
+    coupled.count = count
+    coupled.entry = _integers(law.entries.reshape(layers, count * count))
+    coupled.weight = _numbers(law.weights.reshape(layers, count * count))
+    coupled.related = _integers(law.related.ravel())
+    coupled.followers_inertia = _numbers(law.followers)
+    coupled.jerkless, coupled.sure = _numbers(law.jerkless), _numbers(constants.braking)
+    return coupled
 
 
 def _drives(copies: int, joints: int, dofs: int) -> DriveStates:
@@ -151,6 +166,12 @@ def _drives(copies: int, joints: int, dofs: int) -> DriveStates:
     streams.left = wp.zeros(shape, dtype=wp.int32)
     streams.last_change = wp.zeros(shape, dtype=wp.int32)
     drives.streams = streams
+    bounds = BrakingStates()
+    for name in ("part", "need", "room", "kept", "more", "share"):
+        setattr(bounds, name, wp.zeros(shape, dtype=wp.float64))
+    bounds.way_to_renew = wp.zeros(copies, dtype=wp.float64)
+    bounds.felt = wp.zeros((copies, joints * joints), dtype=wp.float64)
+    drives.bounds = bounds
     return drives
 
 

@@ -7,7 +7,7 @@ number has the same bits as on the host.
 import warp as wp
 
 from arm_gazebo.drives.driven_joint import LANDING_SPEED, MAX_INTERVAL_S
-from arm_gazebo.drives.setpoint import LANDING_SLACK
+from arm_gazebo.drives.setpoint import LANDING_SLACK, LATE_BRAKING
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -15,6 +15,7 @@ ZERO, ONE = wp.constant(wp.float64(0.0)), wp.constant(wp.float64(1.0))
 QUARTER, HALF, TWO = (wp.constant(wp.float64(value)) for value in (0.25, 0.5, 2.0))
 LONGEST_S = wp.constant(wp.float64(MAX_INTERVAL_S))
 SLACK = wp.constant(wp.float64(LANDING_SLACK))
+LATE = wp.constant(wp.float64(LATE_BRAKING))
 SLOWEST = wp.constant(wp.float64(LANDING_SPEED))
 
 
@@ -134,12 +135,15 @@ def approach(
         distance = distance * sign
         velocity = velocity * sign
         root = brake * (QUARTER * brake - velocity) + TWO * braking * distance
-        fastest = speed - sign * followed
+        cruise = speed - sign * followed
+        fastest = wp.float64(-wp.inf)
         if root > ZERO:
-            fastest = wp.min(wp.sqrt(root) - HALF * brake, fastest)
-        else:
-            fastest = wp.float64(-wp.inf)
-        fastest = wp.max(wp.min(fastest, velocity + change), velocity - change)
+            fastest = wp.sqrt(root) - HALF * brake
+        hardest = wp.max(LATE * brake, change)
+        if fastest > cruise:
+            fastest = cruise
+            hardest = change
+        fastest = wp.max(wp.min(fastest, velocity + change), velocity - hardest)
         end_velocity = followed + sign * fastest
         end_position = position + HALF * period_s * (start_velocity + end_velocity)
     return end_position, end_velocity
