@@ -58,10 +58,27 @@ class MeshData:
         if not any(self._has_area(start) for start in range(0, len(self.faces), FACES_AT_ONCE)):
             raise MeshFileError("no triangle with an area")
 
+    def different_faces(self) -> int:
+        """Return the number of triangles with different corners, in whatever order.
+
+        Corners are compared by their place, because some formats give each triangle its own.
+        """
+        bits = np.ascontiguousarray(self.vertices + 0.0).view(np.uint64)  # -0 and 0 are the same.
+        # Round numbers differ in their highest bits only, and a product carries nothing downwards.
+        corners = (_folded(bits) * _HASH).sum(axis=1)
+        # Without more of it, triangles whose corners have the same sum would have the same hash.
+        corners = _folded(_folded(_folded(corners) * _HASH[1]) * _HASH[2])
+        keys = np.sort(corners[self.faces].sum(axis=1))
+        return int(np.count_nonzero(np.diff(keys))) + min(len(keys), 1)
+
     def _has_area(self, start: int) -> bool:
         faces = self.faces[start : start + FACES_AT_ONCE]
         sides = self.vertices[faces[:, 1:]] - self.vertices[faces[:, :1]]
         return bool(np.cross(sides[:, 0], sides[:, 1]).any())
+
+
+def _folded(bits: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    return bits ^ (bits >> np.uint64(32))
 
 
 def numbers_in(text: bytes | str, what: str, kind: type) -> NDArray[Any]:

@@ -154,7 +154,7 @@ class LinkGeometry:
         except MeshError as error:
             yield self._placeholder(geometry, error, link)
             return
-        self._report_simplified(geometry, link)
+        self._report_triangles(geometry, link)
         for asset in assets:
             yield _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name, rgba=asset.rgba)
 
@@ -201,11 +201,22 @@ class LinkGeometry:
         geom.mass = 0.0
         return geom
 
-    def _report_simplified(self, mesh: Mesh, link: Link) -> None:
+    def _report_triangles(self, mesh: Mesh, link: Link) -> None:
+        if mesh.uri in self._reported:
+            return
+        self._reported.add(mesh.uri)
         parts = self._meshes.parts(mesh)
         given, drawn = sum(p.triangles for p in parts), sum(len(p.drawn.faces) for p in parts)
-        if drawn < given and mesh.uri not in self._reported:
-            self._reported.add(mesh.uri)
+        different = sum(p.drawn.different_faces() for p in parts)
+        # Each triangle twice is usual: exporters show both sides of a sheet that way.
+        if 2 * different < drawn:
+            self._report.warn(
+                f"link '{link.name}'",
+                f"of the {drawn} triangles of its mesh {mesh.uri} only {different} are different; "
+                "it was probably exported wrongly",
+                link.line,
+            )
+        if drawn < given:
             self._report.inform(
                 f"link '{link.name}'",
                 f"its mesh {mesh.uri} has {given} triangles; {drawn} are drawn",
