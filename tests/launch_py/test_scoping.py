@@ -44,6 +44,7 @@ from launch_py.substitutions import (
     StringJoinSubstitution,
     ThisLaunchFileDir,
 )
+from launch_py.substitutions.files import MAX_CHARACTERS
 
 
 def plan(*actions, environ=None):
@@ -148,6 +149,14 @@ def test_files_and_names(context, tmp_path):
     assert FileContent([ThisLaunchFileDir() / "text"]).perform(context) == "a\nb\n"
     with pytest.raises(SubstitutionError, match=f"cannot read {tmp_path}/none: No such file"):
         FileContent(tmp_path / "none").perform(context)
+    with pytest.raises(SubstitutionError, match="/dev/null is not a regular file"):
+        FileContent("/dev/null").perform(context)
+    with pytest.raises(SubstitutionError, match="null"):
+        FileContent("a\0b").perform(context)
+    with (tmp_path / "text").open("wb") as file:
+        file.truncate(MAX_CHARACTERS + 1)
+    with pytest.raises(SubstitutionError, match=f"text has more than {MAX_CHARACTERS} characters"):
+        FileContent(tmp_path / "text").perform(context)
     name = AnonName("node").perform(context)
     assert name.startswith(f"node_{os.getpid()}_")
     assert AnonName("node").perform(context.scoped()) == name

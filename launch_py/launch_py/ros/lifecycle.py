@@ -57,16 +57,27 @@ class LifecycleNode(Node):
 
     def expand(self, context: LaunchContext) -> None:
         """Add the process to the plan."""
-        self.full_name = self.node_names(context)()[0]
+        self.full_name = self.find_full_name(context)
         super().expand(context)
         if self.autostart:
             configure, activate = TRANSITIONS["configure"], TRANSITIONS["activate"]
             change_state(context, self, [configure, activate])
 
+    def find_full_name(self, context: LaunchContext) -> str:
+        """Return the node's name in the graph.
+
+        Raises:
+            LaunchFileError: its name is empty, so that nobody knows whose state to change.
+        """
+        names = self.node_names(context)()
+        if not names:
+            raise LaunchFileError("a LifecycleNode needs a name, which its changes of state use")
+        return names[0]
+
     def watch(self, context: LaunchContext) -> ExecuteProcess:
         """Return the process that prints the node's transitions; add it to the plan once."""
         if self.watcher is None:
-            full_name = self.full_name or self.node_names(context)()[0]
+            full_name = self.full_name or self.find_full_name(context)
             self.watcher = ExecuteProcess(
                 cmd=client("watch", full_name),
                 name=f"transitions of {full_name}",
@@ -80,7 +91,7 @@ class LifecycleNode(Node):
 
 def change_state(context: LaunchContext, node: LifecycleNode, transitions: list[int]) -> None:
     """Add the process that takes a node through transitions to the plan."""
-    full_name = node.full_name or node.node_names(context)()[0]
+    full_name = node.full_name or node.find_full_name(context)
     words = client("change", full_name, *map(str, transitions))
     labels = " ".join(TRANSITION_LABELS[number] for number in transitions)
     process = ExecuteProcess(cmd=words, name=f"{labels} {full_name}")

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterable
 
 from launch_py.errors import SubstitutionError
 from launch_py.log_path import launch_name, log_root
+from launch_py.near_names import describe_irregular_file
 from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
+
+MAX_CHARACTERS = 20_000_000
+"""Maximum length of a file whose text a launch file takes; robots' descriptions are shorter."""
 
 
 class PathJoinSubstitution(Substitution):
@@ -77,15 +82,21 @@ class FileContent(Substitution):
         """Return the text.
 
         Raises:
-            SubstitutionError: the file cannot be read, or is not UTF-8.
+            SubstitutionError: the file cannot be read, is a device or a FIFO (which might never
+                end), is too long, or is not UTF-8.
         """
         path = perform_text(context, self.path)
         try:
+            if not stat.S_ISREG(os.stat(path).st_mode):
+                raise SubstitutionError(describe_irregular_file("text file", path))
             with open(path, encoding="utf-8") as file:
-                return file.read()
-        except (OSError, UnicodeError) as error:
+                text = file.read(MAX_CHARACTERS + 1)
+        except (OSError, ValueError) as error:  # ValueError: not UTF-8, or a null in the path.
             why = getattr(error, "strerror", None) or str(error)
             raise SubstitutionError(f"cannot read {path}: {why}") from error
+        if len(text) > MAX_CHARACTERS:
+            raise SubstitutionError(f"{path} has more than {MAX_CHARACTERS} characters")
+        return text
 
     def describe(self) -> str:
         """Return the substitution as a launch file writes it."""

@@ -43,6 +43,12 @@ def test_a_change_of_state_is_a_process_that_waits_for_the_node(expand):
     assert [trigger.process for trigger in asked.after] == ["talker"]
 
 
+@pytest.mark.parametrize("name", ["", None])
+def test_a_managed_node_without_a_name_is_refused(expand, name):
+    with pytest.raises(LaunchFileError, match="a LifecycleNode needs a name"):
+        expand([LifecycleNode(executable="true", name=name)])
+
+
 def test_matchers_select_the_nodes(expand):
     a, b = managed("a"), managed("b")
     by_name = ChangeState(lifecycle_node_matcher=matches_node_name("/demo/b"), transition_id=3)
