@@ -326,6 +326,7 @@ class ControllerManager:
     def switch_controller(self, request: SwitchRequest) -> SwitchResult:
         """Deactivate and activate controllers in one step; never raises, see the result."""
         if request.activate and self._emergency.is_engaged:
+            logger.error("no controller is switched: %s", LATCHED)
             return SwitchResult(False, LATCHED)
         with self._tracking_changes():
             return self._switcher.switch(request)

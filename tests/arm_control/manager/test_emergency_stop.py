@@ -42,12 +42,14 @@ def test_the_stop_is_latched(bench):
     assert not bench.manager.emergency_stopped
 
 
-def test_no_controller_is_activated_meanwhile(bench):
+def test_no_controller_is_activated_meanwhile(bench, caplog):
     bench.configure("mover", commands=POSITIONS)
     bench.manager.set_emergency_stop(True)
     result = bench.manager.switch_controller(SwitchRequest(activate=("mover",)))
     assert not result.ok
     assert result.message.startswith("the emergency stop is latched: release it first")
+    # `arm control set_controller_state` and the spawner refer to the log for the reason.
+    assert result.message in caplog.text
     bench.manager.set_emergency_stop(False)
     assert activate(bench, "mover")
 
