@@ -25,6 +25,11 @@ READERS = {".gltf": read_gltf, ".glb": read_gltf}
 READERS_WITH_UNIT = {".dae": read_collada, ".3mf": read_packed}
 """The same for files that name their unit; other formats are in m."""
 
+HINTS = dict.fromkeys(
+    (".ply", ".off"), "; if its faces have different numbers of corners, export it as triangles"
+)
+"""What trimesh's own message does not say."""
+
 
 def read_scene(path: Path) -> tuple[MeshData, ...]:
     """Return the parts of a mesh file in m, one for each material.
@@ -58,7 +63,8 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         )
     except Exception as error:
         # Each of trimesh's loaders raises its own exceptions, and any of them for a broken file.
-        raise MeshFileError(f"{type(error).__name__}: {error}") from error
+        hint = HINTS.get(suffix, "")
+        raise MeshFileError(f"{type(error).__name__}: {error}{hint}") from error
     return parts
 
 

@@ -1,11 +1,13 @@
 """Mesh files that trimesh reads: where their parts stand, and their colours."""
 
+import struct
 import tracemalloc
 
 import numpy as np
 import pytest
 import trimesh
 
+from arm_description.errors import MeshFileError
 from arm_description.mesh.data import merged
 from arm_description.mesh.file import read_mesh_file
 
@@ -45,3 +47,31 @@ def test_corners_are_merged_in_seven_times_their_memory():
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 7 * corners.nbytes
+
+
+CORNERS = [(0, 0, 0), (2, 0, 0), (2, 1, 0), (1, 2, 0), (0, 2, 0), (1, 1, 1)]
+FACES = [(4, 3, 2, 1, 0), *((n, (n + 1) % 5, 5) for n in range(5))]
+"""A pyramid on five corners."""
+
+
+def binary_ply():
+    header = (
+        "ply\nformat binary_little_endian 1.0\n"
+        "element vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    points = struct.pack("<18f", *np.ravel(CORNERS))
+    faces = (struct.pack(f"<B{len(face)}i", len(face), *face) for face in FACES)
+    return header.encode() + points + b"".join(faces)
+
+
+def off():
+    rows = [*CORNERS, *((len(face), *face) for face in FACES)]
+    return "\n".join(["OFF", "6 6 0", *(" ".join(map(str, row)) for row in rows)]).encode()
+
+
+@pytest.mark.parametrize(("suffix", "write"), [("ply", binary_ply), ("off", off)])
+def test_faces_of_different_sizes_that_trimesh_does_not_read_are_explained(tmp_path, suffix, write):
+    (tmp_path / f"a.{suffix}").write_bytes(write())
+    with pytest.raises(MeshFileError, match="different numbers of corners, export it as triangles"):
+        read_mesh_file(tmp_path / f"a.{suffix}")
