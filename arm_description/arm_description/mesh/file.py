@@ -25,9 +25,8 @@ READERS = {".gltf": read_gltf, ".glb": read_gltf}
 READERS_WITH_UNIT = {".dae": read_collada, ".3mf": read_packed}
 """The same for files that name their unit; other formats are in m."""
 
-HINTS = dict.fromkeys(
-    (".ply", ".off"), "; if its faces have different numbers of corners, export it as triangles"
-)
+FACES_DIFFER = "; if its faces have different numbers of corners, export it as triangles"
+HINTS = {".ply": FACES_DIFFER, ".off": FACES_DIFFER}
 """What trimesh's own message does not say."""
 
 
