@@ -12,7 +12,7 @@ from arm_cli.command_parser import (
     positive_whole_number,
     whole_number,
 )
-from arm_cli.errors import BagError, StoppedError
+from arm_cli.errors import BagError, CommandUsageError, StoppedError
 from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -121,8 +121,10 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
         "--max-duration",
         type=positive_number,
         metavar="SECONDS",
-        help="start a new file after this time",
+        help="start a new file after this time, and go on until Ctrl-C",
     )
+    # No option of ros2 bag record either: the error says what ends a recording.
+    group.add_argument("--duration", help=argparse.SUPPRESS)
     group.add_argument(
         "--compression",
         "--compression-format",
@@ -148,8 +150,14 @@ def run(options: argparse.Namespace) -> None:
 
     Raises:
         BagError: nothing is selected, the overrides are malformed, or the bag cannot be written.
-        CommandUsageError: a given name is not a valid topic name.
+        CommandUsageError: a given name is not a valid topic name, or --duration is given.
     """
+    if options.duration is not None:
+        raise CommandUsageError(
+            f"no option --duration: end a recording with Ctrl-C, or after {options.duration} s "
+            f"with: timeout {options.duration} arm bag record ...; --max-bag-duration only begins "
+            "a new file"
+        )
     from arm_cli.bag.offered_qos import read_qos_overrides
 
     selection = _selection(options)
@@ -174,6 +182,8 @@ def run(options: argparse.Namespace) -> None:
             options.use_sim_time,
             overrides,
         )
+        if options.max_bag_duration is not None:
+            complain(f"A new file begins every {options.max_bag_duration:g} s, until Ctrl-C")
         try:
             if options.use_sim_time:
                 session.wait_until(lambda: session.clock_ns() > 0, lambda: "waiting for /clock")

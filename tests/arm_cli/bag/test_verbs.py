@@ -260,3 +260,13 @@ def test_bag_times_and_clock_times_convert():
     schedule = PlaySchedule(1_000_000_000, 50.0, 2.0)
     assert schedule.due_s(4_000_000_000) == 51.5
     assert schedule.bag_time_ns(51.5) == 4_000_000_000
+
+
+def test_a_recording_is_ended_from_outside(capsys, tmp_path):
+    folder = tmp_path / "none"
+    for words in (("--duration", "3"), ("--duration=3",)):
+        text = printed(capsys, "record", "-a", "-o", str(folder), *words, code=2)
+        assert "no option --duration: end a recording with Ctrl-C, or after 3 s with" in text
+        assert "timeout 3 arm bag record" in text
+        assert "--max-bag-duration" in text
+    assert not folder.exists()
