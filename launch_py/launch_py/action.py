@@ -41,7 +41,10 @@ class Action(LaunchDescriptionEntity):
             LaunchError: the action is invalid, or an argument of it has the wrong type.
         """
         with errors_located_at(self.where), errors_attributed_to(self.describe):
-            if self.condition is None or self.condition.evaluate(context):
+            condition = self.condition
+            if condition is not None and not hasattr(condition, "evaluate"):
+                raise LaunchFileError(f"condition= takes an IfCondition(...), not {condition!r}")
+            if condition is None or condition.evaluate(context):
                 with context.plan.expanding(self):
                     self.expand(context)
 

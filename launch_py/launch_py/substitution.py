@@ -199,8 +199,8 @@ def is_costly(value: Text) -> bool:
     """Return whether a substitution in `value` is costly to perform."""
     if isinstance(value, Substitution):
         return value.is_costly
-    if isinstance(value, str | PathLike):
-        return False
+    if isinstance(value, str | PathLike) or not isinstance(value, Iterable):
+        return False  # Performing a value of the wrong type says what is wrong.
     return any(is_costly(part) for part in value)
 
 

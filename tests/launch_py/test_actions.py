@@ -228,8 +228,10 @@ def test_an_empty_prefix_adds_nothing(expand, prefix):
     [
         (
             LogInfo(msg="x", condition=LaunchConfiguration("x")),  # pyright: ignore[reportArgumentType]
-            "^a LogInfo: AttributeError: 'LaunchConfiguration' .* 'evaluate'",
+            r"^condition= takes an IfCondition\(\.\.\.\), not .*LaunchConfiguration",
         ),
+        (sh(additional_env=[("A", "b")]), r"^env= and additional_env= take a dict, not \[\("),
+        (sh(env="A=b"), "^env= and additional_env= take a dict, not 'A=b'"),
         (sh(prefix='"'), "^an ExecuteProcess of sh: ValueError: No closing quotation"),
         (sh(cwd=3), "a text or a substitution is needed, not 3"),
         (sh(ready=["up"]), "^an ExecuteProcess of sh: AttributeError"),
@@ -400,3 +402,11 @@ def test_a_survey_does_not_perform_costly_substitutions(expand):
     assert calls == []
     expand([argument])
     assert calls == [1]
+
+
+def test_a_default_that_is_no_text_is_refused_by_the_launch_and_shown_by_a_survey(expand):
+    argument = DeclareLaunchArgument("rate", default_value=1)  # pyright: ignore[reportArgumentType]
+    survey = survey_description(LaunchDescription([argument]), {})
+    assert survey.arguments["rate"].default == "1"
+    with pytest.raises(LaunchFileError, match="a text or a substitution is needed, not 1 of type"):
+        expand([argument])

@@ -285,6 +285,9 @@ class ExecuteProcess(Action):
             return command
 
     def _environment(self, context: LaunchContext) -> dict[str, str | None]:
+        for given in (self.env, self.additional_env):
+            if not isinstance(given, Mapping | None):
+                raise LaunchFileError(f"env= and additional_env= take a dict, not {given!r}")
         variables: dict[str, str | None] = {} if self.env is not None else dict(context.environment)
         for name, value in {**(self.env or {}), **self.additional_env}.items():
             variables[perform_text(context, name)] = perform_text(context, value)
