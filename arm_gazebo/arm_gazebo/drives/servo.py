@@ -29,7 +29,7 @@ from arm_gazebo.drives.servo_tuning import (
     set_armature,
 )
 from arm_gazebo.robot.actuation import RobotJoint, drive_slices
-from arm_gazebo.spec.dry_friction import YIELDING, sticking
+from arm_gazebo.spec.dry_friction import sticking, yielding
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_node.index_slice import as_slice
 
@@ -391,6 +391,9 @@ class Servo:
         dofs = (driven.joint.dof_address, *(follower for follower, _ in tuning.gears[index]))
         friction = float(np.abs(tuning.coupling[:, index]).dot(model.dof_frictionloss))
         held = driven.mode in SERVOED and friction < tuning.sizing[index]
-        solver = YIELDING if held else sticking(model.opt.timestep)
         for dof in dofs:
+            # A follower feels its leader's rotor through the gearing.
+            rotor = tuning.armature[index] / tuning.coupling[dof, index] ** 2
+            softness = float(model.dof_invweight0[dof])
+            solver = yielding(softness, float(rotor)) if held else sticking(model.opt.timestep)
             solver.apply(model, dof)

@@ -5,7 +5,7 @@ proportion to its load. `sticking` is the firmest that MuJoCo takes. A joint und
 its friction then creeps by 0.2 mrad in 10 s where a link hangs 0.1 m from its axis, and by 2 mrad
 at 1 cm; by MuJoCo's default, by 0.9 rad and 1.6 rad. It does not chatter.
 
-`YIELDING` is for a joint that a servo holds: a friction that sticks would hold it away from its
+`yielding` is for a joint that a servo holds: a friction that sticks would hold it away from its
 set-point, by up to the friction over the stiffness. MuJoCo's default yields more than is good:
 a light joint feels little of it at low speeds, and a servo that makes up for it overshoots.
 """
@@ -33,9 +33,22 @@ class FrictionSolver:
         model.dof_solimp[dof] = self.solimp
 
 
-YIELDING = FrictionSolver((0.006, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))
+YIELD = 0.1 / 0.9
+"""Softness of a friction that yields, for a joint without a rotor: an impedance of 0.9."""
 
 
 def sticking(step_s: float) -> FrictionSolver:
     """Return the firmest solver at this physics step."""
     return FrictionSolver((2.0 * step_s, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0))
+
+
+def yielding(inverse_inertia: float, rotor: float) -> FrictionSolver:
+    """Return the solver for a joint that a servo holds.
+
+    Args:
+        inverse_inertia: MuJoCo's `dof_invweight0`, from which its solver takes how far a friction
+            yields; it does not know the rotor.
+        rotor: the inertia that the servo adds.
+    """
+    impedance = 1.0 / (1.0 + YIELD / (1.0 + inverse_inertia * rotor))
+    return FrictionSolver((0.006, 1.0), (impedance, max(impedance, 0.95), 0.001, 0.5, 2.0))

@@ -63,11 +63,12 @@ def test_joints_that_stick_do_not_chatter(bench: Any, parts: Any):
     assert np.ptp(arm.run(1.0), axis=0).max() < 1e-4
 
 
-def solver(run: Any) -> float:
-    return float(run.simulation.model.dof_solimp[0, 0])
+def solver(run: Any) -> float | str:
+    impedance = float(run.simulation.model.dof_solimp[0, 0])
+    return STICKS if impedance == STICKS else YIELDS
 
 
-STICKS, YIELDS = 0.9999, 0.9
+STICKS, YIELDS = 0.9999, "yields"
 
 
 def test_friction_sticks_unless_a_servo_holds_the_joint(bench: Any, parts: Any):
@@ -90,7 +91,7 @@ def test_friction_of_a_follower_yields_with_its_leader(bench: Any, parts: Any):
         parts.link("other", 0.1) + parts.joint("k", "base", "other", more=mimic) + "</robot>",
     )
     run = bench(urdf)
-    assert run.simulation.model.dof_solimp[:, 0].tolist() == [YIELDS, YIELDS]
+    assert (run.simulation.model.dof_solimp[:, 0] < STICKS).all()
     run.claim("effort")
     assert run.simulation.model.dof_solimp[:, 0].tolist() == [STICKS, STICKS]
 
@@ -128,3 +129,37 @@ def test_a_drive_without_an_effort_limit_is_sized_for_friction_and_damping(
     positions = run.run(2.0)[:, 0]
     assert positions.max() < start + 0.3 * 1.005
     assert positions[-1] == pytest.approx(start + 0.3, abs=1e-5)
+
+
+@pytest.mark.parametrize("rate_hz", [100, 500])
+@pytest.mark.parametrize(
+    ("mass_kg", "effort", "speed"), [(0.015, 20, 0.2), (0.015, 70, 0.05), (0.01, 1000, 0.2)]
+)
+def test_a_small_sliding_gripper_with_friction_does_not_overshoot(
+    bench: Any, parts: Any, mass_kg: float, effort: float, speed: float, rate_hz: float
+):
+    """A light finger on a strong drive: MuJoCo's friction knows the finger, not the rotor."""
+    limit = f'lower="0" upper="0.04" effort="{effort}" velocity="{speed}"'
+    friction = f'<dynamics friction="{0.05 * effort}"/>'
+    urdf = parts.robot(
+        parts.link("base"),
+        *(parts.link(name, mass_kg, 0.02) for name in ("left", "right")),
+        parts.joint("j", "base", "left", "prismatic", "0 0 1", "0 1 0", limit, friction),
+        parts.joint(
+            "k",
+            "base",
+            "right",
+            "prismatic",
+            "0 0 1",
+            "0 -1 0",
+            limit,
+            f'{friction}<mimic joint="j"/>',
+        ),
+        parts.ros2_control(["j"]),
+    )
+    gripper = bench(urdf, rate_hz)
+    gripper.claim()
+    gripper.command(0.01)
+    positions = gripper.run(1.0)[:, 0]
+    assert positions.max() < 0.01 * 1.02
+    assert positions[-1] == pytest.approx(0.01, abs=1e-4)
