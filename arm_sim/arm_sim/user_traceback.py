@@ -53,6 +53,11 @@ def _shortened(function: Callable[..., Any]) -> Callable[..., Any]:
         except USER_ERRORS as error:
             _hide_suite(error)
             raise
+        except TypeError as error:
+            # No frame below this one: the arguments do not fit, which is the caller's mistake.
+            if error.__traceback__ is not None and error.__traceback__.tb_next is None:
+                _hide_suite(error)
+            raise
 
     return call
 

@@ -73,3 +73,9 @@ def test_a_cause_in_the_callers_code_stays():
         Machine().break_down()
     assert Path(traceback.extract_tb(fault.value.__traceback__)[0].filename).name == HERE
     assert len(files_of(fault.value)) == 3
+
+
+def test_arguments_that_do_not_fit_are_shown_where_they_are_given(sim: Simulation):
+    with pytest.raises(TypeError, match="spawn") as raised:
+        sim.spawn("can", "can.sdf")  # pyright: ignore[reportCallIssue]
+    assert files_of(raised.value) == [HERE]
