@@ -156,7 +156,7 @@ class UrdfElement:
         if self._element.get("rpy") is not None:
             raise self.error(f"has both rpy and {QUATERNION}")
         quaternion = np.array(self.numbers(QUATERNION, 4))
-        length = float(np.linalg.norm(quaternion))
+        length = math.hypot(*quaternion)  # The sum of squares may overflow.
         if not 0.0 < length < math.inf:
             raise self.error(f"has a {QUATERNION} that is no rotation")
         return rpy_from_rotation(rotation_from_quaternion(quaternion / length))

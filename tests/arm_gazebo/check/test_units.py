@@ -151,6 +151,12 @@ def test_a_quaternion_is_read_in_urdf_1_1_and_1_2(version):
     assert origin.rpy == pytest.approx((0.0, 0.0, 1.5707963), abs=1e-6)
 
 
+def test_a_quaternion_of_any_length_is_a_rotation():
+    origin = QUARTER.replace("0.7071068", "1e300")
+    urdf = ROBOT.format(**{**PLAIN, "origin": origin, "robot": ' version="1.1"'})
+    assert parse_urdf(urdf).joint("j").origin.rpy == pytest.approx((0, 0, 1.5707963), abs=1e-6)
+
+
 def test_a_quaternion_in_urdf_1_0_is_ignored_with_a_remark():
     remarks = []
     urdf = ROBOT.format(**{**PLAIN, "origin": QUARTER})
