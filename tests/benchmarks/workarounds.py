@@ -1,7 +1,7 @@
 """The benefit of each workaround: figures with it and, alternately, with ARM_WITHOUT naming it.
 
 A workaround that does not improve a figure that users notice by a tenth has no place in the suite.
-Those that prevent a fault (local_profile, torn_ports, lost_ports, private_files, parameter_types)
+Those that prevent a fault (local_profile, lost_ports, private_files, parameter_types)
 are counted instead.
 """
 
@@ -31,15 +31,7 @@ LOSE_PORTS = FOLDER.parent / "arm_node" / "workarounds" / "lose_ports.py"
 RATE_HZ = 500
 SECONDS = 5.0
 WAY_POINTS = 100_000
-TORN_TIMEOUT_S = 10.0
 ANSWER_TIMEOUT_S = 3.0
-MAKE_A_NODE = """
-from arm_node.environment import prepare_environment
-prepare_environment()
-import rclpy
-rclpy.init()
-rclpy.create_node("node")
-"""
 WAIT_FOR_TEXT = """
 import os, time
 import rclpy
@@ -169,20 +161,6 @@ def gap_s() -> float:
     return float(np.diff(arrivals).max())
 
 
-def torn_port_s() -> float:
-    """Return how long a node takes to start beside a port that a killed process left."""
-    with harness.fresh_domain() as domain:
-        # Where the domain's first participant receives data (DDSI-RTPS 2.5, 9.6.2.3).
-        port = Path(f"/dev/shm/fastrtps_port{7400 + 250 * int(domain) + 11}")
-        port.touch()
-        os.utime(port, (0, 0))
-        started_s = time.monotonic()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            subprocess.run([sys.executable, "-c", MAKE_A_NODE], timeout=TORN_TIMEOUT_S, check=True)
-        port.unlink(missing_ok=True)
-    return time.monotonic() - started_s
-
-
 def heard_after_loss() -> float:
     """Return whether a node hears messages whose ports were removed while it was made, 1 or 0."""
     with harness.fresh_domain():
@@ -266,12 +244,6 @@ FIGURES = {
         "s",
         gap_s,
         ("serialized_goals",),
-    ),
-    "torn": Figure(
-        f"start of a node beside a torn port ({TORN_TIMEOUT_S:g} s: it hangs)",
-        "s",
-        torn_port_s,
-        ("torn_ports",),
     ),
     "lost": Figure(
         "nodes whose ports were removed while they were made that hear a message, of 1",

@@ -1,5 +1,7 @@
 """The node robot_state_publisher: publishes /tf and /tf_static from joint states and a URDF."""
 
+import math
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -122,6 +124,7 @@ class RobotStatePublisher(Node):
         for name, (default, read, description) in _PARAMETERS.items():
             declare_from(given, self, name, default, read, description, read_only=False)
         self._tree = TransformTree(parse_urdf(self._settings.robot_description))
+        self._moved_back_s = -math.inf
         self._throttle = StateThrottle(self._settings.publish_frequency_hz)
         self._groups: dict[tuple[str, ...], _TransformGroup] = {}
         self._description_publisher = self.create_publisher(
@@ -224,16 +227,19 @@ class RobotStatePublisher(Node):
             return
         self._stamp_clock.hear(state.names, state.stamp_ns)
         if self._throttle.went_back(self.get_clock().now().nanoseconds):
-            # Throttled: with a second publisher of /clock, this happens at every other message.
-            self.get_logger().warning(
-                "Moved backwards in time, re-publishing joint transforms!",
-                throttle_duration_sec=LOG_INTERVAL_S,
-            )
+            self._say_moved_back()
         group = self._group_of(state.names)
         if not group.names:
             return
         if self._settings.ignore_timestamp or self._throttle.due(group.names, state.stamp_ns):
             self._publish(group, state)
+
+    def _say_moved_back(self) -> None:
+        """Log it, but once as long as it goes on: beside a bag, each other message is older."""
+        now_s = time.monotonic()
+        if now_s - self._moved_back_s > LOG_INTERVAL_S:
+            self.get_logger().warning("Moved backwards in time, re-publishing joint transforms!")
+        self._moved_back_s = now_s
 
     def _publish(self, group: _TransformGroup, state: JointPositions) -> None:
         transforms = group.motion.transforms(state.positions)

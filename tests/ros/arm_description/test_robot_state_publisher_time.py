@@ -73,14 +73,16 @@ def test_time_that_is_set_back_starts_again(client, tf, send, latched, set_param
     assert node_time_s("b/") == 5.02
 
 
-def test_a_short_loop_goes_on_moving(tf, send):
-    _, collector = tf(use_sim_time=True)
+def test_a_short_loop_goes_on_moving_and_is_told_once(tf, send):
+    node, collector = tf(use_sim_time=True)
     # The third message of each later pass tells that time was set back.
     for heard in (4, 6, 8):
         for stamp in (20.0, 20.1, 20.2, 20.3):
             send(stamp, turn=0.0)
         collector.wait_for(heard)
     assert stamps(collector) == [20.0, 20.1, 20.2, 20.3, 20.2, 20.3, 20.2, 20.3]
+    node.wait_for("Moved backwards in time")
+    assert node.output.count("Moved backwards in time") == 1
 
 
 @pytest.mark.parametrize("stamp", [0.0, -5.0])
