@@ -94,8 +94,8 @@ def _read_python(path: Path) -> LaunchDescription:
         raise
     except MissingRosNameError as error:
         raise LaunchFileError(f"{_where(error, path)}: {error}") from error
-    except Exception as error:
-        # A launch file is user code and may raise anything.
+    except (Exception, SystemExit) as error:
+        # A launch file is user code and may raise anything. One that exits describes no launch.
         # The text of a SyntaxError would repeat the file and the line.
         what = error.msg if isinstance(error, SyntaxError) else error
         raise LaunchFileError(f"{_where(error, path)}: {type(error).__name__}: {what}") from error

@@ -193,6 +193,8 @@ def test_a_script_is_not_offered_as_a_launch_file(tmp_path):
         ("x = ", "line 1: SyntaxError"),
         ("1 / 0", "line 1: ZeroDivisionError: division by zero"),
         ("x = 1", r"does not define generate_launch_description\(\)"),
+        ("import sys\nsys.exit(0)", r"line 2: SystemExit: 0"),
+        ("def generate_launch_description():\n  raise SystemExit(0)", r"line 2: SystemExit: 0"),
         ("def generate_launch_description():\n    return 3", "returns int, not LaunchDescription"),
         ("def generate_launch_description():\n    return 1 / 0", "line 2: ZeroDivisionError"),
     ],
