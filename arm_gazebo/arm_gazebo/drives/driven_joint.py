@@ -3,10 +3,10 @@
 from enum import Enum
 from typing import Any
 
-from arm_gazebo.drives.braking_law import FLOOR, budget
-from arm_gazebo.drives.servo_tuning import MotionBounds
+from arm_gazebo.drives.braking_law import FLOOR, LEAST_LEFT
+from arm_gazebo.drives.servo_tuning import EFFORT_SHARE, MotionBounds
 from arm_gazebo.drives.setpoint import Setpoint
-from arm_gazebo.robot.actuation import RobotJoint
+from arm_gazebo.robot.actuation import UNLIMITED, RobotJoint
 
 
 class DriveMode(Enum):
@@ -114,12 +114,15 @@ class DrivenJoint:
 
     __slots__ = (
         "_bounds",
+        "_floor",
         "_jerkless",
+        "_least",
         "_period_s",
         "_rate_per_s",
         "_slack",
         "_speed",
         "_stream",
+        "_strength",
         "_velocity",
         "braking",
         "effort",
@@ -177,6 +180,13 @@ class DrivenJoint:
         """
         self.effort_limit = limit
         self.sure_braking = share * self._bounds.braking
+        self._derive()
+
+    def _derive(self) -> None:
+        """Note what follows from the effort limit, as it is needed in every tick."""
+        self._strength = min(self.effort_limit, UNLIMITED)
+        self._least = LEAST_LEFT * self._strength
+        self._floor = FLOOR * self.sure_braking
 
     def enter(self, mode: DriveMode, position: float, velocity: float) -> None:
         """Change the mode; a new set-point starts from the state of the joint."""
@@ -209,6 +219,7 @@ class DrivenJoint:
     def load_state(self, state: tuple[Any, ...]) -> None:
         """Continue from a saved state."""
         self.mode, self.effort, self.effort_limit, self.sure_braking, self._velocity = state[:5]
+        self._derive()
         self.setpoint = Setpoint(*state[5:7])
         self.start_position, self.start_velocity = state[7:9]
         self._stream.load_state(state[9:14])
@@ -292,16 +303,20 @@ class DrivenJoint:
                 return False
             if self._rate_per_s and self.mode is DriveMode.POSITION:
                 target_velocity, speed = 0.0, self._proportional_speed(target)
-        acceleration = budget(self.effort_limit, gravity) / inertia
-        braking, sure = self.part * acceleration, self.sure_braking
-        if braking > self._jerkless:
-            braking = self._jerkless
-        if braking < FLOOR * sure:
-            braking = FLOOR * sure
-        if acceleration > self._jerkless:
-            acceleration = self._jerkless
-        if acceleration < sure:
-            acceleration = sure
+        # As `budget`: a call for every joint in every tick would cost more than the rest.
+        left = self._strength - (gravity if gravity > 0.0 else -gravity)
+        if left < self._least:
+            left = self._least
+        acceleration = EFFORT_SHARE * left / inertia
+        braking, jerkless = self.part * acceleration, self._jerkless
+        if braking > jerkless:
+            braking = jerkless
+        if braking < self._floor:
+            braking = self._floor
+        if acceleration > jerkless:
+            acceleration = jerkless
+        if acceleration < self.sure_braking:
+            acceleration = self.sure_braking
         self.braking = braking
         setpoint.approach(target, target_velocity, speed, acceleration, braking, self._period_s)
         return setpoint.velocity != 0.0 or setpoint.position != start
