@@ -66,7 +66,7 @@ def test_a_fifo_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"\xff\xfe", b"a: [", b"- 1", b"Visualization Manager: 3", b"[" * 5000]
+    "content", [b"", b"\xff\xfe", b"a: [", b"- 1", b"Visualization Manager: 3", b"[" * 65]
 )
 def test_other_files_are_refused_by_name(content):
     with pytest.raises(ConfigError, match=r"lab\.rviz is not an RViz configuration"):

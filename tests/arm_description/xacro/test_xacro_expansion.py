@@ -212,11 +212,10 @@ def test_entities_of_an_included_file_neither_multiply_nor_read_files(tmp_path):
     secret.write_text("s3cret")
     inside = "<xacro:include filename='b.xacro'/>"
     outer = write(tmp_path / "a.xacro", inside)
-    levels = "".join(f"<!ENTITY e{n + 1} '{f'&e{n};' * 20}'>" for n in range(20))
     (tmp_path / "b.xacro").write_text(
-        f"<!DOCTYPE r [<!ENTITY e0 'x'>{levels}]>{HEAD}<link name='b'>&e20;</link></robot>"
+        f"<!DOCTYPE r [<!ENTITY a 'x'><!ENTITY b '&a;&a;'>]>{HEAD}<link name='b'>&b;</link></robot>"
     )
-    assert "b.xacro" in refusal(outer)
+    assert "it has a DOCTYPE, which is not accepted" in refusal(outer)
     (tmp_path / "b.xacro").write_text(
         f"<!DOCTYPE r [<!ENTITY e SYSTEM 'file://{secret}'>]>{HEAD}<link>&e;</link></robot>"
     )

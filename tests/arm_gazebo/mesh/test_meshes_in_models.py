@@ -202,10 +202,9 @@ def test_unreadable_mesh_is_named_with_the_reason(parts, tmp_path, name, content
     assert reason in warning
 
 
-BOMB = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "boom"}">' for n in range(10))
-
-
-@pytest.mark.parametrize("entity", [f"{BOMB}<!ENTITY e '&e9;'>", "<!ENTITY e SYSTEM '{secret}'>"])
+@pytest.mark.parametrize(
+    "entity", ["<!ENTITY a 'x'><!ENTITY e '&a;&a;'>", "<!ENTITY e SYSTEM '{secret}'>"]
+)
 def test_entities_of_a_collada_file_neither_multiply_nor_read_files(parts, tmp_path, entity):
     (tmp_path / "secret").write_text("known")
     doctype = f"<!DOCTYPE COLLADA [{entity.format(secret=tmp_path / 'secret')}]>"

@@ -213,10 +213,12 @@ def test_a_mistake_in_allow_substs_is_reported(expand, share, tmp_path):
 
 def test_aliases_of_aliases_are_followed_once(performed):
     lines = ["a0: &a0 [$(var rate)]"]
-    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 30)]
-    assert performed("\n".join(lines)).splitlines()[0] == "a0: &id001 [100]"
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 4)]
+    said = performed("\n".join(lines))
+    assert said.splitlines()[0] == "a0: &id001 [100]"
+    assert said.count("100") == 1
 
 
 def test_a_file_that_is_nested_too_deep_is_reported(performed):
     with pytest.raises(NodeParameterError, match="is nested more than 64 deep"):
-        performed("[" * 50_000)
+        performed("[" * 65)
