@@ -153,7 +153,7 @@ def test_a_change_of_the_speed_loses_no_tick_and_no_message(simulator, client, s
     states, _ = subscribed(JointState, "/joint_states")
     states.clear()
     simulator.go_to(PLAYING)
-    for factor in (0.5, 8, 1.0, 20.0, 2):
+    for factor in (0.5, 8.0, 1.0, 20.0, 2.0):
         assert simulator.set_speed(factor).successful
         count = len(states.messages)
         states.wait_until(lambda m, count=count: len(m) > count + 20, "more states")
@@ -165,11 +165,18 @@ def test_a_change_of_the_speed_loses_no_tick_and_no_message(simulator, client, s
     assert simulator.figures()["time"]["requested real-time factor"] == "2"
 
 
-@pytest.mark.parametrize("value", [-1.0, "fast", True])
-def test_a_speed_that_is_none_is_refused(simulator, value):
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        (-1.0, "real_time_factor out of range Min: 0.0"),
+        ("fast", "Wrong parameter type, expected 'Type.DOUBLE'"),
+        (8, "Wrong parameter type, expected 'Type.DOUBLE'"),
+    ],
+)
+def test_a_speed_that_is_none_is_refused(simulator, value, reason):
     answer = simulator.set_speed(value)
     assert not answer.successful
-    assert answer.reason.startswith("real_time_factor must be a finite number of at least 0")
+    assert reason in answer.reason
 
 
 def test_statistics_come_once_a_second(simulator, client):
