@@ -17,6 +17,7 @@ from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
 from arm_description.mesh.gltf import read_gltf
 from arm_description.mesh.obj import read_obj
 from arm_description.mesh.packed import read_packed
+from arm_description.mesh.polygons import notched
 from arm_description.mesh.stl import read_stl
 from arm_node.user_file import check_file, read_bytes
 
@@ -58,13 +59,33 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         parts = tuple(
             _part(mesh, transform, unit)
             for mesh, transform in _placed(scene)
-            if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)
+            if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and not _has_notches(mesh)
         )
+    except MeshFileError:
+        raise
     except Exception as error:
         # Each of trimesh's loaders raises its own exceptions, and any of them for a broken file.
         hint = HINTS.get(suffix, "")
         raise MeshFileError(f"{type(error).__name__}: {error}{hint}") from error
     return parts
+
+
+def _has_notches(mesh: Any) -> bool:
+    """Refuse a PLY file's polygons with notches, which trimesh fills; return False for all others.
+
+    Raises:
+        MeshFileError: a face has a notch.
+    """
+    data = mesh.metadata.get("_ply_raw", {}).get("face", {}).get("data", {})
+    for name in ("vertex_indices", "vertex_index"):
+        if name not in (data if isinstance(data, dict) else data.dtype.names):
+            continue
+        # Lists of numbers, or in a binary file a table with the number of corners before them.
+        rows = data[name]
+        rows = rows["f1"] if rows.dtype.names else rows
+        if len(rows) < len(mesh.faces) and notched(mesh.vertices, rows):
+            raise MeshFileError("a face has a notch; export the mesh as triangles")
+    return False
 
 
 def _placed(scene: Any) -> Iterator[tuple[Any, NDArray[np.float64]]]:

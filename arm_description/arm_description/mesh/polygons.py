@@ -3,7 +3,7 @@
 A fan from one corner, which mesh libraries draw, covers the notch of an L and overlaps itself.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,11 @@ def triangulated(points: Points, corners: Indices, counts: Indices) -> tuple[Ind
     owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
     return np.concatenate(triangles)[order], owner[order]
+
+
+def notched(points: Points, polygons: Iterable[Indices]) -> bool:
+    """Return whether any polygon, given by the indices of its points, has a notch."""
+    return any(len(corners) > 3 and not _convex(points[corners][None])[0] for corners in polygons)
 
 
 def _convex(polygons: Points) -> NDArray[np.bool_]:

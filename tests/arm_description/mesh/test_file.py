@@ -75,3 +75,38 @@ def test_faces_of_different_sizes_that_trimesh_does_not_read_are_explained(tmp_p
     (tmp_path / f"a.{suffix}").write_bytes(write())
     with pytest.raises(MeshFileError, match="different numbers of corners, export it as triangles"):
         read_mesh_file(tmp_path / f"a.{suffix}")
+
+
+OUTLINES = {
+    "notch": [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)],
+    "hexagon": [(1, 0), (2, 0), (3, 1), (2, 2), (1, 2), (0, 1)],
+}
+
+
+def prism(outline, binary):
+    """Return a PLY file of a prism over an outline of six corners: of its ends alone if binary."""
+    points = [(x, y, z) for z in (0, 1) for x, y in outline]
+    faces = [[5, 4, 3, 2, 1, 0], [6, 7, 8, 9, 10, 11]]
+    if not binary:
+        faces += [[i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i] for i in range(6)]
+    head = (
+        f"ply\nformat {'binary_little_endian' if binary else 'ascii'} 1.0\n"
+        "element vertex 12\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    ).encode()
+    if binary:
+        body = b"".join(struct.pack("<fff", *point) for point in points)
+        return head + body + b"".join(struct.pack("<B6i", 6, *face) for face in faces)
+    rows = [*points, *([len(face), *face] for face in faces)]
+    return head + "".join(" ".join(map(str, row)) + "\n" for row in rows).encode()
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_a_ply_file_with_a_notched_face_is_refused_and_a_convex_one_read(tmp_path, binary):
+    file = tmp_path / "prism.ply"
+    file.write_bytes(prism(OUTLINES["notch"], binary))
+    with pytest.raises(MeshFileError, match="a face has a notch; export the mesh as triangles"):
+        read_mesh_file(file)
+    file.write_bytes(prism(OUTLINES["hexagon"], binary))
+    (read,) = read_mesh_file(file)
+    assert len(read.faces) == (8 if binary else 20)
