@@ -4,7 +4,7 @@ STL and OBJ files have their own readers. trimesh reads the others: .dae .glb .g
 """
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +49,8 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     from arm_description.mesh.side_files import SideFiles
 
     try:
+        if suffix == ".off":
+            _refuse_notches(*_off_polygons(content))
         scene = trimesh.load_scene(
             io.BytesIO(content),
             file_type=suffix.removeprefix("."),
@@ -83,9 +85,27 @@ def _has_notches(mesh: Any) -> bool:
         # Lists of numbers, or in a binary file a table with the number of corners before them.
         rows = data[name]
         rows = rows["f1"] if rows.dtype.names else rows
-        if len(rows) < len(mesh.faces) and notched(mesh.vertices, rows):
-            raise MeshFileError("a face has a notch; export the mesh as triangles")
+        if len(rows) < len(mesh.faces):
+            _refuse_notches(mesh.vertices, rows)
     return False
+
+
+def _off_polygons(content: bytes) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
+    """Return the points of an OFF file, shape (p, 3), and the points' indices of each face."""
+    words = (line.partition(b"#")[0].split() for line in content.splitlines())
+    lines = [line for line in words if line]
+    counts = lines.pop(0)[1:] or lines.pop(0)
+    points, faces = int(counts[0]), int(counts[1])
+    rows = lines[points : points + faces]
+    return (
+        np.array([line[:3] for line in lines[:points]], np.float64),
+        [np.array(row[1 : int(row[0]) + 1], np.int64) for row in rows],
+    )
+
+
+def _refuse_notches(points: NDArray[np.float64], polygons: Iterable[NDArray[np.int64]]) -> None:
+    if notched(points, polygons):
+        raise MeshFileError("a face has a notch; export the mesh as triangles")
 
 
 def _placed(scene: Any) -> Iterator[tuple[Any, NDArray[np.float64]]]:

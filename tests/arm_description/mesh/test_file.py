@@ -110,3 +110,18 @@ def test_a_ply_file_with_a_notched_face_is_refused_and_a_convex_one_read(tmp_pat
     file.write_bytes(prism(OUTLINES["hexagon"], binary))
     (read,) = read_mesh_file(file)
     assert len(read.faces) == (8 if binary else 20)
+
+
+@pytest.mark.parametrize("head", ["OFF\n# a prism's ends\n12 2 0\n", "OFF 12 2 0\n"])
+def test_an_off_file_with_a_notched_face_is_refused_and_a_convex_one_read(tmp_path, head):
+    file = tmp_path / "ends.off"
+    faces = "6 5 4 3 2 1 0\n6 6 7 8 9 10 11\n"
+    for outline, notched in (("notch", True), ("hexagon", False)):
+        points = "".join(f"{x} {y} {z}\n" for z in (0, 1) for x, y in OUTLINES[outline])
+        file.write_text(head + points + faces)
+        if notched:
+            with pytest.raises(MeshFileError, match="a face has a notch"):
+                read_mesh_file(file)
+        else:
+            (read,) = read_mesh_file(file)
+            assert len(read.faces) == 8

@@ -18,7 +18,9 @@ from launch import LaunchDescription
 def generate_launch_description():
     return LaunchDescription(
         [
-            SetLaunchConfiguration("home", EnvironmentVariable("HOME", default_value="/root")),
+            SetLaunchConfiguration(
+                "home", EnvironmentVariable("HOME", default_value="/home/robot")
+            ),
             PushEnvironment(),
             SetEnvironmentVariable(
                 name="DRIVER_HOME", value=[LaunchConfiguration("home"), "/.driver"]
