@@ -16,9 +16,9 @@ from arm_sim.robots import AnyPath
 from arm_sim.user_traceback import warn_caller
 
 if TYPE_CHECKING:
-    from arm_gazebo.assembly.robot import AssembledRobot
-    from arm_gazebo.assembly.settings import SimulationSettings
-    from arm_gazebo.assembly.world import AssembledWorld
+    from arm_gazebo.run.robot import AssembledRobot
+    from arm_gazebo.run.settings import SimulationSettings
+    from arm_gazebo.run.world import AssembledWorld
     from arm_gazebo.world.changes import WorldChanges
     from arm_sim.cameras import RobotCameras
     from arm_sim.things import Things
@@ -147,8 +147,8 @@ def assemble(
         DescriptionError, GazeboError, ArmControlError, ParameterValueError: it cannot be built.
     """
     # Imported here, because it takes long, and a program may never build a simulation.
-    from arm_gazebo.assembly.robot import AssembledRobot
-    from arm_gazebo.assembly.world import assemble_world
+    from arm_gazebo.run.robot import AssembledRobot
+    from arm_gazebo.run.world import assemble_world
     from arm_sim.set_up import set_up
 
     setup = set_up(description, controllers, arguments, spawn, package_path, settings)

@@ -7,10 +7,10 @@ from os import fspath, pathsep
 from typing import Any
 
 from arm_control.manager.parameter_file import ParametersByNode
-from arm_gazebo.assembly.robot_settings import Parameters
-from arm_gazebo.assembly.settings import SimulationSettings, read_settings
 from arm_gazebo.launching.controllers_file import read_controllers
 from arm_gazebo.launching.robot_setup import SPAWN_AUTO, RobotSetup, set_up_robot
+from arm_gazebo.run.robot_settings import Parameters
+from arm_gazebo.run.settings import SimulationSettings, read_settings
 from arm_node.parameter_values import Reader, Value, read_parameter
 from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
 

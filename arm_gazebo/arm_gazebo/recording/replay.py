@@ -13,13 +13,13 @@ from arm_control.errors import ArmControlError
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.registry import controller_class
 from arm_description.errors import DescriptionError
-from arm_gazebo.assembly.robot import AssembledRobot
 from arm_gazebo.errors import GazeboError, RecordingError
 from arm_gazebo.model.saved_model import SavedModel
 from arm_gazebo.physics.tick import SilentClock, SimulationTick
 from arm_gazebo.recording.recorded_run import rebuild, run_of
 from arm_gazebo.recording.run_file import RecordedInput, RecordingEnd, RunFile, StateBlock
 from arm_gazebo.recording.run_state import Row, StateRow, chained_hashes, state_names
+from arm_gazebo.run.robot import AssembledRobot
 from arm_gazebo.state.complete_state import CompleteState
 
 MAX_NAMED = 6

@@ -10,8 +10,6 @@ from arm_control.lifecycle import LifecycleState
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.managed_controller import ManagedController
 from arm_control.manager.settings import ManagerSettings
-from arm_gazebo.assembly.robot import AssembledRobot
-from arm_gazebo.assembly.robot_settings import RobotSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.saved_model import SavedModel
@@ -23,6 +21,8 @@ from arm_gazebo.recording.recorded_run import (
 )
 from arm_gazebo.recording.recorder import OnLoop, RunRecorder
 from arm_gazebo.recording.run_file import RecordedInput, RunFileWriter
+from arm_gazebo.run.robot import AssembledRobot
+from arm_gazebo.run.robot_settings import RobotSettings
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.state.made_with import made_with
 

@@ -9,9 +9,9 @@ from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
-from arm_gazebo.assembly.robot import AssembledRobot
-from arm_gazebo.assembly.robot_settings import RobotSettings
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.run.robot import AssembledRobot
+from arm_gazebo.run.robot_settings import RobotSettings
 from arm_node.workarounds.process_clock import ProcessClock
 
 logger = logging.getLogger("controller_manager")

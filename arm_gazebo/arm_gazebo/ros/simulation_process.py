@@ -24,8 +24,6 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controllers_executor import controllers_executor
 from arm_control.manager.ros.emergency_stop import EmergencyStopServer
-from arm_gazebo.assembly.settings import SimulationSettings, read_above_zero, read_settings
-from arm_gazebo.assembly.world import AssembledWorld, assemble_world
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
@@ -39,6 +37,8 @@ from arm_gazebo.ros.fault_parameter import FaultParameter
 from arm_gazebo.ros.live_parameters import follow_parameter
 from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.run_recording import RunRecording
+from arm_gazebo.run.settings import SimulationSettings, read_above_zero, read_settings
+from arm_gazebo.run.world import AssembledWorld, assemble_world
 from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display

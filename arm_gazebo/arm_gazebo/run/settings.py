@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from arm_gazebo.assembly.robot_settings import Parameters, RobotSettings, read_robots
 from arm_gazebo.rendering.backend_selection import PREFERENCES
+from arm_gazebo.run.robot_settings import Parameters, RobotSettings, read_robots
 from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_node.parameter_values import (
     NumberReader,

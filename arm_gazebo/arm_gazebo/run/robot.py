@@ -10,13 +10,13 @@ from arm_control.manager.settings import ManagerSettings
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.document import UrdfDocument
 from arm_description.urdf.parser import parse_urdf
-from arm_gazebo.assembly.robot_settings import RobotSettings
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
+from arm_gazebo.run.robot_settings import RobotSettings
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors
