@@ -35,7 +35,7 @@ from node_parameters import node_parameters_page, parameter_of, parameter_table
 from originals_table import table_page
 
 ROOT = Path(__file__).parents[1]
-RESULTS = "<!-- tests/benchmarks/RESULTS.md -->"
+RESULTS = "<!-- benchmarks/RESULTS.md -->"
 WORKAROUNDS = "<!-- arm_node.workarounds -->"
 INTERFACES = ROOT / "arm_interfaces" / "interfaces"
 BY_JOINT = {"joints": ("<joint>",), "dof_names": ("<dof>",)}
@@ -114,7 +114,7 @@ def on_page_markdown(markdown: str, **context: Any) -> str:
     markdown = markdown.replace(WORKAROUNDS, workarounds.__doc__ or "")
     if RESULTS not in markdown:
         return markdown
-    results = (ROOT / "tests" / "benchmarks" / "RESULTS.md").read_text().partition("\n")[2]
+    results = (ROOT / "benchmarks" / "RESULTS.md").read_text().partition("\n")[2]
     return markdown.replace(RESULTS, results.replace("\n### ", "\n## "))
 
 

@@ -19,7 +19,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 INTERFACES = tomllib.loads((ROOT / "arm_interfaces/pyproject.toml").read_text())["project"]
 WHEEL = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
 PRODUCT = [ROOT / path for path in WHEEL["packages"]]
-BESIDE = [ROOT / folder for folder in ("tests", "tools", "docs", "examples")]
+BESIDE = [ROOT / folder for folder in ("tests", "benchmarks", "tools", "docs", "examples")]
 OF_ROS = [ROOT / "tests" / "launch_py" / "structures"]
 """Launch files of ROS 2: `arm launch` provides what they import."""
 READS_MESHES = {"pycollada", "networkx"}

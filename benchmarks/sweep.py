@@ -1,6 +1,6 @@
 """What a study costs: the engine for each run, two processes beside one, memory of a process.
 
-    python tests/benchmarks/sweep.py [--runs 60] [--ray ADDRESS]
+    python benchmarks/sweep.py [--runs 60] [--ray ADDRESS]
 
 A run simulates one second of the 4-DOF arm in a simulation of its own. With a Ray cluster, as
 `ray start --head` starts one on this machine, the same runs are made there, too.

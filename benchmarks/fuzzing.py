@@ -8,7 +8,7 @@ from pathlib import Path
 
 import harness
 
-FUZZ = Path(__file__).parents[1] / "fuzz" / "fuzz.py"
+FUZZ = Path(__file__).parents[1] / "tests" / "fuzz" / "fuzz.py"
 TARGETS = ("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments")
 
 

@@ -1,7 +1,7 @@
 """Copies by MuJoCo Warp beside those by MuJoCo: how far apart, and how fast.
 
-    python tests/benchmarks/gpu_copies.py                                # on a GPU
-    python tests/benchmarks/gpu_copies.py --device cpu --copies 4        # without one
+    python benchmarks/gpu_copies.py                                # on a GPU
+    python benchmarks/gpu_copies.py --device cpu --copies 4        # without one
 
 All drives follow moving goals. Without a GPU, Warp compiles for some minutes first. Not part of
 run_all.py, because it needs the extra `gpu`.

@@ -1,6 +1,6 @@
 """Runs every benchmark of the suite and writes RESULTS.md, with the machine named.
 
-    python tests/benchmarks/run_all.py
+    python benchmarks/run_all.py
 
 Takes half an hour; run it on a machine that does nothing else, with the suite installed
 (not editable: compiled modules are part of the start-up time).

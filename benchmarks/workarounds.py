@@ -26,7 +26,7 @@ import trajectory_control
 from arm_node.workarounds.switch import LIBRARIES, OF_THE_BUILD, VARIABLE
 
 FOLDER = Path(__file__).parent
-INTERFACES = FOLDER.parents[1] / "arm_interfaces"
+INTERFACES = FOLDER.parent / "arm_interfaces"
 LOSE_PORTS = FOLDER.parent / "arm_node" / "workarounds" / "lose_ports.py"
 RATE_HZ = 500
 SECONDS = 5.0

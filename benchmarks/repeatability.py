@@ -1,6 +1,6 @@
 """Whether runs over ROS repeat to the last bit, whatever goes on beside them.
 
-    python tests/benchmarks/repeatability.py [--seconds 8]
+    python benchmarks/repeatability.py [--seconds 8]
 
 Each condition is a launch of its own: commands from another process, spawned and deleted things, a
 switch. It is recorded, and then replayed without ROS.

@@ -27,7 +27,7 @@ from arm_gazebo.world.changes import Spawned, WorldChanges, changed_model
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource
 
-ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
+ARM = Path(__file__).parents[1] / "arm_description" / "urdf" / "arm.urdf.xacro"
 CRATE = """<robot name="crate"><link name="base">
   <inertial><mass value="0.2"/>
   <inertia ixx="0.0003" iyy="0.0003" izz="0.0003" ixy="0" ixz="0" iyz="0"/></inertial>

@@ -21,7 +21,7 @@ from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.spec.physics_timing import physics_timing
 
-ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
+ARM = Path(__file__).parents[1] / "arm_description" / "urdf" / "arm.urdf.xacro"
 REPEATS, CALLS = 100, 50
 
 

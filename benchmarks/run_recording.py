@@ -1,6 +1,6 @@
 """What recording a run costs, and whether a long run repeats to the last bit.
 
-    python tests/benchmarks/run_recording.py [--seconds 60] [--replays 10]
+    python benchmarks/run_recording.py [--seconds 60] [--replays 10]
 
 The cost is that of a control period as fast as possible: two simulations of the same robot take
 turns, one of them recorded. Processor time of the loop's thread depends on other load the least;

@@ -1,6 +1,6 @@
 """A long run with everything that can happen to it: nothing grows, nothing is lost, and it repeats.
 
-    python tests/benchmarks/soak.py [--minutes 10] [--seed 0]
+    python benchmarks/soak.py [--minutes 10] [--seed 0]
 
 The myCobot runs as fast as possible, and at random gets goals, cancellations, gripper commands,
 switches, parameters, resets, snapshots that are restored, spawned, moved and deleted things. It is

@@ -1,6 +1,6 @@
 """How the servos answer a step of all joints: this project's arm, or any URDF.
 
-    python tests/benchmarks/servo_step.py [ROBOT.urdf ...] [--step 0.3] [--payload 0.2]
+    python benchmarks/servo_step.py [ROBOT.urdf ...] [--step 0.3] [--payload 0.2]
 
 Simulation time only: the figures do not depend on the machine.
 """
@@ -24,7 +24,7 @@ from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.spec.physics_timing import physics_timing
 
-OWN_ARM = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
+OWN_ARM = Path(__file__).parents[1] / "arm_description" / "urdf" / "arm.urdf.xacro"
 SETTLE_S, WATCH_S = 2.0, 3.0
 
 

@@ -1,6 +1,6 @@
 """Time to load a 7-DOF arm with 20 meshes: the first time, and from the cache of meshes.
 
-    python tests/benchmarks/load_time.py [--triangles 5120]
+    python benchmarks/load_time.py [--triangles 5120]
 
 Each load is a process of its own, imports included, from the URDF's text to the ready model.
 """
