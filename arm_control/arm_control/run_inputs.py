@@ -52,7 +52,7 @@ Input = Callable[Concatenate[TargetT, ArgumentsT], ResultT]
 
 
 def run_input(method: Input[TargetT, ArgumentsT, ResultT]) -> Input[TargetT, ArgumentsT, ResultT]:
-    """Mark a method as an input; its arguments must be plain data, see `arm_node.plain_data`."""
+    """Mark a method as an input; its arguments must be plain values, see `state.encoding`."""
     return run_input_noted_as(lambda arguments: arguments)(method)
 
 

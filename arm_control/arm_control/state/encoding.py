@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from arm_control.errors import StateError
-from arm_node.plain_data import class_name, class_named
+from arm_control.state.class_names import class_name, class_named
 
 LENGTH = struct.Struct("<I")
 FLOAT = struct.Struct("<d")

@@ -1,14 +1,14 @@
 """Compare two recordings of runs."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import zip_longest
 
+from arm_control.state.encoding import encode
 from arm_gazebo.recording.recorded_run import rebuild, run_of
 from arm_gazebo.recording.replay import Difference, differing
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
 from arm_gazebo.recording.run_state import state_names
-from arm_node.plain_data import to_plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ def _difference(
     file: RunFile, inputs: list[RecordedInput], one: _Period, other: _Period
 ) -> Difference | None:
     lines: list[str] = []
-    if to_plain(one.inputs) != to_plain(other.inputs):
+    if encode(one.inputs) != encode(other.inputs):
         lines.append(f"inputs: {_listed(other.inputs)} instead of {_listed(one.inputs)}")
     elif one.hash == other.hash:
         return None
@@ -124,10 +124,10 @@ def _differing_settings(first: RunFile, second: RunFile) -> Iterator[str]:
         yield f"{len(other.robots)} robots instead of {len(one.robots)}"
     for robot, its_twin in zip(one.robots, other.robots, strict=False):
         for name in ("settings", "manager"):
-            here, there = to_plain(getattr(robot, name)), to_plain(getattr(its_twin, name))
-            for key in here:
-                if here[key] != there[key]:
-                    yield f"{key} of {robot.manager_name} differs"
+            here, there = getattr(robot, name), getattr(its_twin, name)
+            for field in fields(here):
+                if encode(getattr(here, field.name)) != encode(getattr(there, field.name)):
+                    yield f"{field.name} of {robot.manager_name} differs"
 
 
 def _listed(inputs: tuple[RecordedInput, ...]) -> str:

@@ -2,6 +2,7 @@
 
 import logging
 import threading
+from array import array
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
@@ -15,6 +16,7 @@ import numpy as np
 from arm_control.controllers.controller import Controller
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.manager.controller_manager import ControllerManager
+from arm_control.state.encoding import NotPlainError
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.recording.run_file import (
@@ -25,7 +27,6 @@ from arm_gazebo.recording.run_file import (
 )
 from arm_gazebo.recording.run_state import StateRow, chained_hashes
 from arm_gazebo.state.complete_state import CompleteState
-from arm_node.plain_data import PlainDataError
 
 ResultT = TypeVar("ResultT")
 
@@ -64,7 +65,7 @@ class RecordWriter(Protocol):
         ...
 
     def write(self, record: Record) -> None:
-        """Take a record; may raise OSError, PlainDataError."""
+        """Take a record; may raise OSError, NotPlainError."""
         ...
 
     def flush(self) -> None:
@@ -236,8 +237,13 @@ class RunRecorder:
         finally:
             self._is_inside = False
             robot, controller = self._place_of(target)
+            # A sequence of a ROS message is noted as NumPy's array, as any other.
+            noted = {
+                name: np.array(value) if isinstance(value, array) else value
+                for name, value in arguments.items()
+            }
             self._records.append(
-                RecordedInput(self.periods, robot, controller, method, arguments, raised)
+                RecordedInput(self.periods, robot, controller, method, noted, raised)
             )
 
     def _place_of(self, target: object) -> tuple[int | None, str | None]:
@@ -272,8 +278,12 @@ class RunRecorder:
     def _write(self) -> None:
         try:
             self._write_until_end()
-        except (OSError, PlainDataError) as error:
-            reason = error.strerror if isinstance(error, OSError) else str(error)
+        except (OSError, NotPlainError) as error:
+            reason = (
+                error.strerror
+                if isinstance(error, OSError)
+                else f"the input{error.path} {error.reason}"
+            )
             self.failure = f"the recording {self.path} ends: {reason}"
             logger.error("%s", self.failure)
             # Until the loop stops the recording, its records must not fill the memory.

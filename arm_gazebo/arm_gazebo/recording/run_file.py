@@ -4,7 +4,6 @@ It holds the header with all that rebuilds the run, then, as they come, inputs a
 with one hash for each control period.
 """
 
-import json
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
@@ -21,10 +20,13 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from numpy.typing import NDArray
 
+from arm_control.errors import StateError
+from arm_control.state.encoding import decode, encode
 from arm_gazebo.errors import RecordingError
-from arm_node.plain_data import PlainDataError, from_plain, to_plain
+from arm_gazebo.recording.json_records import read_json
 
-FORMAT = 1
+FORMATS = (1, 2)
+"""Those that this version reads; it writes the last. In format 1 a value is JSON."""
 PROFILE = "arm-run"
 LIBRARY = "arm-suite"
 HEADER, INPUT, STATES, END = "header", "input", "states", "end"
@@ -118,25 +120,25 @@ class RunFileWriter:
         self._writer.start(PROFILE, LIBRARY)
         schema = self._writer.register_schema("", "", b"")
         self._channels = {
-            topic: self._writer.register_channel(topic, "json", schema)
+            topic: self._writer.register_channel(topic, "", schema)
             for topic in (HEADER, INPUT, STATES, END)
         }
-        self._message(HEADER, 0, _json({"format": FORMAT, **header}))
+        self._message(HEADER, 0, _bytes_of({"format": FORMATS[-1], **header}))
 
     def write(self, record: Record) -> None:
         """Append a record.
 
         Raises:
             OSError: the file cannot be written.
-            PlainDataError: an argument of an input is not plain data.
+            NotPlainError: an argument of an input is not plain data.
         """
         match record:
             case RecordedInput():
-                self._message(INPUT, record.period, _json(record))
+                self._message(INPUT, record.period, _bytes_of(record))
             case StateBlock():
                 self._message(STATES, record.first, _block_bytes(record))
             case RecordingEnd():
-                self._message(END, record.periods, _json(record))
+                self._message(END, record.periods, _bytes_of(record))
 
     def flush(self) -> None:
         """Hand everything so far to the operating system."""
@@ -197,28 +199,29 @@ class RunFile:
             topic, data = next(_raw_records(stream), ("", b""))
         if topic != HEADER:
             raise RecordingError(f"{self.path} is not a recording of a run")
-        header = self._from_json(data)
+        header = self._value(data)
         if not isinstance(header, dict):
             raise RecordingError(f"{self.path} is damaged: its header is not a mapping")
-        if header.get("format") != FORMAT:
+        if header.get("format") not in FORMATS:
             raise RecordingError(
-                f"{self.path} has format {header.get('format')}; this version reads {FORMAT}"
+                f"{self.path} has format {header.get('format')}; this version reads "
+                f"{' and '.join(map(str, FORMATS))}"
             )
         return header
 
     def _record(self, topic: str, data: bytes) -> Record:
         try:
             if topic in (INPUT, END):
-                return self._from_json(data)
+                return self._value(data)
             return _block(data)
         except (ValueError, struct.error) as error:
             raise RecordingError(f"{self.path} is damaged: {error}") from error
 
-    def _from_json(self, data: bytes) -> Any:
+    def _value(self, data: bytes) -> Any:
         try:
-            text = _decompressed(data)
-            return from_plain(json.loads(text), "record")
-        except (PlainDataError, ValueError, RecursionError) as error:
+            content = _decompressed(data)
+            return read_json(content) if content.startswith(b"{") else decode(content)
+        except (StateError, ValueError, RecursionError) as error:
             raise RecordingError(f"{self.path} is damaged: {error}") from error
 
 
@@ -237,9 +240,8 @@ def _raw_records(stream: BinaryIO) -> Iterator[tuple[str, bytes]]:
                     pass
 
 
-def _json(value: object) -> bytes:
-    text = json.dumps(to_plain(value, "record"), separators=(",", ":"))
-    return zstandard.compress(text.encode(), 3)
+def _bytes_of(value: object) -> bytes:
+    return zstandard.compress(encode(value), 3)
 
 
 def _decompressed(data: bytes) -> bytes:

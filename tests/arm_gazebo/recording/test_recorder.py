@@ -120,4 +120,4 @@ def test_an_argument_that_is_not_data_ends_the_recording_and_is_named(recorded, 
     run.recorder.give(run.manager, "odd", {"thing": object()}, lambda: None)
     run.run(3)
     run.finish()
-    assert "record.arguments['thing'] is a builtins.object" in run.recorder.failure
+    assert "the input.arguments.thing is a builtins.object" in run.recorder.failure

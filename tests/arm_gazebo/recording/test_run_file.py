@@ -106,10 +106,10 @@ def test_missing_files_and_folders_are_a_sentence(tmp_path):
 
 
 def test_a_later_format_is_a_sentence(tmp_path, monkeypatch):
-    monkeypatch.setattr("arm_gazebo.recording.run_file.FORMAT", 2)
+    monkeypatch.setattr("arm_gazebo.recording.run_file.FORMATS", (3,))
     write(tmp_path / "a.run")
     monkeypatch.undo()
-    with pytest.raises(RecordingError, match="has format 2; this version reads 1"):
+    with pytest.raises(RecordingError, match="has format 3; this version reads 1 and 2"):
         RunFile(tmp_path / "a.run")
 
 

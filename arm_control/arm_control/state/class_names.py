@@ -1,0 +1,36 @@
+"""The names of classes in snapshots and recordings, those of earlier builds among them.
+
+A class is stored as 'module:Name'. When a class moves or gets another name, its old name goes into
+`EARLIER_NAMES`, so that the files of earlier builds stay readable.
+"""
+
+import importlib
+import sys
+from typing import Any
+
+PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim")
+"""Packages that reading a file may import."""
+
+EARLIER_NAMES: dict[str, str] = {}
+"""The present name of each class that had another name in an earlier build."""
+
+
+def class_name(cls: type) -> str:
+    """Return the name of a class for `class_named`: 'module:Name'."""
+    return f"{cls.__module__}:{cls.__qualname__}"
+
+
+def class_named(name: str) -> Any:
+    """Return the object named 'module:Name', or None if there is none; see `PACKAGES`.
+
+    Raises:
+        ImportError: a module of the suite does not exist, or cannot be imported.
+    """
+    module_name, _, qualified = EARLIER_NAMES.get(name, name).partition(":")
+    if module_name.partition(".")[0] in PACKAGES:
+        found: Any = importlib.import_module(module_name)
+    else:
+        found = sys.modules.get(module_name)
+    for part in qualified.split("."):
+        found = getattr(found, part, None)
+    return found

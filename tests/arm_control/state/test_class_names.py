@@ -1,0 +1,28 @@
+"""The classes in files of earlier builds are found, wherever they stand now."""
+
+from pathlib import Path
+
+import pytest
+
+from arm_control.state.class_names import EARLIER_NAMES, class_name, class_named
+
+SAVED = Path(__file__).with_name("saved_classes.txt").read_text(encoding="utf-8").split()
+"""Every class that the build of November 2026 wrote into snapshots and recordings.
+
+Names are never taken out. A class that moves gets its old name into `EARLIER_NAMES`.
+"""
+
+
+@pytest.mark.parametrize("name", SAVED)
+def test_a_class_of_an_earlier_build_is_found(name: str):
+    assert isinstance(class_named(name), type)
+
+
+def test_an_earlier_name_leads_to_a_class_that_has_the_present_one():
+    assert EARLIER_NAMES.keys() <= set(SAVED)
+    present = {name: class_name(class_named(name)) for name in EARLIER_NAMES}
+    assert present == EARLIER_NAMES
+
+
+def test_a_module_outside_of_the_suite_is_not_imported():
+    assert class_named("antigravity:Nothing") is None
