@@ -11,7 +11,9 @@ from typing import Any
 PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim")
 """Packages that reading a file may import."""
 
-EARLIER_NAMES: dict[str, str] = {}
+EARLIER_NAMES: dict[str, str] = {
+    "arm_gazebo.assembly.robot_settings:RobotSettings": "arm_gazebo.run.robot_settings:RobotSettings",
+}
 """The present name of each class that had another name in an earlier build."""
 
 
