@@ -12,9 +12,9 @@ PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim
 """Packages that reading a file may import."""
 
 EARLIER_NAMES: dict[str, str] = {
-    "arm_gazebo.assembly.robot_settings:RobotSettings": "arm_gazebo.run.robot_settings:RobotSettings",
+    "arm_gazebo.assembly.robot_settings": "arm_gazebo.run.robot_settings",
 }
-"""The present name of each class that had another name in an earlier build."""
+"""The present name of each module or class, 'module:Name', that had another one in an earlier build."""
 
 
 def class_name(cls: type) -> str:
@@ -28,7 +28,9 @@ def class_named(name: str) -> Any:
     Raises:
         ImportError: a module of the suite does not exist, or cannot be imported.
     """
-    module_name, _, qualified = EARLIER_NAMES.get(name, name).partition(":")
+    earlier_module, _, earlier_qualified = name.partition(":")
+    moved = f"{EARLIER_NAMES.get(earlier_module, earlier_module)}:{earlier_qualified}"
+    module_name, _, qualified = EARLIER_NAMES.get(name, moved).partition(":")
     if module_name.partition(".")[0] in PACKAGES:
         found: Any = importlib.import_module(module_name)
     else:
