@@ -14,7 +14,7 @@ PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim
 EARLIER_NAMES: dict[str, str] = {
     "arm_gazebo.assembly.robot_settings": "arm_gazebo.run.robot_settings",
 }
-"""The present name of each module or class, 'module:Name', that had another one in an earlier build."""
+"""The present names of modules and classes, the latter as 'module:Name', by their earlier ones."""
 
 
 def class_name(cls: type) -> str:
