@@ -18,8 +18,8 @@ from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.physics_timing import physics_timing
 
 ARM = Path(__file__).parents[1] / "arm_description" / "urdf" / "arm.urdf.xacro"
 REPEATS, CALLS = 100, 50

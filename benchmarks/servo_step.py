@@ -21,8 +21,8 @@ from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.physics_timing import physics_timing
 
 OWN_ARM = Path(__file__).parents[1] / "arm_description" / "urdf" / "arm.urdf.xacro"
 SETTLE_S, WATCH_S = 2.0, 3.0

@@ -18,11 +18,11 @@ from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 from arm_description.urdf.parser import parse_urdf
 from arm_description.xacro.expansion import expand_xacro
+from arm_gazebo.mjcf.size import BYTES_PER_CELL
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.mjcf_size import BYTES_PER_CELL
-from arm_gazebo.spec.physics_timing import physics_timing
 from arm_gazebo.world.changes import Spawned, WorldChanges, changed_model
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource

@@ -14,9 +14,9 @@ from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.camera import CameraSensor
-from arm_gazebo.spec.physics_timing import physics_timing
 
 ARM_XACRO = Path(__file__).parents[2] / "arm_description" / "urdf" / "arm.urdf.xacro"
 INTERFACES = ("position", "velocity", "effort")

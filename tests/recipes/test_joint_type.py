@@ -43,7 +43,7 @@ from arm_gazebo.launching.default_control import with_hardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 text = open(sys.argv[1]).read()
 robot = parse_urdf(text)

@@ -76,7 +76,7 @@ from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 text = open(sys.argv[1]).read()
 robot = parse_urdf(text)

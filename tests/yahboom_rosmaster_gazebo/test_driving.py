@@ -17,9 +17,9 @@ from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.physics_timing import physics_timing
 
 RATE_HZ = 100.0
 WHEELS = ("front_left", "front_right", "back_right", "back_left")

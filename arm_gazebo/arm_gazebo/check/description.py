@@ -16,6 +16,7 @@ from arm_description.urdf.element import Remark
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Mesh, Robot
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
 from arm_gazebo.check.mesh_sizes import mesh_sizes
 from arm_gazebo.check.ros_parser import refused_by_ros
 from arm_gazebo.check.units import other_units
@@ -35,7 +36,6 @@ from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.link_sensor import LinkSensor
 from arm_gazebo.sensors.reader import parse_link_sensors
-from arm_gazebo.spec.report import BuildOutcome, BuildReport, Finding
 
 PERIOD_S = 0.01
 JOINT_INTERFACES = (*STATES, MAX_EFFORT)

@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 
 from arm_description.urdf.robot import Link, Mesh, Robot
+from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.spec.report import BuildOutcome, Finding
 
 INVISIBLE_M = 1e-4
 SMALL_M = 1e-3

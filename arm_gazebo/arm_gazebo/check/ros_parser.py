@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from arm_description.urdf.element import QUATERNION, written_name
-from arm_gazebo.spec.report import BuildOutcome, Finding
+from arm_gazebo.build_report import BuildOutcome, Finding
 
 VERSION = "1.0"
 """The only version that Jazzy's urdfdom accepts."""

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 
 from arm_description.urdf.robot import Box, Capsule, Cylinder, Geometry, Joint, Link, Robot, Sphere
+from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.spec.report import BuildOutcome, Finding
 
 MANY_TURNS_RAD = 10.0 * math.tau
 """Limits beyond this are doubted: no arm's cables take ten turns, and 90 degrees would be 14."""

@@ -6,9 +6,9 @@ from typing import Any
 
 from arm_description.urdf.element import QUATERNION, written_name
 from arm_description.urdf.xml_document import is_foreign, parse_xml
+from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.sensors.reader import sensor_type
 from arm_gazebo.sensors.tags import COLOR_FORMATS
-from arm_gazebo.spec.report import BuildOutcome, Finding
 
 UNUSED = "the simulation does not use it"
 _SHAPES = {

@@ -8,12 +8,12 @@ import numpy as np
 
 from arm_description.errors import DescriptionError, XmlError
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
 from arm_gazebo.check.description import counted, failures
 from arm_gazebo.errors import GazeboError
+from arm_gazebo.mjcf.names import name_elements
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
-from arm_gazebo.spec.names import name_elements
-from arm_gazebo.spec.physics_timing import MAX_STEP_S
-from arm_gazebo.spec.report import BuildOutcome, BuildReport, Finding
+from arm_gazebo.physics_timing import MAX_STEP_S
 from arm_gazebo.world.spawn_model import ModelSource
 from arm_node.user_file import read_text
 

@@ -28,9 +28,9 @@ from arm_gazebo.drives.servo_tuning import (
     resistance,
     set_armature,
 )
+from arm_gazebo.mjcf.dry_friction import sticking, yielding
+from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint, drive_slices
-from arm_gazebo.spec.dry_friction import sticking, yielding
-from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_node.index_slice import as_slice
 
 Array = NDArray[np.float64]

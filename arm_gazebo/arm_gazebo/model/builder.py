@@ -11,7 +11,9 @@ import mujoco
 
 from arm_control.hardware.info import HardwareInfo
 from arm_description.urdf.robot import Robot
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
+from arm_gazebo.mjcf.names import free_name, name_elements
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import check_world, load_world
 from arm_gazebo.robot.collision_policy import MAX_LAYERS, CollisionLayer
@@ -19,8 +21,6 @@ from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.part import DEFAULT_OPTIONS, NO_TAGS, BuildOptions, RobotInWorld, RobotPart
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
-from arm_gazebo.spec.names import free_name, name_elements
-from arm_gazebo.spec.report import BuildReport
 
 
 def build_model(

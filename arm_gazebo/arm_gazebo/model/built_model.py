@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.robot.actuation import RobotJoint
-from arm_gazebo.spec.report import BuildReport
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.robot.actuation import RobotJoint
-from arm_gazebo.spec.report import BuildReport
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,12 @@ from typing import Any
 import mujoco
 
 from arm_description.errors import XmlError
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.launching.world_path import find_world
+from arm_gazebo.mjcf.references import check_readable
+from arm_gazebo.mjcf.size import WORLD_LIMIT, MemoryLimit, check_mjcf_size
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.contact_margins import report_margins
-from arm_gazebo.spec.mjcf_references import check_readable
-from arm_gazebo.spec.mjcf_size import WORLD_LIMIT, MemoryLimit, check_mjcf_size
-from arm_gazebo.spec.report import BuildReport
 from arm_node.user_file import read_text
 
 SDF_SUFFIXES = (".sdf", ".world")
@@ -74,6 +73,29 @@ def _named(kind: str, elements: Sequence[Any], file: str) -> str:
     more = f" and {len(elements) - 1} more" if len(elements) > 1 else ""
     name = f" '{elements[0].name}'" if elements[0].name else ""
     return f"{kind}{name} of {file}{more}"
+
+
+def report_margins(spec: mujoco.MjSpec, file: str, report: BuildReport) -> None:
+    """Report the geoms and pairs of an MJCF that have both a margin and a gap.
+
+    Args:
+        spec: the specification that was read from it.
+        file: its name.
+        report: receives one warning for each kind of element.
+    """
+    for kind, elements in (("geom", spec.geoms), ("pair", spec.pairs)):
+        both = [element for element in elements if element.margin > 0.0 and element.gap > 0.0]
+        if not both:
+            continue
+        first = both[0]
+        name = f" '{first.name}'" if first.name else ""
+        more = f" and {len(both) - 1} more" if len(both) > 1 else ""
+        before = first.margin - first.gap
+        report.warn(
+            f"{kind}{name} of {file}{more}",
+            f"it pushes at {first.margin:g} m from its surface, the margin. Up to MuJoCo 3.8 it "
+            f"pushed at margin minus gap, {before:g} m: for that write margin='{before:g}'",
+        )
 
 
 def check_world(world: str | Path) -> None:

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.spec.dry_friction import sticking
+from arm_gazebo.mjcf.dry_friction import sticking
 
 Values = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ from arm_gazebo.physics.faults import Distortion, PhysicsFaults
 from arm_gazebo.physics.physics_state import PhysicsState
 from arm_gazebo.physics.state_probe import StateProbe, WorldState
 from arm_gazebo.physics.state_transfer import StateTransfer
+from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint
-from arm_gazebo.spec.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_node.workarounds.profiler import switch_off_profiler
 
 logger = logging.getLogger(__name__)

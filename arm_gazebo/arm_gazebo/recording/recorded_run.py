@@ -6,10 +6,10 @@ from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.model.saved_model import SavedModel
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.recording.run_file import RunFile
 from arm_gazebo.run.robot import AssembledRobot
 from arm_gazebo.run.robot_settings import RobotSettings
-from arm_gazebo.spec.physics_timing import PhysicsTiming
 
 
 @dataclass(frozen=True, slots=True)

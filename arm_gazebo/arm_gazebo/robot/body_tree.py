@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Inertial, Joint, Link, Pose, Robot
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
+from arm_gazebo.mjcf.dry_friction import sticking
+from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.inertia_repair import (
     MAX_GYRATION_M2,
     PrincipalInertia,
@@ -18,9 +21,6 @@ from arm_gazebo.robot.inertia_repair import (
     repair_inertia,
 )
 from arm_gazebo.robot.link_geometry import LinkGeometry
-from arm_gazebo.spec.dry_friction import sticking
-from arm_gazebo.spec.names import free_name
-from arm_gazebo.spec.report import BuildReport
 
 WORLD_LINK = "world"
 MAX_TREE_DEPTH = 1000

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.spec.report import BuildReport
+from arm_gazebo.build_report import BuildReport
 
 WORLD_CONTYPE = 1
 """MuJoCo's default for a geom, so that every world file works unchanged."""

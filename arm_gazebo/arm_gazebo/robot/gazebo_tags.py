@@ -7,7 +7,7 @@ from typing import Any
 
 from arm_description.mesh.data import Color
 from arm_description.urdf.document import Description, as_document
-from arm_gazebo.spec.report import BuildReport, Finding
+from arm_gazebo.build_report import BuildReport, Finding
 from arm_node.names import listing
 
 _PREFIX = "Gazebo/"

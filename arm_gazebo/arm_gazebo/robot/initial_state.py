@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from arm_control.hardware.info import HardwareInfo
 from arm_description.urdf.mimic import Mimic
 from arm_description.urdf.robot import Joint, Robot
-from arm_gazebo.spec.report import BuildReport
+from arm_gazebo.build_report import BuildReport
 
 
 def initial_positions(

@@ -21,12 +21,12 @@ from arm_description.urdf.robot import (
     Sphere,
     Visual,
 )
+from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.mesh.part import MIN_HALF_THICKNESS_M, MeshPart
 from arm_gazebo.robot.collision_policy import CollisionMasks, with_self
 from arm_gazebo.robot.gazebo_tags import GazeboTags
-from arm_gazebo.spec.report import BuildOutcome, BuildReport, Finding
 
 VISUAL_GROUP = 2
 COLLISION_GROUP = 3

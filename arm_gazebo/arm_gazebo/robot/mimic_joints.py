@@ -9,7 +9,7 @@ import mujoco
 from arm_control.hardware.info import HardwareInfo
 from arm_description.urdf.mimic import Mimic
 from arm_description.urdf.robot import Joint, JointLimit, Robot
-from arm_gazebo.spec.report import BuildReport
+from arm_gazebo.build_report import BuildReport
 
 FITS_WITHIN = 1e-3
 """How far, in rad or m, a mimic joint may be driven past its own limit without a warning."""

@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from arm_control.hardware.info import HardwareInfo
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Pose, Robot
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
+from arm_gazebo.mjcf.size import WORLD_LIMIT, MemoryLimit
+from arm_gazebo.physics_timing import MAX_STEP_S
 from arm_gazebo.robot.actuation import Drive, RobotJoint, add_actuators, drives
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
 from arm_gazebo.robot.camera_mount import add_cameras
@@ -31,9 +34,6 @@ from arm_gazebo.robot.wheels import set_up_wheels
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
-from arm_gazebo.spec.mjcf_size import WORLD_LIMIT, MemoryLimit
-from arm_gazebo.spec.physics_timing import MAX_STEP_S
-from arm_gazebo.spec.report import BuildReport
 
 Base = Literal["fixed", "free"]
 

@@ -11,8 +11,8 @@ from arm_description.urdf.element import QUATERNION
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.body_tree import WORLD_LINK
-from arm_gazebo.spec.names import free_name
 
 
 def placed(urdf: str, pose: Sequence[float]) -> str:

@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 from arm_description.transforms import rotation_about
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Cylinder, Joint, Robot
+from arm_gazebo.build_report import BuildReport
+from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.gazebo_tags import GazeboTags, LinkTags
 from arm_gazebo.robot.link_geometry import COLLISION_GROUP, set_friction
-from arm_gazebo.spec.names import free_name
-from arm_gazebo.spec.report import BuildReport
 
 Array = NDArray[np.float64]
 

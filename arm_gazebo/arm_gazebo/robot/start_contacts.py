@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.robot.collision_policy import jointed_pairs
 from arm_gazebo.robot.floor_contact import lowest_points
-from arm_gazebo.spec.report import BuildReport
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 LEVEL = 1.0 - 1e-9

@@ -22,9 +22,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.build_report import BuildReport
+from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.floor_contact import lowest_points
-from arm_gazebo.spec.names import free_name
-from arm_gazebo.spec.report import BuildReport
 
 Array = NDArray[np.float64]
 GEOM = mujoco.mjtGeom

@@ -31,6 +31,7 @@ from arm_gazebo.hardware.simulated_sensors import SensorFeed, SimulatedSensor
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.physics.tick import SimulationTick
+from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.recording.session import RunParts
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.fault_parameter import FaultParameter
@@ -39,7 +40,6 @@ from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.run_recording import RunRecording
 from arm_gazebo.run.settings import SimulationSettings, read_above_zero, read_settings
 from arm_gazebo.run.world import AssembledWorld, assemble_world
-from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.feed import WindowFeed

@@ -10,7 +10,9 @@ from rclpy.node import Node
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_gazebo.camera.feed import CameraFeed
+from arm_gazebo.mjcf.size import MemoryLimit
 from arm_gazebo.physics.statistics import SimulationStatistics
+from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.ros.entity_services import EntityServices
 from arm_gazebo.ros.run_services import RunServices
 from arm_gazebo.ros.snapshot_services import SnapshotServices
@@ -18,8 +20,6 @@ from arm_gazebo.ros.statistics_publisher import StatisticsPublisher
 from arm_gazebo.ros.step_services import StepServices
 from arm_gazebo.ros.world_marker_publisher import WorldMarkerPublisher
 from arm_gazebo.run.world import AssembledWorld
-from arm_gazebo.spec.mjcf_size import MemoryLimit
-from arm_gazebo.spec.physics_timing import PhysicsTiming
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.state.run_reset import RunReset
 from arm_gazebo.state.snapshots import SnapshotStore

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from arm_gazebo.mjcf.size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_gazebo.rendering.backend_selection import PREFERENCES
 from arm_gazebo.run.robot_settings import Parameters, RobotSettings, read_robots
-from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_node.parameter_values import (
     NumberReader,
     one_of,

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.world_path import find_world
 from arm_gazebo.mesh.cache import cache_folder
+from arm_gazebo.mjcf.size import MemoryLimit
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.run.robot import AssembledRobot
 from arm_gazebo.run.settings import SimulationSettings
-from arm_gazebo.spec.mjcf_size import MemoryLimit
-from arm_gazebo.spec.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.world.loading import NamedWorld, named_world
 from arm_gazebo.world.spawn_model import ModelSource
 

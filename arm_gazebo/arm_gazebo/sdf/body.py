@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Link, Robot
+from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.robot.body_tree import BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import WORLD_CONTYPE, CollisionMasks
@@ -22,7 +23,6 @@ from arm_gazebo.robot.link_geometry import (
 from arm_gazebo.sdf.auto_inertia import auto_inertial
 from arm_gazebo.sdf.frames import pose_of
 from arm_gazebo.sdf.model import DEFAULT_INERTIAL, SdfModel, SdfPlane
-from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
 

@@ -15,9 +15,9 @@ from arm_description.mesh.data import Color
 from arm_description.transforms import rotation_from_quaternion, rotation_from_rpy, transform
 from arm_description.urdf.element import written_name
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.errors import WorldError
 from arm_gazebo.sdf.unread import NOT_SIMULATED, unread_outcome
-from arm_gazebo.spec.report import BuildOutcome, Finding
 from arm_node.user_file import read_text
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)

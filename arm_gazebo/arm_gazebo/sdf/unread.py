@@ -1,6 +1,6 @@
 """Decide which unread parts of an SDF file the user should hear about."""
 
-from arm_gazebo.spec.report import BuildOutcome
+from arm_gazebo.build_report import BuildOutcome
 
 SCENE_ELEMENTS = frozenset(
     {

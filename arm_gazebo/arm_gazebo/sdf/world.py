@@ -6,6 +6,7 @@ import mujoco
 
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Pose
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.sdf.body import add_model, add_plane
 from arm_gazebo.sdf.element import SdfElement, unread_findings
@@ -13,7 +14,6 @@ from arm_gazebo.sdf.include import is_sun
 from arm_gazebo.sdf.light import KINDS, add_light, add_sky, add_sun
 from arm_gazebo.sdf.model import SdfPlane, read_model
 from arm_gazebo.sdf.scope import NestedModel, SdfScope
-from arm_gazebo.spec.report import BuildReport
 
 GROUND_SIZE_M = 100.0
 GROUND_COLOR = (0.8, 0.8, 0.8, 1.0)

@@ -10,6 +10,7 @@ import numpy as np
 
 from arm_description.urdf.document import Description, as_document
 from arm_description.urdf.robot import Pose
+from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.camera import (
     DEFAULT_CLIP,
     DEFAULT_HFOV,
@@ -29,7 +30,6 @@ from arm_gazebo.sensors.tags import (
     sensor_elements,
     unique_names,
 )
-from arm_gazebo.spec.report import Finding
 
 logger = logging.getLogger(__name__)
 

@@ -6,12 +6,12 @@ from typing import Any
 
 from arm_description.urdf.document import Description, as_document
 from arm_description.urdf.robot import Robot
+from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.force_torque import ForceTorqueSensor
 from arm_gazebo.sensors.imu import ImuSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
 from arm_gazebo.sensors.tags import SensorTags, sensor_elements, unique_names
-from arm_gazebo.spec.report import Finding
 
 SENSORS: Mapping[str, type[LinkSensor]] = {
     sensor.type: sensor for sensor in (ImuSensor, ForceTorqueSensor, ContactSensor)

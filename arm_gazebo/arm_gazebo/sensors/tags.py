@@ -7,8 +7,8 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any, Protocol
 
 from arm_description.urdf.element import written_name
+from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.errors import SensorError
-from arm_gazebo.spec.report import BuildOutcome, Finding
 
 COLOR_FORMATS = ("R8G8B8", "RGB_INT8", "rgb8")
 FRAME_TAGS = ("optical_frame_id", "gz_frame_id", "ignition_frame_id")

@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.spec.names import free_name
 from arm_gazebo.world.changes import WorldChanges
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_node.names import listing

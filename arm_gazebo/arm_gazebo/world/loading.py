@@ -10,15 +10,15 @@ from pathlib import Path
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.resources import resolve_uri
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.launching.world_path import find_world, shipped_worlds
+from arm_gazebo.mjcf.references import check_readable
+from arm_gazebo.mjcf.size import check_mjcf_size
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
 from arm_gazebo.robot.part import RobotInWorld
-from arm_gazebo.spec.mjcf_references import check_readable
-from arm_gazebo.spec.mjcf_size import check_mjcf_size
-from arm_gazebo.spec.report import BuildOutcome, BuildReport
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import WORLD_PROCESSOR_S, MjcfTrial

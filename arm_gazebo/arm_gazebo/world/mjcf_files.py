@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from arm_gazebo.spec.mjcf_references import check_readable, references
+from arm_gazebo.mjcf.references import check_readable, references
 from arm_gazebo.world.refusal import Refusal, RequestError
 
 

@@ -15,9 +15,13 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
 from arm_description.xacro.expansion import expand_xacro_file
+from arm_gazebo.build_report import BuildReport, Finding
 from arm_gazebo.errors import GazeboError, MeshError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
+from arm_gazebo.mjcf.names import name_elements
+from arm_gazebo.mjcf.size import SPAWN_LIMIT, MemoryLimit, check_mjcf_size
+from arm_gazebo.model.world_file import report_margins
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import exclude_neighbour_contacts, exclude_own_contacts
 from arm_gazebo.robot.gazebo_tags import GazeboTags, parse_gazebo_tags
@@ -28,10 +32,6 @@ from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.include import sdf_file_in
 from arm_gazebo.sdf.model import read_model
 from arm_gazebo.sdf.scope import SdfScope
-from arm_gazebo.spec.contact_margins import report_margins
-from arm_gazebo.spec.mjcf_size import SPAWN_LIMIT, MemoryLimit, check_mjcf_size
-from arm_gazebo.spec.names import name_elements
-from arm_gazebo.spec.report import BuildReport, Finding
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import MjcfTrial

@@ -16,9 +16,9 @@ from arm_gazebo.feed.socket_pair import ModelMessage
 from arm_gazebo.feed.state_feed import compiled_model
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.rendering.backend_selection import backend_order, open_renderer
 from arm_gazebo.sensors.camera_reader import parse_cameras
-from arm_gazebo.spec.physics_timing import physics_timing
 
 pytestmark = pytest.mark.gl
 

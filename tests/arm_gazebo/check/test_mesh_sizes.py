@@ -4,9 +4,9 @@ import pytest
 import trimesh
 
 from arm_description import ResourceFinder
+from arm_gazebo.build_report import BuildOutcome
 from arm_gazebo.check.description import check_description
 from arm_gazebo.robot.part import BuildOptions
-from arm_gazebo.spec.report import BuildOutcome
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 

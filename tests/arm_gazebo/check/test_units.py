@@ -3,8 +3,8 @@
 import pytest
 
 from arm_description.urdf.parser import parse_urdf
+from arm_gazebo.build_report import BuildOutcome
 from arm_gazebo.check.description import check_description
-from arm_gazebo.spec.report import BuildOutcome
 
 INERTIAL = '<inertial><mass value="{mass}"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/></inertial>'
 ROBOT = """<robot name="r"{robot}>

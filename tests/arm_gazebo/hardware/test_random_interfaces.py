@@ -16,7 +16,7 @@ from arm_control.hardware.info import (
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SensorStates
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 KINDS = ("position", "velocity", "effort")
 COMMANDS = (*KINDS, "max_effort")

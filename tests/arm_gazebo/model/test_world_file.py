@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.model.world_file import load_world
 from arm_gazebo.sensors.camera_reader import parse_cameras
-from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 FRONT_CAMERA_SEES = {
     "purple_sphere",

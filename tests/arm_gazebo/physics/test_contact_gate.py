@@ -4,7 +4,7 @@ import pytest
 
 from arm_description.urdf.robot import Pose
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 FLOOR = '<geom type="plane" size="0 0 1"/>'
 FAR_AWAY = '<geom type="box" size="0.1 0.1 0.1" pos="50 0 0.1"/>'

@@ -6,7 +6,7 @@ import pytest
 
 from arm_gazebo.errors import TimingError
 from arm_gazebo.physics.simulation import Simulation
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 
 @pytest.mark.parametrize("rate_hz", [30, 100, 225, 500, 1000])

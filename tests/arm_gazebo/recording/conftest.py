@@ -13,12 +13,12 @@ from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import SwitchRequest
 from arm_gazebo.model.saved_model import SavedModel
 from arm_gazebo.physics.tick import SimulationTick
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.recording.recorded_run import RecordedRobot, RecordedRun, rebuild
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.replay import Replay, ReplayResult
 from arm_gazebo.recording.run_file import RunFile, RunFileWriter
 from arm_gazebo.run.robot_settings import RobotSettings
-from arm_gazebo.spec.physics_timing import physics_timing
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.state.made_with import made_with
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor

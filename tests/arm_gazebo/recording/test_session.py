@@ -8,11 +8,11 @@ from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics.tick import SimulationTick
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_gazebo.recording.session import RunParts, begin_recording, end_recording
 from arm_gazebo.run.robot import AssembledRobot
-from arm_gazebo.spec.physics_timing import physics_timing
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource

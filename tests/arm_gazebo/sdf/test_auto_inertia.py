@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.report import BuildReport
 
 CUBE = "<box><size>1 1 1</size></box>"
 CORNERS = "v 0 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 0\n"

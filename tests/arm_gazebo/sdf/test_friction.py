@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.report import BuildReport
 
 INERTIAL = (
     "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.02</izz></inertia>"

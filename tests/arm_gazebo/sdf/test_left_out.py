@@ -4,8 +4,8 @@ import logging
 
 import pytest
 
+from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 BODY = '<link name="l">{}</link>'
 SHAPE = '<visual name="v"><geometry>{}</geometry></visual>'

@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.report import BuildReport
 
 BOX = "<geometry><box><size>0.2 0.2 0.2</size></box></geometry>"
 LINK = f'<link name="{{}}"><collision name="c">{BOX}</collision></link>'

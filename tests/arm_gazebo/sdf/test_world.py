@@ -4,10 +4,10 @@ import mujoco
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.errors import WorldError
 from arm_gazebo.model.world_file import load_world
 from arm_gazebo.sdf.world import read_sdf_world
-from arm_gazebo.spec.report import BuildOutcome, BuildReport
 
 GROUND = """<model name="ground_plane"><static>true</static><link name="link">
   <collision name="collision"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane>

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from arm_gazebo.build_report import Finding
 from arm_gazebo.camera.info import Intrinsics
 from arm_gazebo.errors import SensorError
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
-from arm_gazebo.spec.report import Finding
 
 INTRINSICS = "<lens><intrinsics>{}</intrinsics></lens>"
 WRITTEN = INTRINSICS.format("<fx>700</fx><fy>600</fy><cx>300</cx><cy>250</cy><s>0</s>")

@@ -12,9 +12,9 @@ from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
-from arm_gazebo.spec.physics_timing import physics_timing
 
 RATE_HZ = 100.0
 G = 9.81

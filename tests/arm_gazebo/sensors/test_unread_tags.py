@@ -3,9 +3,9 @@
 import pytest
 
 from arm_description.urdf.parser import parse_urdf
+from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors
-from arm_gazebo.spec.report import Finding
 
 ROBOT = """<robot name="r"><link name="base"/><link name="l"><collision><geometry>
 <sphere radius="1"/></geometry></collision></link><link name="o"/>

@@ -27,10 +27,10 @@ from arm_gazebo.launching.robot_setup import RobotSetup, set_up_robot
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.simulation import Simulation
 from arm_gazebo.physics.tick import SimulationTick
+from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
-from arm_gazebo.spec.physics_timing import physics_timing
 from arm_gazebo.state.complete_state import CompleteState
 
 RATE_HZ = 100

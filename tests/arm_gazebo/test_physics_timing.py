@@ -1,7 +1,7 @@
 import pytest
 
 from arm_gazebo.errors import TimingError
-from arm_gazebo.spec.physics_timing import physics_timing
+from arm_gazebo.physics_timing import physics_timing
 
 
 @pytest.mark.parametrize(

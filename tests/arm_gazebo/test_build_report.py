@@ -1,6 +1,6 @@
 import logging
 
-from arm_gazebo.spec.report import BuildReport
+from arm_gazebo.build_report import BuildReport
 
 
 def test_findings_are_sentences_with_their_line():

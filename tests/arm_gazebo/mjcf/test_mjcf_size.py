@@ -6,8 +6,8 @@ import mujoco
 import pytest
 
 from arm_gazebo.errors import ModelError, WorldError
+from arm_gazebo.mjcf.size import MemoryLimit, check_mjcf_size
 from arm_gazebo.model.world_file import load_world
-from arm_gazebo.spec.mjcf_size import MemoryLimit, check_mjcf_size
 
 LIMIT = MemoryLimit(500.0, "world_memory_limit")
 WORLD = "<mujoco>{outside}<asset>{assets}</asset><worldbody>{inside}</worldbody></mujoco>"

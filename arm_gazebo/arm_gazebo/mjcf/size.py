@@ -15,7 +15,7 @@ import lxml.etree as etree
 
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import ModelError
-from arm_gazebo.spec.mjcf_references import FILES
+from arm_gazebo.mjcf.references import FILES
 from arm_node.user_file import open_file, read_text
 
 

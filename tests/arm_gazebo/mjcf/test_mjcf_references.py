@@ -5,8 +5,8 @@ import os
 import pytest
 
 from arm_gazebo.errors import ModelError, WorldError
+from arm_gazebo.mjcf.references import check_readable, references
 from arm_gazebo.model.world_file import load_world
-from arm_gazebo.spec.mjcf_references import check_readable, references
 
 
 def mjcf(inside):

@@ -1,1 +1,0 @@
-"""Shared by all code that writes a MuJoCo specification: names, report, sizes, timing."""
