@@ -17,7 +17,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 
@@ -38,9 +38,7 @@ class Bench:
         info = parse_hardware_info(text)
         timing = physics_timing(rate_hz)
         options = BuildOptions(step_s=timing.step_s)
-        self.simulation = Simulation(
-            build_model(parse_urdf(text), info, (), world, options), timing
-        )
+        self.simulation = Physics(build_model(parse_urdf(text), info, (), world, options), timing)
         self.hardware = SimulatedHardware(self.simulation, info[0])
         self.states = np.zeros(len(self.hardware.state_interfaces))
         self.commands = np.zeros(len(self.hardware.command_interfaces))

@@ -20,7 +20,7 @@ from arm_description.urdf.robot import Robot
 from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 
@@ -44,7 +44,7 @@ class Step:
         timing = physics_timing(rate_hz)
         built = build_model(robot, [hardware(robot)], options=BuildOptions(step_s=timing.step_s))
         self.warnings = built.report.warnings
-        self.simulation = Simulation(built, timing)
+        self.simulation = Physics(built, timing)
         self.rate_hz = rate_hz
         self.joints = self.simulation.servo.joints
         self._addresses = [joint.qpos_address for joint in self.joints]

@@ -20,7 +20,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.mjcf.size import BYTES_PER_CELL
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.world.changes import Spawned, WorldChanges, changed_model
@@ -43,13 +43,13 @@ TICKS = 500
 CHANGES = 20
 
 
-def simulation(world: str) -> Simulation:
+def simulation(world: str) -> Physics:
     """Return the arm in a world, at 100 Hz."""
     text = expand_xacro(ARM, {"camera": "none"})
     timing = physics_timing(100)
     options = BuildOptions(step_s=timing.step_s)
     built = build_model(parse_urdf(text), parse_hardware_info(text), (), world, options)
-    return Simulation(built, timing)
+    return Physics(built, timing)
 
 
 def timed_ms(action: Callable[[], object]) -> float:
@@ -59,13 +59,13 @@ def timed_ms(action: Callable[[], object]) -> float:
     return (time.perf_counter() - start_s) * 1e3
 
 
-def step_us(running: Simulation) -> float:
+def step_us(running: Physics) -> float:
     """Return what a physics step costs, the median of many ticks."""
     steps = running.timing.steps
     return median(timed_ms(running.advance) for _ in range(TICKS)) / steps * 1e3
 
 
-def crates(running: Simulation, count: int) -> WorldChanges:
+def crates(running: Physics, count: int) -> WorldChanges:
     """Return changes that put stacks of five crates beside the arm."""
     model = ModelSource(running.timing.step_s).read("", CRATE)
     changes = WorldChanges()
@@ -76,7 +76,7 @@ def crates(running: Simulation, count: int) -> WorldChanges:
     return changes
 
 
-def swap(running: Simulation, changes: WorldChanges) -> tuple[float, float]:
+def swap(running: Physics, changes: WorldChanges) -> tuple[float, float]:
     """Go on with changes; return the ms for the new model, and those on the loop's thread."""
     start_s = time.perf_counter()
     base = running.built

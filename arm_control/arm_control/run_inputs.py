@@ -9,7 +9,7 @@ and notes it.
 import inspect
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeGuard, TypeVar
 
 ArgumentsT = ParamSpec("ArgumentsT")
 ResultT = TypeVar("ResultT")
@@ -50,6 +50,13 @@ class InputTarget(Protocol):
 TargetT = TypeVar("TargetT", bound=InputTarget)
 Input = Callable[Concatenate[TargetT, ArgumentsT], ResultT]
 
+_MARK = "_is_run_input"
+
+
+def is_run_input(method: object) -> TypeGuard[Callable[..., object]]:
+    """Return whether `run_input` marks a method; a file may call no other."""
+    return getattr(method, _MARK, False) is True
+
 
 def run_input(method: Input[TargetT, ArgumentsT, ResultT]) -> Input[TargetT, ArgumentsT, ResultT]:
     """Mark a method as an input; its arguments must be plain values, see `state.encoding`."""
@@ -80,6 +87,7 @@ def run_input_noted_as(
             noted = note(arguments)
             return gate.give(self, method.__name__, noted, lambda: method(self, *args, **kwargs))
 
+        setattr(given, _MARK, True)
         return given
 
     return mark

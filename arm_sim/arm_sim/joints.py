@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.physics.simulation import Simulation as Physics
+from arm_gazebo.physics.physics import Physics
 from arm_sim.errors import UnknownNameError
 from arm_sim.user_traceback import ends_at_the_caller
 

@@ -5,7 +5,7 @@ from os import PathLike, fspath
 
 import numpy as np
 
-from arm_gazebo.physics.simulation import Simulation as Physics
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.world.changes import NOTHING, WorldChanges
 from arm_gazebo.world.contacts import Contact, bodies_of, contacts_of
 from arm_gazebo.world.editor import ModelHolder, SpawnRequest, WorldEditor

@@ -13,7 +13,7 @@ from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.camera import CameraSensor
@@ -155,7 +155,7 @@ class Bench:
         timing = physics_timing(rate_hz)
         self.rate_hz = rate_hz
         self.built = build(urdf, world, step_s=timing.step_s, **options)
-        self.simulation = Simulation(self.built, timing, hold_joints, proportional_gain)
+        self.simulation = Physics(self.built, timing, hold_joints, proportional_gain)
         self.hardware = SimulatedHardware(self.simulation, parse_hardware_info(urdf)[0])
         self.states = np.full(len(self.hardware.state_interfaces), math.nan)
         self.commands = np.full(len(self.hardware.command_interfaces), math.nan)

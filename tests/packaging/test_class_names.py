@@ -13,7 +13,6 @@ DEMANDED = {
     "IncludeLaunchDescription",  # An action and an event of ROS 2's launch.
     "Parameter",  # A description and a substitution of ROS 2's launch_ros.
     "Shutdown",  # An action and an event of ROS 2's launch.
-    "Simulation",  # The physics, and the library's front, which is what its users call it.
 }
 
 

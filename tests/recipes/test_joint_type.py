@@ -41,7 +41,7 @@ from arm_description.kinematics.inverse import InverseKinematics
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.launching.default_control import with_hardware
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.physics_timing import physics_timing
 
@@ -57,7 +57,7 @@ timing = physics_timing(100.0)
 built = build_model(
     parse_urdf(text), hardware_info, (), "empty", BuildOptions(step_s=timing.step_s)
 )
-simulation = Simulation(built, timing, True)
+simulation = Physics(built, timing, True)
 hardware = SimulatedHardware(simulation, hardware_info[0])
 states = np.zeros(len(hardware.state_interfaces))
 commands = np.zeros(len(hardware.command_interfaces))

@@ -73,7 +73,7 @@ READ = """\
 from arm_description import parse_urdf
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
 from arm_gazebo.physics_timing import physics_timing
@@ -84,7 +84,7 @@ sensors = parse_link_sensors(text, robot)
 timing = physics_timing(100.0)
 options = BuildOptions(step_s=timing.step_s)
 built = build_model(robot, (), (), "empty", options, sensors=sensors)
-sensor = SimulatedSensor(Simulation(built, timing, True), sensors[0])
+sensor = SimulatedSensor(Physics(built, timing, True), sensors[0])
 reading = sensor.read()
 """
 

@@ -41,7 +41,7 @@ def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     "broken",
     [
-        "arm_gazebo.physics.simulation.Simulation.__init__",
+        "arm_gazebo.physics.physics.Physics.__init__",
         "arm_control.manager.ros.controller_manager_server.ControllerManagerServer.__init__",
         "arm_gazebo.camera.feed.CameraFeed.start",
     ],

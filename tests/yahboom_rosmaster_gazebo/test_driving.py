@@ -16,7 +16,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions
@@ -44,7 +44,7 @@ class Rosmaster:
             options=BuildOptions(step_s=timing.step_s, base="free"),
             tags=parse_gazebo_tags(urdf),
         )
-        self.simulation = Simulation(built, timing)
+        self.simulation = Physics(built, timing)
         self.body = built.bodies["base_footprint"]
         self.hardware = SimulatedHardware(self.simulation, info)
         self.states = np.zeros(len(self.hardware.state_interfaces))

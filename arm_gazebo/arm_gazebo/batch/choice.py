@@ -7,7 +7,7 @@ from arm_gazebo.batch.gpu_device import check_device
 from arm_gazebo.batch.physics_batch import PhysicsBatch
 from arm_gazebo.batch.serial_batch import SerialBatch
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 HOST = "host"
 SERIAL_COPIES = 8
@@ -15,7 +15,7 @@ SERIAL_COPIES = 8
 
 
 def make_copies(
-    simulation: Simulation,
+    simulation: Physics,
     hardware: Sequence[SimulatedHardware],
     copies: int,
     threads: int = 0,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.errors import BatchError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -64,7 +64,7 @@ class CommandBounds:
         hardware: the hardware components, which know the bounds of claimed interfaces.
     """
 
-    def __init__(self, simulation: Simulation, hardware: Sequence[SimulatedHardware]) -> None:
+    def __init__(self, simulation: Physics, hardware: Sequence[SimulatedHardware]) -> None:
         count = len(simulation.servo.joints)
         self.lower, self.upper = np.full(count, -np.inf), np.full(count, np.inf)
         for component in hardware:
@@ -101,7 +101,7 @@ def rows_of(copies: Indices | Sequence[int] | None, count: int) -> Indices:
     return np.arange(count) if copies is None else np.asarray(copies, dtype=np.intp)
 
 
-def start_of(simulation: Simulation, model: mujoco.MjModel) -> mujoco.MjData:
+def start_of(simulation: Physics, model: mujoco.MjModel) -> mujoco.MjData:
     """Return the state in which copies of a simulation with this model start."""
     start = mujoco.MjData(model)
     start.qpos[:] = simulation.built.qpos

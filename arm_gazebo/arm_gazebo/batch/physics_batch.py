@@ -18,7 +18,7 @@ from arm_gazebo.batch.copies import (
     start_of,
 )
 from arm_gazebo.drives.servo_batch import ServoBatch
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.actuation import drive_slices
 
 POSITION_STAGE = mujoco.mjtStage.mjSTAGE_POS
@@ -28,7 +28,7 @@ NO_STAGE = mujoco.mjtStage.mjSTAGE_NONE
 class PhysicsBatch:
     """Copies of a simulation's robot and world, with its drives; see `Copies`.
 
-    Each copy advances as `Simulation` would with the same commands, bit for bit. MuJoCo's own pool
+    Each copy advances as `Physics` would with the same commands, bit for bit. MuJoCo's own pool
     of threads steps the copies; the drives' law is evaluated for all of them at once.
 
     Args:
@@ -43,7 +43,7 @@ class PhysicsBatch:
     """
 
     def __init__(
-        self, simulation: Simulation, bounds: CommandBounds, copies: int, threads: int = 0
+        self, simulation: Physics, bounds: CommandBounds, copies: int, threads: int = 0
     ) -> None:
         check_copies(copies)
         servo, self._bounds = simulation.servo, bounds
@@ -99,7 +99,7 @@ class PhysicsBatch:
             # Copied, because reading poses evaluates them again, and the drives read the last
             # step's.
             self._inertia[...], self._bias[...] = self._new_inertia, self._new_bias
-            # As in `Simulation.advance`: MuJoCo adds up its steps with their rounding errors.
+            # As in `Physics.advance`: MuJoCo adds up its steps with their rounding errors.
             self._periods += 1
             np.multiply(self._periods, self._period_s, out=self._time)
         self._poses_are_new = False

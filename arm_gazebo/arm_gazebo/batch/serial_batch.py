@@ -17,7 +17,7 @@ from arm_gazebo.batch.copies import (
     check_copies,
     rows_of,
 )
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 
 class SerialBatch:
@@ -30,7 +30,7 @@ class SerialBatch:
         copies: number of copies.
     """
 
-    def __init__(self, simulation: Simulation, bounds: CommandBounds, copies: int) -> None:
+    def __init__(self, simulation: Physics, bounds: CommandBounds, copies: int) -> None:
         check_copies(copies)
         self.copies = copies
         self._bounds = bounds
@@ -71,13 +71,13 @@ class SerialBatch:
         """Return positions of a body's frame in the world, shape (copies, 3); a copy."""
         return np.array([one.observe().xpos[body] for one in self._all])
 
-    def _look(self, row: int, one: Simulation) -> None:
+    def _look(self, row: int, one: Physics) -> None:
         self.qpos[row], self.qvel[row] = one.data.qpos, one.data.qvel
 
 
-def _copy_of(simulation: Simulation) -> Simulation:
+def _copy_of(simulation: Physics) -> Physics:
     built = replace(simulation.built, model=deepcopy(simulation.built.model))
-    return Simulation(
+    return Physics(
         built,
         simulation.timing,
         proportional_gain=simulation.servo.proportional_gain,

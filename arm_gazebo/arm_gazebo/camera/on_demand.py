@@ -18,7 +18,7 @@ from arm_gazebo.sensors.camera import CameraSensor
 if TYPE_CHECKING:
     import mujoco
 
-    from arm_gazebo.physics.simulation import Simulation
+    from arm_gazebo.physics.physics import Physics
     from arm_gazebo.rendering.renderer import Renderer
     from arm_gazebo.rendering.scene import RenderScene
 
@@ -42,7 +42,7 @@ class OnDemandCameras:
     """
 
     def __init__(
-        self, simulation: "Simulation", sensors: Sequence[CameraSensor], backend: str, seed: int
+        self, simulation: "Physics", sensors: Sequence[CameraSensor], backend: str, seed: int
     ) -> None:
         self._simulation = simulation
         self._sensors = tuple(sensors)

@@ -10,7 +10,7 @@ from arm_gazebo.errors import FaultError
 from arm_gazebo.faults.fault import Fault, FaultKind
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.faults import Distortion
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import SimulationTick
 from arm_node.names import listing
 
@@ -40,7 +40,7 @@ class FaultInjector:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         managers: Sequence[ControllerManager],
         tick: SimulationTick,
         sensors: Sequence[SimulatedSensor],

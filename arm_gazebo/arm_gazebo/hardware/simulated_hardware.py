@@ -13,7 +13,7 @@ from arm_control.hardware.info import HardwareInfo, InterfaceInfo
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_sensors import SensorStates, SimulatedSensor
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.actuation import RobotJoint
 from arm_node.index_slice import as_slice
 
@@ -66,7 +66,7 @@ class SimulatedHardware:
     """A hardware component of the robot description, driven by the simulation's servos.
 
     Implements `arm_control.Hardware`; call every method on the loop thread. The owner calls
-    `Simulation.advance` between `write` and `read`.
+    `Physics.advance` between `write` and `read`.
 
     Args:
         simulation: the simulation of the joints.
@@ -78,7 +78,7 @@ class SimulatedHardware:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         info: HardwareInfo,
         sensors: Sequence[SimulatedSensor] = (),
     ) -> None:
@@ -125,7 +125,7 @@ class SimulatedHardware:
         self._find_sources()
 
     def rebind(self) -> None:
-        """Read from the simulation's new model from now on; see `Simulation.swap`."""
+        """Read from the simulation's new model from now on; see `Physics.swap`."""
         joints = self._simulation.built.joints
         self._states = [(state, joints[joint.name]) for state, joint in self._states]
         self._find_sources()
@@ -246,7 +246,7 @@ class SimulatedHardware:
     def reset(self) -> None:
         """Set each claimed command to the value at which its joint stays put, and read the states.
 
-        Call it after `Simulation.reset`.
+        Call it after `Physics.reset`.
         """
         for interface in self._active:
             self._commands[interface.index] = self._neutral(interface)

@@ -16,7 +16,7 @@ from arm_gazebo.sensors.noise import SensorNoise
 from arm_node.index_slice import as_slice
 
 if TYPE_CHECKING:
-    from arm_gazebo.physics.simulation import Simulation
+    from arm_gazebo.physics.physics import Physics
 
 
 class SimulatedSensor:
@@ -31,7 +31,7 @@ class SimulatedSensor:
         seed: seed of the run's noise.
     """
 
-    def __init__(self, simulation: "Simulation", description: LinkSensor, seed: int = 0) -> None:
+    def __init__(self, simulation: "Physics", description: LinkSensor, seed: int = 0) -> None:
         self.description = description
         self._simulation = simulation
         self.channels = tuple(f"{description.name}/{name}" for name in description.channels)

@@ -9,7 +9,7 @@ import mujoco
 from arm_control.loop.clock import Clock, MonotonicClock
 from arm_control.loop.pacer import Pacer
 from arm_gazebo.feed.stream_count import StreamCount
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import TickCosts
 
 PHASES = tuple(field.name for field in fields(TickCosts) if field.name != "ticks")
@@ -65,7 +65,7 @@ class SimulationStatistics:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         costs: TickCosts,
         pacer: Pacer,
         streams: Sequence[Callable[[], Sequence[StreamCount]]] = (),

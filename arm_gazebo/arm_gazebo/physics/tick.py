@@ -8,7 +8,7 @@ import mujoco
 
 from arm_control.loop.clock import MonotonicClock
 from arm_control.manager.controller_manager import ControllerManager
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 
 class ClockPublisher(Protocol):
@@ -68,7 +68,7 @@ class SimulationTick:
     def __init__(
         self,
         managers: Sequence[ControllerManager],
-        simulation: Simulation,
+        simulation: Physics,
         clock: ClockPublisher,
         feeds: Sequence[Feed],
         period_s: float,

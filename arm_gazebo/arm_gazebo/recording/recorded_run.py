@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.model.saved_model import SavedModel
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.recording.run_file import RunFile
 from arm_gazebo.run.robot import AssembledRobot
@@ -34,8 +34,8 @@ class RecordedRun:
     Attributes:
         model: the model of the world with its robots, before a simulation changed it.
         timing: control period and physics step.
-        hold_joints: see `Simulation`.
-        proportional_gain: see `Simulation`.
+        hold_joints: see `Physics`.
+        proportional_gain: see `Physics`.
         seed: seed of the sensors' noise.
         robots: the robots.
     """
@@ -60,13 +60,13 @@ def run_of(file: RunFile) -> RecordedRun:
     return run
 
 
-def rebuild(run: RecordedRun) -> tuple[Simulation, list[AssembledRobot]]:
+def rebuild(run: RecordedRun) -> tuple[Physics, list[AssembledRobot]]:
     """Build a run again, as the simulation node does, without ROS.
 
     Raises:
         GazeboError, ArmControlError, DescriptionError: it cannot be built with what is here.
     """
-    simulation = Simulation(run.model.load(), run.timing, run.hold_joints, run.proportional_gain)
+    simulation = Physics(run.model.load(), run.timing, run.hold_joints, run.proportional_gain)
     robots = [AssembledRobot(robot.settings) for robot in run.robots]
     for robot, recorded in zip(robots, run.robots, strict=True):
         robot.drive(simulation, run.seed, recorded.manager, recorded.manager_name)

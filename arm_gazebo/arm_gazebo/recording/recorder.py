@@ -18,7 +18,7 @@ from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.state.encoding import NotPlainError
 from arm_gazebo.errors import GazeboError
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.recording.run_file import (
     Record,
     RecordedInput,
@@ -134,7 +134,7 @@ class RunRecorder:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         state: CompleteState,
         managers: Sequence[ControllerManager],
         loop: OnLoop,

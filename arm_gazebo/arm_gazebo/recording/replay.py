@@ -12,6 +12,7 @@ from arm_control.controllers.controller import ControllerContext
 from arm_control.errors import ArmControlError
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.registry import controller_class
+from arm_control.run_inputs import is_run_input
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError, RecordingError
 from arm_gazebo.model.saved_model import SavedModel
@@ -183,8 +184,8 @@ class Replay:
             elif recorded.method == "load_controller":
                 arguments["controller"] = _controller(robot, arguments)
         method = getattr(target, recorded.method, None)
-        if method is None or not hasattr(method, "__wrapped__"):
-            # Only marked inputs: a file from a stranger must not call anything else.
+        if not is_run_input(method):
+            # A file from a stranger must not call anything else.
             raise RecordingError(
                 f"{self._file.path}: there is no input '{recorded.method}' of "
                 f"{recorded.controller or 'the simulation'}"

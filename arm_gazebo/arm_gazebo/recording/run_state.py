@@ -10,7 +10,7 @@ import xxhash
 from numpy.typing import NDArray
 
 from arm_control.manager.controller_manager import ControllerManager
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 Row = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class StateRow:
         width: length of a row.
     """
 
-    def __init__(self, simulation: Simulation, managers: Sequence[ControllerManager]) -> None:
+    def __init__(self, simulation: Physics, managers: Sequence[ControllerManager]) -> None:
         self.data = simulation.data
         self._time_s = np.zeros(1)
         self._flags: list[tuple[Row, NDArray[np.bool_]]] = []

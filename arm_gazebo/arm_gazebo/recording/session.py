@@ -13,7 +13,7 @@ from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.saved_model import SavedModel
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.recording.recorded_run import (
     RecordedRobot,
@@ -40,12 +40,12 @@ class RunParts:
         tick: runs a control period.
         loop: runs the ticks.
         robots: the robots with their settings and those of their managers.
-        hold_joints: see `Simulation`.
-        proportional_gain: see `Simulation`.
+        hold_joints: see `Physics`.
+        proportional_gain: see `Physics`.
         seed: seed of the sensors' noise.
     """
 
-    simulation: Simulation
+    simulation: Physics
     state: CompleteState
     tick: SimulationTick
     loop: OnLoop

@@ -9,7 +9,7 @@ from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.run.robot import AssembledRobot
 from arm_gazebo.run.robot_settings import RobotSettings
 from arm_node.workarounds.process_clock import ProcessClock
@@ -42,7 +42,7 @@ class ManagedRobot:
         self.robot = AssembledRobot(settings)
         self.node = ControllerManagerNode(arguments, namespace=settings.namespace, clock=clock)
 
-    def drive(self, simulation: Simulation, seed: int) -> None:
+    def drive(self, simulation: Physics, seed: int) -> None:
         """Create hardware, sensors and manager before the loop runs.
 
         Args:

@@ -28,7 +28,7 @@ from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SensorFeed, SimulatedSensor
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import PhysicsTiming
@@ -148,7 +148,7 @@ def _serve_all(
 
 
 def _complete_state(
-    simulation: Simulation,
+    simulation: Physics,
     managers: Sequence[ControllerManager],
     feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
     clock: RosClockPublisher,
@@ -158,7 +158,7 @@ def _complete_state(
 
 
 def _statistics(
-    simulation: Simulation,
+    simulation: Physics,
     tick: SimulationTick,
     loop: ControlLoop,
     feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
@@ -178,7 +178,7 @@ def _remark(world: AssembledWorld) -> None:
 def _parts(
     robots: Sequence[ManagedRobot],
     settings: SimulationSettings,
-    simulation: Simulation,
+    simulation: Physics,
     state: CompleteState,
     tick: SimulationTick,
     loop: ControlLoop,
@@ -226,7 +226,7 @@ def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
 def _loop(
     process: NodeProcess,
     tick: SimulationTick,
-    simulation: Simulation,
+    simulation: Physics,
     settings: SimulationSettings,
     manager: ControllerManagerNode,
     outbox: Outbox,
@@ -255,7 +255,7 @@ def _is_set(node: Node, parameter: str) -> bool:
 
 
 def _answered_ticks(
-    tick: SimulationTick, simulation: Simulation, lock_step: LockStep
+    tick: SimulationTick, simulation: Physics, lock_step: LockStep
 ) -> Callable[[], None]:
     """Return a tick after which the partners' answers are awaited."""
 
@@ -363,7 +363,7 @@ def _supervise(
     node: Node,
     clock: RosClockPublisher,
     pacer: Pacer,
-    simulation: Simulation,
+    simulation: Physics,
     hardware: Sequence[SimulatedHardware],
     supervised: Sequence[CameraFeed | WindowFeed | RunRecording],
 ) -> None:

@@ -13,7 +13,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.run.robot_settings import RobotSettings
@@ -86,7 +86,7 @@ class AssembledRobot:
         )
 
     def drive(
-        self, simulation: Simulation, seed: int, settings: ManagerSettings, manager_name: str
+        self, simulation: Physics, seed: int, settings: ManagerSettings, manager_name: str
     ) -> None:
         """Create hardware, sensors and manager before the first tick.
 

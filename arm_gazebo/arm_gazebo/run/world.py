@@ -9,7 +9,7 @@ from arm_gazebo.launching.world_path import find_world
 from arm_gazebo.mesh.cache import cache_folder
 from arm_gazebo.mjcf.size import MemoryLimit
 from arm_gazebo.model.builder import build_world
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.run.robot import AssembledRobot
@@ -29,7 +29,7 @@ class AssembledWorld:
         left_out: the parts of the world that are not simulated, "" for none.
     """
 
-    simulation: Simulation
+    simulation: Physics
     entries: tuple[RobotInWorld, ...]
     named: NamedWorld
     left_out: str
@@ -70,9 +70,7 @@ def assemble_world(
     built = build_world(entries, settings.world)
     built.report.log(logging.getLogger("arm_gazebo"))
     named = named_world(find_world(settings.world), built.report)
-    simulation = Simulation(
-        built, timing, settings.hold_joints, settings.position_proportional_gain
-    )
+    simulation = Physics(built, timing, settings.hold_joints, settings.position_proportional_gain)
     return AssembledWorld(simulation, entries, named, built.report.left_out)
 
 

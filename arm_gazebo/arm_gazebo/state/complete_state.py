@@ -10,7 +10,7 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.run_inputs import InputGate, run_input
 from arm_control.state.encoding import decode, encode
 from arm_gazebo.feed.schedule import FrameSchedule
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import ClockPublisher, SilentClock
 
 DIGEST_BYTES = 16
@@ -46,7 +46,7 @@ class CompleteState:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         managers: Sequence[ControllerManager],
         feeds: Sequence[Scheduled] = (),
         clock: ClockPublisher | None = None,

@@ -11,7 +11,7 @@ import numpy as np
 from arm_gazebo.errors import GazeboError, WorldError
 from arm_gazebo.feed.state_feed import PreparedModel
 from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.world.changes import (
     NOTHING,
     Matrix,
@@ -101,7 +101,7 @@ class WorldEditor:
 
     def __init__(
         self,
-        simulation: Simulation,
+        simulation: Physics,
         on_loop: LoopCall,
         holders: Sequence[ModelHolder],
         feeds: Sequence[ModelFeed],

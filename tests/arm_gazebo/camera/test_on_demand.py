@@ -15,7 +15,7 @@ from arm_gazebo.feed.snapshot import CameraSnapshot
 from arm_gazebo.feed.socket_pair import ModelMessage
 from arm_gazebo.feed.state_feed import compiled_model
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.rendering.backend_selection import backend_order, open_renderer
 from arm_gazebo.sensors.camera_reader import parse_cameras
@@ -63,7 +63,7 @@ def test_a_picture_is_that_of_the_camera_process_with_its_noise():
     cameras = parse_cameras(document)
     hardware = parse_hardware_info(document)
     built = build_model(parse_urdf(document), hardware, cameras, world="objects")
-    simulation = Simulation(built, physics_timing(100.0))
+    simulation = Physics(built, physics_timing(100.0))
     for _ in range(10):
         simulation.advance()
     sink = Published()

@@ -15,7 +15,7 @@ from arm_control.hardware.info import (
 )
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SensorStates
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 
 KINDS = ("position", "velocity", "effort")
@@ -91,7 +91,7 @@ class Driven:
 def test_states_are_the_physics_and_commands_reach_their_joint(parts, declared):
     urdf = description(parts, declared)
     timing = physics_timing(100.0)
-    simulation = Simulation(parts.build(urdf, step_s=timing.step_s), timing)
+    simulation = Physics(parts.build(urdf, step_s=timing.step_s), timing)
     arm = Driven(simulation, parse_hardware_info(urdf)[0])
     hardware = arm.hardware
     assert hardware.state_interfaces == tuple(f"{n}/{s}" for n, _, kinds in declared for s in kinds)

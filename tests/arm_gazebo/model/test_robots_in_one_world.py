@@ -10,7 +10,7 @@ from arm_description.urdf.robot import Pose
 from arm_gazebo.errors import ModelError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.model.builder import build_world
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.robot.placed_description import placed
@@ -73,7 +73,7 @@ def test_robots_that_hold_a_link_called_world_are_put_in_places_too(parts):
 
 def test_each_follows_its_own_commands(pair):
     timing = physics_timing(100)
-    simulation = Simulation(build_world(pair), timing)
+    simulation = Physics(build_world(pair), timing)
     components = [SimulatedHardware(simulation, info) for e in pair for info in e.hardware]
     values = []
     for component in components:

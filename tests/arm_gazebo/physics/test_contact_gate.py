@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from arm_description.urdf.robot import Pose
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 
 FLOOR = '<geom type="plane" size="0 0 1"/>'
@@ -87,7 +87,7 @@ def test_a_margin_pushes_as_if_they_were_always_on(bench, parts, world, shape):
         if shape == "ball":
             built.model.geom_margin[built.model.geom_bodyid > 0] = 0.3
             mujoco.mj_setConst(built.model, mujoco.MjData(built.model))
-        simulation = Simulation(built, physics_timing(100.0))
+        simulation = Physics(built, physics_timing(100.0))
         heights = []
         for _ in range(150):
             simulation.advance()

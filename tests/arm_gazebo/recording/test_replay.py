@@ -1,3 +1,4 @@
+import functools
 import math
 from dataclasses import replace
 
@@ -212,6 +213,31 @@ def test_a_file_can_call_nothing_but_inputs(recorded, replayed, parts, change, m
     difference = replayed(path).difference
     assert difference is not None
     assert message in difference.lines[0]
+
+
+def test_a_method_with_another_decorator_is_no_input(recorded, replayed, parts, monkeypatch):
+    def logged(method):
+        @functools.wraps(method)
+        def call(self, *args, **kwargs):
+            return method(self, *args, **kwargs)
+
+        return call
+
+    def forget(self, values):
+        raise AssertionError("a recording has called it")
+
+    run = recorded(parts.pendulum())
+    controller = run.start_controller("pos", FORWARD, joints=("j",))
+    controller.offer([0.5])
+    run.run(2)
+    monkeypatch.setattr(type(controller), "forget", logged(forget), raising=False)
+
+    def change(record: RecordedInput) -> RecordedInput:
+        return replace(record, method="forget") if record.method == "offer" else record
+
+    difference = replayed(rewritten(run.finish(), change)).difference
+    assert difference is not None
+    assert "no input 'forget' of pos" in difference.lines[0]
 
 
 def test_a_recording_without_a_run_is_a_sentence(tmp_path):

@@ -6,7 +6,7 @@ import pytest
 from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.recording.replay import Replay
@@ -32,7 +32,7 @@ class RunningArm:
         settings = robot_settings(parts.arm())
         timing = physics_timing(100.0)
         built = parts.build(settings.robot_description, "objects", step_s=timing.step_s)
-        self.simulation = Simulation(built, timing)
+        self.simulation = Physics(built, timing)
         robot = AssembledRobot(settings)
         robot.drive(self.simulation, 0, ManagerSettings(), MANAGER)
         self.tick = SimulationTick(

@@ -1,5 +1,6 @@
 """`arm sim replay` and `arm sim diff` on recordings."""
 
+import functools
 from pathlib import Path
 
 import pytest
@@ -65,10 +66,10 @@ def _doubled(module_name: str):
 
     original = importlib.import_module(module_name).ForwardCommander.offer
 
+    @functools.wraps(original)
     def offer(self, values):
         return original(self, [2 * value for value in values])
 
-    offer.__wrapped__ = original
     return offer
 
 

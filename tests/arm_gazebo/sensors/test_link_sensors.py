@@ -11,7 +11,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.reader import parse_link_sensors
@@ -49,7 +49,7 @@ class Lab:
             options=BuildOptions(step_s=timing.step_s, **options),
             sensors=sensors,
         )
-        self.simulation = Simulation(built, timing, hold_joints)
+        self.simulation = Physics(built, timing, hold_joints)
         self.sensors = {s.name: SimulatedSensor(self.simulation, s, seed) for s in sensors}
         self.hardware = [
             SimulatedHardware(self.simulation, info, list(self.sensors.values()))

@@ -25,7 +25,7 @@ from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SensorFeed, SimulatedSensor
 from arm_gazebo.launching.robot_setup import RobotSetup, set_up_robot
 from arm_gazebo.model.builder import build_model
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
@@ -111,7 +111,7 @@ class RunningRobot:
             tags=parse_gazebo_tags(urdf),
             sensors=described,
         )
-        self.simulation = Simulation(built, timing)
+        self.simulation = Physics(built, timing)
         sensors = [SimulatedSensor(self.simulation, sensor, seed=7) for sensor in described]
         self.hardware = [SimulatedHardware(self.simulation, info, sensors) for info in hardware]
         self.manager = ControllerManager(self.hardware, RATE_HZ)

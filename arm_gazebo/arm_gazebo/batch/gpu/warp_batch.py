@@ -26,7 +26,7 @@ from arm_gazebo.batch.gpu.room import check_overflow, room_of
 from arm_gazebo.batch.gpu.rows import read_column, write_rows
 from arm_gazebo.batch.gpu.servo_warp import ServoWarp
 from arm_gazebo.batch.gpu_device import GPU, HOST_COMPILED, explained
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 
 SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
@@ -55,7 +55,7 @@ class WarpBatch:
     """
 
     def __init__(
-        self, simulation: Simulation, bounds: CommandBounds, copies: int, device: str = GPU
+        self, simulation: Physics, bounds: CommandBounds, copies: int, device: str = GPU
     ) -> None:
         check_copies(copies)
         self.copies, self._bounds, self._device = copies, bounds, device

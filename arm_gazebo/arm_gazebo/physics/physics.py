@@ -48,7 +48,7 @@ def _describe_swap(arguments: Mapping[str, Any]) -> Mapping[str, object]:
     return {"model": following.saved, "roots": following.roots}
 
 
-class Simulation:
+class Physics:
     """Advances a model by control periods; used by one thread.
 
     Args:
@@ -316,7 +316,7 @@ def _has_reset_itself(data: mujoco.MjData) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class NextModel:
-    """A model that the simulation can switch to without delay; see `Simulation.prepare`.
+    """A model that the simulation can switch to without delay; see `Physics.prepare`.
 
     Attributes:
         saved: the model before the simulation changed it; None if no run was recorded then.

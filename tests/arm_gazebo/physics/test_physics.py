@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.errors import TimingError
-from arm_gazebo.physics.simulation import Simulation
+from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 
 
@@ -28,7 +28,7 @@ def test_the_time_is_a_number_of_periods_however_long_it_goes(bench, parts):
 def test_model_of_another_step_is_refused(parts):
     built = parts.build(parts.pendulum(), step_s=0.001)
     with pytest.raises(TimingError, match=r"built with a physics step of 0\.001 s, .* 0\.002 s"):
-        Simulation(built, physics_timing(100))
+        Physics(built, physics_timing(100))
 
 
 def test_same_commands_give_the_same_run(bench, parts):
@@ -107,6 +107,6 @@ def test_arm_pushes_a_thing_that_lies_still(bench, parts):
 
 def test_robot_that_cannot_move_is_simulated(parts):
     built = parts.build(parts.robot(parts.link("base", 1.0)))
-    simulation = Simulation(built, physics_timing(100))
+    simulation = Physics(built, physics_timing(100))
     simulation.advance()
     assert simulation.time_s == pytest.approx(0.01)
