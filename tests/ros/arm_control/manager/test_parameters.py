@@ -246,19 +246,6 @@ def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager
     assert "Traceback" not in program.output
 
 
-def test_a_parameter_of_a_type_that_does_not_exist_is_refused(control: Any, client: Any) -> None:
-    from rcl_interfaces.msg import Parameter, ParameterValue
-    from rcl_interfaces.srv import SetParameters
-
-    assert control.states() == {}
-    request = SetParameters.Request(
-        parameters=[Parameter(name="update_rate", value=ParameterValue(type=77))]
-    )
-    (result,) = client.call(SetParameters, "/controller_manager/set_parameters", request).results
-    assert not result.successful
-    assert result.reason == "parameter 'update_rate' has type 77; the types are 0 to 9"
-
-
 def test_a_controller_with_a_name_of_300_characters_is_refused(control: Any) -> None:
     assert not control.load("a" * 300)
     assert control.states() == {}
