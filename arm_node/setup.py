@@ -31,5 +31,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [],
+        "launch_py.preloads": [
+            "lazy_messages = arm_node.workarounds.lazy_messages:import_messages_lazily",
+        ],
     },
 )

@@ -69,6 +69,15 @@ import physics_speed
 bench = physics_speed.Bench(100.0, "empty")
 print(physics_speed.best_us(bench.tick))
 """
+IMPORT = """
+from arm_node.environment import prepare_environment
+prepare_environment()
+import rclpy.executors, rclpy.node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+import time
+print(time.process_time())
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,6 +175,12 @@ def readable_files() -> float:
         return sum(bool(path.stat().st_mode & 0o044) for path in ours if path.exists())
 
 
+def import_s() -> float:
+    """Return the processor time of a process that imports what a plain node needs."""
+    said = subprocess.run([sys.executable, "-c", IMPORT], check=True, capture_output=True).stdout
+    return float(said)
+
+
 def build_s() -> float:
     """Return how long pip takes to build arm_interfaces."""
     with tempfile.TemporaryDirectory() as folder:
@@ -221,6 +236,9 @@ FIGURES = {
     ),
     "readable": Figure(
         "files in shared memory that all users may read", "", readable_files, ("private_files",)
+    ),
+    "import": Figure(
+        "processor time of importing rclpy and two messages", "s", import_s, ("lazy_messages",)
     ),
     "build": Figure("build of arm_interfaces", "s", build_s, OF_THE_BUILD),
 }

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import MutableMapping, Sequence
 from pathlib import Path
 
+from arm_node.workarounds.lazy_messages import import_messages_lazily
 from arm_node.workarounds.torn_ports import remove_torn_ports
 
 INTERFACE_PACKAGES = (
@@ -69,6 +70,7 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
             "or source a ROS 2 Jazzy that has them"
         )
     remove_torn_ports()
+    import_messages_lazily()
 
 
 def _check_domain(text: str) -> None:

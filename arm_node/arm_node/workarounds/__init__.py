@@ -19,6 +19,7 @@ them; see `switch`.
 | process_clock        | as above, for each node of the simulation   | rclpy 7.1        | [1378]   |
 | serialized_goals     | a large goal stops the control loop         | rclpy 7.1        | [836]    |
 | parameter_types      | an unknown parameter type gets no answer    | rclpy 7.1        |          |
+| lazy_messages        | one message imports all of its package      | rclpy 7.1        |          |
 | profiler             | MuJoCo reads the clock 20 times in a step   | MuJoCo 4.0       |          |
 | parse_cache          | every generator parses every definition     | rosidl 4.6       |          |
 | template_cache       | EmPy scans every template for every file    | EmPy 4           |          |

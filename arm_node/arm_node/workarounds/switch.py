@@ -83,6 +83,7 @@ LIBRARIES: Mapping[str, Library] = {
     "process_clock": RCLPY,
     "joint_state_encoding": RCLPY,
     "parameter_types": RCLPY,
+    "lazy_messages": RCLPY,
     "serialized_goals": RCLPY,
     "profiler": MUJOCO,
 }

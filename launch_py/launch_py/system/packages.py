@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +33,8 @@ STAND_INS = "launch_py.packages"
 """Group of entry points: the name of a ROS package, and the package that replaces it."""
 NODES = "launch_py.nodes"
 """Group of entry points: the name of a console script, and the name of the node that it creates."""
+PRELOADS = "launch_py.preloads"
+"""Group of entry points: functions that Python executables call before their own imports."""
 
 SHARE = re.compile(r"\$\(find-pkg-share (\w+)\)")
 LAUNCH_ENDINGS = (".py", ".launch", "launch.xml", "launch.yaml", "launch.yml")
@@ -112,18 +114,23 @@ class ConsoleScript:
         """The package it belongs to: the top-level package of its module."""
         return self.module.partition(".")[0]
 
-    def command(self) -> tuple[str, ...]:
+    def command(self, preloads: Iterable[str] = ()) -> tuple[str, ...]:
         """Return the command line that runs it with this Python.
+
+        Args:
+            preloads: functions to call first, as "module:function".
 
         It does not use `-m`, which imports runpy (a few milliseconds) and does nothing if the
         module has no `__main__` part. `-P` keeps the current folder off sys.path. SIGINT during the
         imports ends the process silently, because there is nothing to clean up yet.
         """
         top = self.function.partition(".")[0]
+        called = (preload.partition(":")[::2] for preload in preloads)
+        first = "".join(f"from {module} import {name}; {name}(); " for module, name in called)
         code = (
             f"import signal, sys; sys.argv[0] = {self.name!r}; "
             "interrupted = signal.signal(signal.SIGINT, signal.SIG_DFL); "
-            f"from {self.module} import {top}; "
+            f"{first}from {self.module} import {top}; "
             f"signal.signal(signal.SIGINT, interrupted); sys.exit({self.function}())"
         )
         return (sys.executable, "-P", "-c", code)
@@ -227,7 +234,7 @@ class Packages:
         own = [script for script in scripts if script.package == package]
         for script in own:
             if script.name == name:
-                return script.command()
+                return script.command(target for _, target in self._entry_points(PRELOADS))
         folders = [
             os.path.join(prefix, "lib", package)
             for prefix in self._prefixes
