@@ -31,7 +31,7 @@ from arm_controller.ros.publisher_terminal import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_gazebo.ros.fault_parameter import declare_faults
-from arm_gazebo.run.settings import read_settings
+from arm_gazebo.run.settings import simulation_settings
 from arm_node.parameters import declare
 from arm_viewer.ros.viewer import Viewer
 
@@ -151,7 +151,7 @@ def node_parameters_page() -> str:
     ]
     with _quiet_ros():
         node = Node("arm_gazebo")
-        read_settings(partial(declare, node))
+        simulation_settings(partial(declare, node))
         declare_faults(node)
         lines += _section(
             node,

@@ -5,6 +5,9 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from arm_gazebo.run.robot_settings import RobotSettings
+from arm_gazebo.run.settings import SimulationSettings
+from arm_node.setting import settings_of
 from launch_py import (
     Action,
     AppendEnvironmentVariable,
@@ -30,99 +33,84 @@ if TYPE_CHECKING:
 
 MODEL_PATH = "GZ_SIM_RESOURCE_PATH"
 """The environment variable with Gazebo's model folders."""
-ROBOT_ARGUMENTS = {
-    "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
-    "controllers": (
-        "",
-        "parameter file of the controller manager and its controllers, where ${name} or "
-        "$(var name) is an argument of the model; by default a position controller",
-    ),
-    "spawn": (
-        "auto",
-        "controllers to start with the simulation, separated by commas; auto starts those whose "
-        "joints are not claimed yet, in the file's order, and leaves out those that cannot start",
-    ),
-    "package_path": (
-        "",
-        "folders for package:// and $(find ...), separated by colons; searched after the model's "
-        "own package and before its neighbours and the installed packages",
-    ),
-    "namespace": ("", "namespace of all nodes of the robot"),
-    "base": ("fixed", "bolted down, or standing free on its foot", ["fixed", "free"]),
-    "pose": ("", 'pose of the root in the world, in m and rad: "[x, y, z, roll, pitch, yaw]"'),
-    "robots": (
-        "",
-        "YAML file of several robots in one world, instead of a model: NAMESPACE: {model: FILE, "
-        "and model_args, controllers, spawn, package_path, base, pose}",
-    ),
-    "copies": (
-        "1",
-        "copies of the robot in one world, on a square grid, each in a namespace of its own: the "
-        "robot's name, or `namespace`, with _0, _1 and so on",
-    ),
-    "copy_spacing": ("1.0", "distance of neighbours on that grid, in m; the first is at `pose`"),
-}
-
-SIMULATION_ARGUMENTS = {
-    "world": (
-        "empty",
-        "empty, objects, shapes, pick_and_place_demo, house, or a MuJoCo XML or SDF file",
-    ),
-    "real_time_factor": ("1.0", "ratio of simulation time to wall time; 0 is as fast as possible"),
-    "physics_step": ("0.0", "step in s; 0 chooses one up to 2 ms that divides the control period"),
-    "paused": ("false", "start paused; `arm sim play` continues", ["true", "false"]),
-    "lockstep": (
-        "",
-        "stamped topics, or nodes by their ~/tick_done, that answer each control period before the "
-        "next one begins",
-    ),
-    "lockstep_timeout": ("10.0", "s of wall time without an answer that pause the simulation"),
-    "hold_joints": ("true", "joints that no controller claims hold their position"),
-    "position_proportional_gain": (
-        "0.0",
-        "as gz_ros2_control's, from 0 to 1: a position command is approached at this fraction of "
-        "the distance in each control period; 0 moves joints as fast as they can",
-    ),
-    "self_collide": ("false", "links of the robot collide with each other"),
-    "strict": ("false", "a missing mesh is an error instead of a box and a warning"),
-    "render_backend": (
-        "auto",
-        "render backend of the cameras; OpenGL (egl, osmesa) draws round shapes with flat faces, "
-        "0.5 mm too deep in the median for a ball of 60 mm radius, raycast draws them exactly",
-        ["auto", "egl", "osmesa", "raycast"],
-    ),
-    "headless": ("true", "false opens a window", ["true", "false"]),
-    "reset_clock": ("true", "a reset sets the clock to zero", ["true", "false"]),
-    "record_run": ("", "file to record the run to, for `arm sim replay`"),
-}
-
-NODE_ARGUMENTS = {
-    "log_level": (
-        "info",
-        "log level of the simulation",
-        ["info", "warn", "error", "fatal"],
-    ),
-    "use_sim_time": ("true", "the state publisher uses simulation time", ["true", "false"]),
-    "use_robot_state_pub": ("true", "publish the links' transforms on /tf", ["true", "false"]),
-    "viewer": ("false", "serve the browser page that shows and moves it", ["true", "false"]),
-    "use_rviz": (
-        "false",
-        "start RViz; the browser page replaces it if it is not installed",
-        ["true", "false"],
-    ),
-}
+SIMULATION = [each for each in settings_of(SimulationSettings) if each.launches]
+PLACE = [each for each in settings_of(RobotSettings) if each.launches]
+SWITCH = ["true", "false"]
 
 
-def declared(arguments: dict[str, Any]) -> list[DeclareLaunchArgument]:
-    """Return the declarations of a table of arguments."""
+def arguments() -> list[DeclareLaunchArgument]:
+    """Return the arguments beside `model`, those about folders, and what RViz shows."""
     return [
         DeclareLaunchArgument(
-            name,
-            default_value=default,
-            description=description,
-            choices=choices[0] if choices else None,
-        )
-        for name, (default, description, *choices) in arguments.items()
+            "model_args",
+            default_value="",
+            description='arguments of a xacro model: "a:=1 b:=2"',
+        ),
+        DeclareLaunchArgument(
+            "controllers",
+            default_value="",
+            description="parameter file of the controller manager and its controllers, where "
+            "${name} or $(var name) is an argument of the model; by default a position controller",
+        ),
+        DeclareLaunchArgument(
+            "spawn",
+            default_value="auto",
+            description="controllers to start with the simulation, separated by commas; auto "
+            "starts those whose joints are not claimed yet, in the file's order, and leaves out "
+            "those that cannot start",
+        ),
+        DeclareLaunchArgument(
+            "namespace", default_value="", description="namespace of all nodes of the robot"
+        ),
+        *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in PLACE),
+        DeclareLaunchArgument(
+            "robots",
+            default_value="",
+            description="YAML file of several robots in one world, instead of a model: NAMESPACE: "
+            "{model: FILE, and model_args, controllers, spawn, package_path, base, pose}",
+        ),
+        DeclareLaunchArgument(
+            "copies",
+            default_value="1",
+            description="copies of the robot in one world, on a square grid, each in a namespace "
+            "of its own: the robot's name, or `namespace`, with _0, _1 and so on",
+        ),
+        DeclareLaunchArgument(
+            "copy_spacing",
+            default_value="1.0",
+            description="distance of neighbours on that grid, in m; the first is at `pose`",
+        ),
+        *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in SIMULATION),
+        DeclareLaunchArgument(
+            "log_level",
+            default_value="info",
+            description="log level of the simulation",
+            choices=["info", "warn", "error", "fatal"],
+        ),
+        DeclareLaunchArgument(
+            "use_sim_time",
+            default_value="true",
+            description="the state publisher uses simulation time",
+            choices=SWITCH,
+        ),
+        DeclareLaunchArgument(
+            "use_robot_state_pub",
+            default_value="true",
+            description="publish the links' transforms on /tf",
+            choices=SWITCH,
+        ),
+        DeclareLaunchArgument(
+            "viewer",
+            default_value="false",
+            description="serve the browser page that shows and moves it",
+            choices=SWITCH,
+        ),
+        DeclareLaunchArgument(
+            "use_rviz",
+            default_value="false",
+            description="start RViz; the browser page replaces it if it is not installed",
+            choices=SWITCH,
+        ),
     ]
 
 
@@ -250,7 +238,7 @@ def panel_of(names: list[str]) -> ReadyPanel:
 
 def simulation(settings: dict[str, Any], controllers: list[Any], namespace: str = "") -> Node:
     """Return the simulation node; `settings` are parameters that are not launch arguments."""
-    every = {**settings, **{name: LaunchConfiguration(name) for name in SIMULATION_ARGUMENTS}}
+    every = {**settings, **{each.name: LaunchConfiguration(each.name) for each in SIMULATION}}
     return Node(
         package="arm_gazebo",
         executable="arm_gazebo_node",
@@ -316,9 +304,7 @@ def generate_launch_description() -> LaunchDescription:
             AppendEnvironmentVariable(
                 MODEL_PATH, LaunchConfiguration("resource_path"), prepend=True
             ),
-            *declared(ROBOT_ARGUMENTS),
-            *declared(SIMULATION_ARGUMENTS),
-            *declared(NODE_ARGUMENTS),
+            *arguments(),
             DeclareLaunchArgument(
                 "rviz_config_file",
                 default_value=PathJoinSubstitution(

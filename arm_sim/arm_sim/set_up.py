@@ -9,9 +9,8 @@ from typing import Any
 from arm_control.manager.parameter_file import ParametersByNode
 from arm_gazebo.launching.controllers_file import read_controllers
 from arm_gazebo.launching.robot_setup import SPAWN_AUTO, RobotSetup, set_up_robot
-from arm_gazebo.run.robot_settings import Parameters
-from arm_gazebo.run.settings import SimulationSettings, read_settings
-from arm_node.parameter_values import Reader, Value, read_parameter
+from arm_gazebo.run.settings import SimulationSettings, simulation_settings
+from arm_node.setting import given_values
 from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
 
 
@@ -68,7 +67,7 @@ def set_up(
         pathsep.join(fspath(folder) for folder in package_path),
     )
     return SimulationSetup(
-        read_settings(_parameters(_values(setup, robot, settings))),
+        simulation_settings(given_values(_values(setup, robot, settings))),
         ParametersByNode(read_controllers(setup.controllers), _source(setup)),
         setup.remarks,
         setup.left_out,
@@ -89,21 +88,6 @@ def _values(
     """Return the values of the simulation node's parameters."""
     given = {name: value for name, value in settings.items() if value is not None}
     return {"world": robot.world, "pose": robot.pose, **given, **setup.parameters()}
-
-
-def _parameters(values: Mapping[str, Any]) -> Parameters:
-    def value(
-        name: str,
-        default: object,
-        read: Reader[Value],
-        description: str,
-        /,
-        *,
-        read_only: bool = True,
-    ) -> Value:
-        return read_parameter(name, values.get(name, default), read)
-
-    return value
 
 
 def assignments(arguments: Mapping[str, object]) -> str:

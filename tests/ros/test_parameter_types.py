@@ -30,7 +30,7 @@ from arm_description.publishers.ros_joint_state_publisher import JointStatePubli
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_description.static_transform_publisher_node import _node as static_transform
 from arm_gazebo.ros.fault_parameter import declare_faults
-from arm_gazebo.run.settings import read_settings
+from arm_gazebo.run.settings import simulation_settings
 from arm_node.parameters import declare
 from arm_viewer.ros.viewer import Viewer
 
@@ -59,7 +59,7 @@ PROCESS: Any = SimpleNamespace(stopping=False)
 
 def simulation_node() -> Node:
     node = Node("arm_gazebo")
-    read_settings(partial(declare, node))
+    simulation_settings(partial(declare, node))
     declare_faults(node)
     return node
 

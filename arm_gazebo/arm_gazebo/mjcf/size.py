@@ -15,27 +15,9 @@ import lxml.etree as etree
 
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import ModelError
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.mjcf.references import FILES
 from arm_node.user_file import open_file, read_text
-
-
-@dataclass(frozen=True, slots=True)
-class MemoryLimit:
-    """A limit on the memory of a compiled model.
-
-    Attributes:
-        mb: the limit in 10^6 bytes.
-        parameter: the simulation parameter that raises the limit.
-    """
-
-    mb: float
-    parameter: str
-
-
-WORLD_LIMIT = MemoryLimit(1000.0, "world_memory_limit")
-SPAWN_LIMIT = MemoryLimit(100.0, "spawn_memory_limit")
-"""Smaller, because MuJoCo holds the interpreter lock while it copies an attached model. The copy
-takes about 1 ms per megabyte, and the control loop stops for that time."""
 
 MAX_COPIES = 5_000
 """Limit on replicated elements; MuJoCo's compile time grows with the square of their number."""

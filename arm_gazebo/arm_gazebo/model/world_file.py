@@ -10,8 +10,9 @@ from arm_description.errors import XmlError
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError, WorldError
 from arm_gazebo.launching.world_path import find_world
+from arm_gazebo.mjcf.memory_limit import WORLD_LIMIT, MemoryLimit
 from arm_gazebo.mjcf.references import check_readable
-from arm_gazebo.mjcf.size import WORLD_LIMIT, MemoryLimit, check_mjcf_size
+from arm_gazebo.mjcf.size import check_mjcf_size
 from arm_gazebo.sdf.world import read_sdf_world
 from arm_node.user_file import read_text
 

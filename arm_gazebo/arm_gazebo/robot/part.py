@@ -17,7 +17,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.mjcf.size import WORLD_LIMIT, MemoryLimit
+from arm_gazebo.mjcf.memory_limit import WORLD_LIMIT, MemoryLimit
 from arm_gazebo.physics_timing import MAX_STEP_S
 from arm_gazebo.robot.actuation import Drive, RobotJoint, add_actuators, drives
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions

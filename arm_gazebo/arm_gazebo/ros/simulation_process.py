@@ -38,7 +38,7 @@ from arm_gazebo.ros.fault_parameter import FaultParameter
 from arm_gazebo.ros.live_parameters import follow_parameter
 from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.run_recording import RunRecording
-from arm_gazebo.run.settings import SimulationSettings, read_above_zero, read_settings
+from arm_gazebo.run.settings import SimulationSettings, read_above_zero, simulation_settings
 from arm_gazebo.run.world import AssembledWorld, assemble_world
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display
@@ -73,7 +73,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         node = first_node(lambda: Node(NODE_NAME))
         nodes.callback(node.destroy_node)
         process.executor.add_node(node)
-        settings = read_settings(partial(declare, node))
+        settings = simulation_settings(partial(declare, node))
         outbox = Outbox()
         clock = RosClockPublisher(node, outbox)
         # A lock-step takes the commands out of the process's executor.

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_gazebo.camera.feed import CameraFeed
-from arm_gazebo.mjcf.size import MemoryLimit
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.ros.entity_services import EntityServices

@@ -1,134 +1,121 @@
-"""The settings of a simulation, read and checked once."""
+"""The settings of a simulation, each declared once; see `arm_node.setting`."""
 
 from dataclasses import dataclass, replace
 
-from arm_gazebo.mjcf.size import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
-from arm_gazebo.rendering.backend_selection import PREFERENCES
-from arm_gazebo.run.robot_settings import Parameters, RobotSettings, read_robots
+from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
+from arm_gazebo.run.robot_settings import RobotSettings, read_robots
 from arm_node.parameter_values import (
     NumberReader,
-    one_of,
-    read_flag,
     read_integer,
     read_non_negative,
     read_text,
     read_words,
 )
+from arm_node.setting import Parameters, read_settings, setting
 
-PARTNERS = "stamped topics, or nodes by their ~/tick_done, that answer each control period first"
 read_above_zero = NumberReader("a finite number above 0", least=0.0, above=True)
 _read_gain = NumberReader("a number from 0 to 1", least=0.0, most=1.0)
-LONGEST_SILENCE = "seconds of wall time without an answer after which the simulation is paused"
+_SWITCH = ("true", "false")
 
 
-@dataclass(frozen=True, slots=True)
-class SimulationSettings:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PhysicsSettings:
+    """What is simulated, and how; with ROS or without."""
+
+    physics_step_s: float | None = setting(
+        0.0,
+        "physics step; 0 chooses one up to 2 ms that divides the control period",
+        read_non_negative,
+        unit="s",
+        name="physics_step",
+        adapt=lambda step_s: step_s or None,
+    )
+    hold_joints: bool = setting(True, "joints that no controller claims hold their position")
+    position_proportional_gain: float = setting(
+        0.0,
+        "as gz_ros2_control's, from 0 to 1: a position command is approached at this fraction of "
+        "the distance in each control period; 0 moves joints as fast as they can",
+        _read_gain,
+    )
+    self_collide: bool = setting(False, "links of the robot collide with each other")
+    strict: bool = setting(False, "a missing mesh is an error instead of a box and a warning")
+    render_backend: str = setting(
+        "auto",
+        "render backend of the cameras; OpenGL (egl, osmesa) draws round shapes with flat faces, "
+        "0.5 mm too deep in the median for a ball of 60 mm radius, raycast draws them exactly",
+        choices=("auto", "egl", "osmesa", "raycast"),
+    )
+    seed: int = setting(0, "seed of the noise of sensors and cameras", read_integer, launches=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationSettings(PhysicsSettings):
     """The user's settings for one simulation.
 
     Attributes:
         robots: the robots, at least one.
-        world: a shipped world's name, or the path of a MuJoCo XML or SDF file.
-        real_time_factor: ratio of simulation time to wall time; 0 is as fast as possible.
-        physics_step_s: physics step; None to derive it from the control rate.
-        paused: whether the simulation starts paused.
-        lockstep: topics or nodes that answer each control period before the next one begins.
-        lockstep_timeout_s: longest wait for such an answer, in wall time.
-        hold_joints: whether joints that no controller claims hold their position.
-        position_proportional_gain: fraction of the distance to a position command that a joint's
-            set-point moves in a control period; 0 to move as fast as the joint can.
-        self_collide: whether a robot's links collide with each other.
-        strict: whether a missing mesh is an error instead of a box.
-        render_backend: render backend of the cameras.
-        seed: seed of the sensors' noise.
-        world_limit: limit on the memory of a world's MJCF.
-        spawn_limit: limit on the memory of a spawned MJCF.
-        headless: False to open a window.
-        reset_clock: whether a reset sets the clock to zero.
-        record_run: file to record the run to, from its start; "" for none.
     """
 
     robots: tuple[RobotSettings, ...]
-    world: str
-    real_time_factor: float
-    physics_step_s: float | None
-    paused: bool
-    lockstep: tuple[str, ...]
-    lockstep_timeout_s: float
-    hold_joints: bool
-    position_proportional_gain: float
-    self_collide: bool
-    strict: bool
-    render_backend: str
-    seed: int
-    headless: bool
-    reset_clock: bool
-    record_run: str
-    world_limit: MemoryLimit
-    spawn_limit: MemoryLimit
+    world: str = setting(
+        "empty",
+        "empty, objects, shapes, pick_and_place_demo, house, or a MuJoCo XML or SDF file",
+        read_text,
+    )
+    real_time_factor: float = setting(
+        1.0,
+        "ratio of simulation time to wall time; 0 is as fast as possible",
+        read_non_negative,
+        changes=True,
+    )
+    paused: bool = setting(False, "start paused; `arm sim play` continues", choices=_SWITCH)
+    lockstep: tuple[str, ...] = setting(
+        (),
+        "stamped topics, or nodes by their ~/tick_done, that answer each control period before the "
+        "next one begins",
+        read_words,
+    )
+    lockstep_timeout_s: float = setting(
+        10.0,
+        "wall time without an answer that pauses the simulation",
+        read_above_zero,
+        unit="s",
+        name="lockstep_timeout",
+        changes=True,
+    )
+    headless: bool = setting(True, "false opens a window", choices=_SWITCH)
+    reset_clock: bool = setting(
+        True, "a reset sets the clock to zero", choices=_SWITCH, changes=True
+    )
+    record_run: str = setting(
+        "",
+        "file to record the run to from now on, for `arm sim replay`; '' ends it",
+        changes=True,
+    )
+    world_limit: MemoryLimit = setting(
+        WORLD_LIMIT.mb,
+        "limit on the memory of a world's MJCF",
+        read_non_negative,
+        unit="MB",
+        name=WORLD_LIMIT.parameter,
+        launches=False,
+        adapt=lambda mb: replace(WORLD_LIMIT, mb=mb),
+    )
+    spawn_limit: MemoryLimit = setting(
+        SPAWN_LIMIT.mb,
+        "limit on the memory of a spawned MJCF",
+        read_non_negative,
+        unit="MB",
+        name=SPAWN_LIMIT.parameter,
+        launches=False,
+        adapt=lambda mb: replace(SPAWN_LIMIT, mb=mb),
+    )
 
 
-def read_settings(value: Parameters) -> SimulationSettings:
+def simulation_settings(parameters: Parameters) -> SimulationSettings:
     """Return the settings from the values of parameters.
 
     Raises:
         ParameterValueError: a value is invalid; the message names it and the valid values.
     """
-    return SimulationSettings(
-        robots=read_robots(value),
-        world=value(
-            "world", "empty", read_text, "a shipped world's name, or a file: MuJoCo XML, SDF"
-        ),
-        real_time_factor=value(
-            "real_time_factor",
-            1.0,
-            read_non_negative,
-            "ratio of simulation time to wall time; 0 is as fast as possible",
-            read_only=False,
-        ),
-        physics_step_s=value(
-            "physics_step", 0.0, read_non_negative, "step in seconds; 0 chooses one up to 2 ms"
-        )
-        or None,
-        paused=value("paused", False, read_flag, "start paused"),
-        lockstep=value("lockstep", (), read_words, PARTNERS),
-        lockstep_timeout_s=value(
-            "lockstep_timeout", 10.0, read_above_zero, LONGEST_SILENCE, read_only=False
-        ),
-        hold_joints=value("hold_joints", True, read_flag, "unclaimed joints hold their position"),
-        position_proportional_gain=value(
-            "position_proportional_gain",
-            0.0,
-            _read_gain,
-            "from 0 to 1, as gz_ros2_control's; 0 moves joints as fast as they can",
-        ),
-        self_collide=value("self_collide", False, read_flag, "links of a robot collide"),
-        strict=value("strict", False, read_flag, "a missing mesh is an error"),
-        render_backend=value(
-            "render_backend",
-            "auto",
-            one_of(PREFERENCES),
-            f"render backend of the cameras: {', '.join(PREFERENCES)}; OpenGL (egl, osmesa) draws "
-            "round shapes with flat faces, 0.5 mm too deep in the median for a ball of 60 mm "
-            "radius, raycast draws them exactly",
-        ),
-        seed=value("seed", 0, read_integer, "seed of the sensors' noise"),
-        world_limit=_limit(value, WORLD_LIMIT, "a world's"),
-        spawn_limit=_limit(value, SPAWN_LIMIT, "a spawned"),
-        headless=value("headless", True, read_flag, "false opens a window"),
-        reset_clock=value(
-            "reset_clock", True, read_flag, "a reset sets the clock to zero", read_only=False
-        ),
-        record_run=value(
-            "record_run",
-            "",
-            read_text,
-            "file to record the run to from now on; '' ends it",
-            read_only=False,
-        ),
-    )
-
-
-def _limit(value: Parameters, default: MemoryLimit, whose: str) -> MemoryLimit:
-    description = f"limit on the memory of {whose} MJCF in MB"
-    mb = value(default.parameter, default.mb, read_non_negative, description)
-    return replace(default, mb=mb)
+    return read_settings(SimulationSettings, parameters, robots=read_robots(parameters))

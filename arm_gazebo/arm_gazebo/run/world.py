@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.world_path import find_world
 from arm_gazebo.mesh.cache import cache_folder
-from arm_gazebo.mjcf.size import MemoryLimit
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import PhysicsTiming, physics_timing

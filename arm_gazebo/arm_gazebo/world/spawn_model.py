@@ -19,8 +19,9 @@ from arm_gazebo.build_report import BuildReport, Finding
 from arm_gazebo.errors import GazeboError, MeshError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
+from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, MemoryLimit
 from arm_gazebo.mjcf.names import name_elements
-from arm_gazebo.mjcf.size import SPAWN_LIMIT, MemoryLimit, check_mjcf_size
+from arm_gazebo.mjcf.size import check_mjcf_size
 from arm_gazebo.model.world_file import report_margins
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
 from arm_gazebo.robot.collision_policy import exclude_neighbour_contacts, exclude_own_contacts

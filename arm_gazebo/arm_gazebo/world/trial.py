@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from arm_gazebo.feed.child_process import describe_exit
-from arm_gazebo.mjcf.size import MemoryLimit
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
 
 MODULE = "arm_gazebo.world.trial_process"
 END_TIMEOUT_S = 5.0

@@ -6,7 +6,8 @@ import mujoco
 import pytest
 
 from arm_gazebo.errors import ModelError, WorldError
-from arm_gazebo.mjcf.size import MemoryLimit, check_mjcf_size
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
+from arm_gazebo.mjcf.size import check_mjcf_size
 from arm_gazebo.model.world_file import load_world
 
 LIMIT = MemoryLimit(500.0, "world_memory_limit")

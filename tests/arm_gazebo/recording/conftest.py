@@ -29,7 +29,7 @@ MANAGER = "/controller_manager"
 
 def robot_settings(urdf: str) -> RobotSettings:
     """Return the settings of a robot that is bolted down."""
-    return RobotSettings("", urdf, (), True, "fixed", None, ())
+    return RobotSettings(namespace="", robot_description=urdf)
 
 
 class InlineLoop:

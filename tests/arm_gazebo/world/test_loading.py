@@ -3,7 +3,7 @@ import pytest
 
 from arm_control.hardware.info import parse_hardware_info
 from arm_description.urdf.parser import parse_urdf
-from arm_gazebo.mjcf.size import MemoryLimit
+from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.world.loading import WorldLoader, available_worlds
 from arm_gazebo.world.refusal import Refusal, RequestError
