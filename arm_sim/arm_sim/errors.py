@@ -4,6 +4,7 @@ ArmSimError
 ├── UnknownNameError  a controller, joint, camera or sensor that the simulation does not have
 ├── MissingPackageError  an optional package that is needed is not installed
 ├── CallError         a method that cannot be called now, or an argument that cannot be used
+│   └── ArgumentsError    arguments of a simulation that do not fit; also a TypeError
 └── GoalError         a goal that was rejected, failed or did not end in time
 
 Everything else that goes wrong raises the error that ends or warns the node, with its sentence:
@@ -35,6 +36,10 @@ class MissingPackageError(ArmSimError, ImportError):
 
 class CallError(ArmSimError):
     """A method cannot be called now, or an argument cannot be used."""
+
+
+class ArgumentsError(CallError, TypeError):
+    """Arguments that do not fit: one that is unknown, missing or given twice."""
 
 
 class GoalError(ArmSimError):

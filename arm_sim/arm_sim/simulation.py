@@ -1,12 +1,12 @@
 """The simulation as a library: the robot in its world with its controllers, without ROS."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
-from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from arm_sim.arguments import SimulationArguments, takes, with_settings
 from arm_sim.assembly import SimulationParts, assemble
 from arm_sim.controllers import ControllerHandle
 from arm_sim.errors import CallError, GoalError
@@ -29,6 +29,7 @@ ROUNDING = 1e-6  # of a duration, in control periods
 
 
 @ends_at_the_caller
+@with_settings
 class Simulation:
     """A robot in a world with its controllers; time passes only in `step` and `run`.
 
@@ -52,42 +53,14 @@ class Simulation:
         arguments: xacro arguments.
         spawn: controllers to start; default the named robot's, or all of the file whose
             joints are not claimed yet.
-        seed: seed of the noise of sensors and cameras.
         base: "fixed" or "free", how a root link other than `world` is attached.
         pose: x y z roll pitch yaw of the robot's root in the world, in m and rad.
         package_path: folders searched for package:// and model://.
-        hold_joints: whether joints that no controller claims hold their position.
-        position_proportional_gain: from 0 to 1, as gz_ros2_control's; 0 moves joints as fast
-            as they can.
-        physics_step_s: physics step; None for one up to 2 ms that divides the control period.
-        self_collide: whether links of the robot collide with each other.
-        strict: whether a missing mesh is an error instead of a box.
-        render_backend: render backend of the cameras: auto, egl, osmesa or raycast. OpenGL (egl,
-            osmesa) draws round shapes with flat faces, 0.5 mm too deep in the median for a ball of
-            60 mm radius; raycast draws them exactly.
         record: file to record the run to, for `arm sim replay`; it must not exist.
     """
 
-    def __init__(
-        self,
-        description: AnyPath = "arm",
-        *,
-        world: AnyPath | None = None,
-        controllers: AnyPath | Mapping[str, Any] | None = None,
-        arguments: Mapping[str, object] | None = None,
-        spawn: Iterable[str] | None = None,
-        seed: int = 0,
-        base: str = "fixed",
-        pose: Iterable[float] | None = None,
-        package_path: Iterable[AnyPath] = (),
-        hold_joints: bool = True,
-        position_proportional_gain: float = 0.0,
-        physics_step_s: float | None = None,
-        self_collide: bool = False,
-        strict: bool = False,
-        render_backend: str = "auto",
-        record: AnyPath | None = None,
-    ) -> None:
+    @takes(SimulationArguments)
+    def __init__(self, arguments: SimulationArguments) -> None:
         """Build the simulation and start its controllers.
 
         Raises:
@@ -98,23 +71,12 @@ class Simulation:
             ParameterValueError: another argument is wrong.
         """
         self.parts = assemble(
-            description,
-            controllers,
-            arguments or {},
-            spawn,
-            package_path,
-            {
-                "world": None if world is None else fspath(world),
-                "seed": seed,
-                "base": base,
-                "pose": None if pose is None else [float(value) for value in pose],
-                "hold_joints": hold_joints,
-                "position_proportional_gain": position_proportional_gain,
-                "physics_step": physics_step_s,
-                "self_collide": self_collide,
-                "strict": strict,
-                "render_backend": render_backend,
-            },
+            arguments.description,
+            arguments.controllers,
+            arguments.arguments or {},
+            arguments.spawn,
+            arguments.package_path,
+            arguments.parameters(),
         )
         self._physics = self.parts.physics
         self._tick = self.parts.tick
@@ -124,7 +86,7 @@ class Simulation:
         self.states = States(self.parts.robot.manager.resources)
         self.sensors = Sensors(self.parts.robot.sensors)
         self.controllers = self.parts.controllers
-        self._start(record)
+        self._start(arguments.record)
 
     def _start(self, record: AnyPath | None) -> None:
         """Begin the recording, then start the controllers."""
