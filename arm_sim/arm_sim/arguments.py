@@ -66,6 +66,8 @@ def takes(
 
         of_self = Parameter("self", Parameter.POSITIONAL_ONLY)
         fields = signature(make).parameters.values()
+        # Not the method's signature, which whoever unwraps it would show.
+        del vars(__init__)["__wrapped__"]
         vars(__init__)["__signature__"] = signature(make).replace(parameters=[of_self, *fields])
         return __init__
 

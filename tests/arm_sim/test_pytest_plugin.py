@@ -104,7 +104,7 @@ def test_slider(arm_sim):
 @pytest.mark.parametrize(
     ("marker", "sentence"),
     [
-        ("robo='arm'", "@pytest.mark.arm_sim has no argument 'robo'; it has robot, world*"),
+        ("robo='arm'", "@pytest.mark.arm_sim has no argument 'robo'; it has robot, *, world, *"),
         ("world='nowhere'", "no world 'nowhere'*"),
         ("robot='no.urdf'", "*no.urdf*"),
     ],
