@@ -1,23 +1,15 @@
 """Depth from every backend of this machine, compared with rays and with plain geometry."""
 
-import ctypes
-import json
-import subprocess
-import sys
 from collections.abc import Callable
-from dataclasses import asdict, replace
-from pathlib import Path
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
 
 from arm_gazebo.camera.depth_image import PointGrid, mark_limits
-from arm_gazebo.rendering.raycast_renderer import RaycastRenderer
 from arm_gazebo.sensors.camera import CameraSensor
 
-DRAW_PICTURE = Path(__file__).with_name("draw_picture.py")
-LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
 WORLD = """
 <mujoco>
   <asset>
@@ -41,25 +33,6 @@ CORNER = (0, 0)
 Measure = Callable[[str], np.ndarray]
 
 
-def is_installed(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True
-
-
-BACKENDS = [
-    "raycast",
-    *(
-        pytest.param(name, marks=pytest.mark.gl)
-        for name, library in LIBRARIES.items()
-        if is_installed(library)
-    ),
-]
-all_backends = pytest.mark.parametrize("backend", BACKENDS)
-
-
 @pytest.fixture(scope="module")
 def scene() -> tuple[mujoco.MjModel, mujoco.MjData]:
     model = mujoco.MjModel.from_xml_string(WORLD)
@@ -68,37 +41,18 @@ def scene() -> tuple[mujoco.MjModel, mujoco.MjData]:
     return model, data
 
 
-@pytest.fixture(scope="module")
-def measure(tmp_path_factory, scene) -> Measure:
-    """Return what measures the world with a backend; each does so once."""
-    folder = tmp_path_factory.mktemp("depth")
-    measured: dict[str, np.ndarray] = {}
-
-    def with_rays() -> np.ndarray:
-        depth = np.zeros((EYE.height, EYE.width), np.float32)
-        renderer = RaycastRenderer()
-        renderer.set_model(scene[0])
-        renderer.render(scene[1], EYE, None, depth)
-        return depth
-
-    def with_gl(backend: str) -> np.ndarray:
-        files = [folder / f"{backend}.{name}" for name in ("xml", "json", "p.npy", "d.npy")]
-        files[0].write_text(WORLD)
-        files[1].write_text(json.dumps(asdict(EYE)))
-        subprocess.run([sys.executable, str(DRAW_PICTURE), backend, *files], check=True, timeout=60)
-        return np.load(files[3])
+@pytest.fixture
+def measure(see_by) -> Measure:
+    """Return what measures the world with a backend."""
 
     def by(backend: str) -> np.ndarray:
-        if backend not in measured:
-            depth = with_rays() if backend == "raycast" else with_gl(backend)
-            mark_limits(depth, EYE)
-            measured[backend] = depth
-        return measured[backend].copy()
+        _picture, depth = see_by(backend, WORLD, EYE)
+        mark_limits(depth, EYE)
+        return depth
 
     return by
 
 
-@all_backends
 def test_a_wall_is_as_far_as_it_is(measure, backend):
     depth = measure(backend)
     # Along the camera's axis, so the same all over the wall: no cosine.
@@ -106,12 +60,10 @@ def test_a_wall_is_as_far_as_it_is(measure, backend):
     assert depth[40, 130] == pytest.approx(WALL, abs=1e-4)
 
 
-@all_backends
 def test_the_sky_and_what_is_too_far_are_infinite(measure, backend):
     assert measure(backend)[CORNER] == np.inf
 
 
-@all_backends
 def test_what_is_too_near_is_minus_infinite(measure, backend):
     depth = measure(backend)
     # The little ball is nearer than the near clip, and hides the wall.
@@ -119,7 +71,6 @@ def test_what_is_too_near_is_minus_infinite(measure, backend):
     assert not np.isnan(depth).any()
 
 
-@all_backends
 def test_every_pixel_agrees_with_its_own_ray(measure, scene, backend):
     model, data = scene
     depth = measure(backend)

@@ -1,12 +1,6 @@
 """All render backends of this machine draw the same image, with objects at the right places."""
 
-import ctypes
-import json
-import subprocess
-import sys
 from collections.abc import Callable
-from dataclasses import asdict
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -15,61 +9,13 @@ import pytest
 from arm_gazebo.rendering.raycast_renderer import RaycastRenderer
 from arm_gazebo.sensors.camera import CameraSensor
 
-DRAW_PICTURE = Path(__file__).with_name("draw_picture.py")
-LIBRARIES = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
-
-
-def is_installed(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True
-
-
-GL_BACKENDS = [
-    pytest.param(name, marks=pytest.mark.gl)
-    for name, library in LIBRARIES.items()
-    if is_installed(library)
-]
-all_backends = pytest.mark.parametrize("backend", ["raycast", *GL_BACKENDS])
-gl_backends = pytest.mark.parametrize("backend", GL_BACKENDS)
-
 Draw = Callable[[str, str, CameraSensor], np.ndarray]
 
 
 @pytest.fixture
-def draw(tmp_path) -> Draw:
+def draw(see_by) -> Draw:
     """Return what draws a model (MJCF) with a backend."""
-
-    def with_rays(mjcf: str, sensor: CameraSensor) -> np.ndarray:
-        model = mujoco.MjModel.from_xml_string(mjcf)
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-        picture = np.zeros((sensor.height, sensor.width, 3), np.uint8)
-        renderer = RaycastRenderer()
-        renderer.set_model(model)
-        renderer.render(data, sensor, picture)
-        return picture
-
-    def with_gl(backend: str, mjcf: str, sensor: CameraSensor) -> np.ndarray:
-        model, settings, picture = (tmp_path / name for name in ("m.xml", "s.json", "p.npy"))
-        model.write_text(mjcf)
-        settings.write_text(json.dumps(asdict(sensor)))
-        files = [str(file) for file in (model, settings, picture, tmp_path / "d.npy")]
-        run = subprocess.run(
-            [sys.executable, str(DRAW_PICTURE), backend, *files],
-            capture_output=True,
-            text=True,
-            timeout=60,
-        )
-        assert run.returncode == 0, run.stderr
-        return np.load(picture)
-
-    def draw(backend: str, mjcf: str, sensor: CameraSensor) -> np.ndarray:
-        return with_rays(mjcf, sensor) if backend == "raycast" else with_gl(backend, mjcf, sensor)
-
-    return draw
+    return lambda backend, mjcf, sensor: see_by(backend, mjcf, sensor)[0]
 
 
 def sensor(width: int = 320, height: int = 240, **fields) -> CameraSensor:
@@ -105,7 +51,6 @@ def bluish(picture: np.ndarray) -> np.ndarray:
     return wide[..., 2] > wide[..., 0] + 40
 
 
-@all_backends
 @pytest.mark.parametrize(("width", "height", "hfov"), [(320, 240, 1.047), (400, 150, 1.8)])
 def test_the_intrinsics_project_a_point_to_the_pixel_that_shows_it(
     draw, backend, width, height, hfov
@@ -121,7 +66,6 @@ def test_the_intrinsics_project_a_point_to_the_pixel_that_shows_it(
         assert np.mean(rows) + 0.5 == pytest.approx(height / 2 + f * down / ahead, abs=1.0)
 
 
-@all_backends
 def test_a_picture_may_be_smaller_than_that_of_the_self_test(draw, backend):
     ball = '<geom type="sphere" size="0.3" pos="2 0 1" rgba="1 0 0 1"/>'
     rows, columns = np.nonzero(reddish(draw(backend, world(ball), sensor(32, 24))))
@@ -129,7 +73,6 @@ def test_a_picture_may_be_smaller_than_that_of_the_self_test(draw, backend):
     assert (np.mean(columns), np.mean(rows)) == pytest.approx((15.5, 11.5), abs=1.0)
 
 
-@all_backends
 def test_the_horizon_is_at_the_right_height(draw, backend):
     picture = draw(backend, world(FLOOR), sensor())
     grey = np.ptp(picture.astype(int), axis=2) < 8
@@ -137,26 +80,22 @@ def test_the_horizon_is_at_the_right_height(draw, backend):
     assert grey[130:].all()
 
 
-@all_backends
 def test_the_first_row_is_the_top(draw, backend):
     above = '<geom type="sphere" size="0.3" pos="2 0 1.5" rgba="1 0 0 1"/>'
     rows, _ = np.nonzero(reddish(draw(backend, world(above), sensor())))
     assert rows.mean() < 120
 
 
-@all_backends
 def test_collision_shapes_are_not_seen(draw, backend):
     hidden = '<geom type="sphere" size="0.3" pos="2 0 1" rgba="1 0 0 1" group="3"/>'
     assert not reddish(draw(backend, world(hidden), sensor())).any()
 
 
-@all_backends
 def test_transparent_shapes_are_not_seen(draw, backend):
     hidden = '<geom type="sphere" size="0.3" pos="2 0 1" rgba="1 0 0 0"/>'
     assert not reddish(draw(backend, world(hidden), sensor())).any()
 
 
-@all_backends
 @pytest.mark.parametrize(("near", "seen"), [(0.1, True), (1.5, False)])
 def test_what_is_nearer_than_the_near_clip_is_looked_through(draw, backend, near, seen):
     balls = (
@@ -168,13 +107,11 @@ def test_what_is_nearer_than_the_near_clip_is_looked_through(draw, backend, near
     assert bluish(picture)[120, 160] != seen
 
 
-@all_backends
 def test_what_is_farther_than_the_far_clip_is_not_seen(draw, backend):
     ball = '<geom type="sphere" size="0.8" pos="4 0 1" rgba="1 0 0 1"/>'
     assert not reddish(draw(backend, world(ball), sensor(far=2.0))).any()
 
 
-@all_backends
 def test_a_camera_inside_a_body_sees_out(draw, backend):
     shell = '<geom type="box" size="0.05 0.05 0.05" pos="0 0 1" rgba="1 0 0 1"/>'
     ball = '<geom type="sphere" size="0.4" pos="2 0 1" rgba="0 0 1 1"/>'
@@ -183,7 +120,6 @@ def test_a_camera_inside_a_body_sees_out(draw, backend):
     assert bluish(picture)[120, 160]
 
 
-@all_backends
 def test_a_colour_of_a_material_counts(draw, backend):
     ball = '<geom type="sphere" size="0.4" pos="2 0 1" material="red"/>'
     mjcf = world(ball).replace("<asset>", '<asset><material name="red" rgba="1 0 0 1"/>')
@@ -201,11 +137,10 @@ STILL_LIFE = world(
 ).replace("<asset>", '<asset><material name="matte" rgba=".5 .5 .5 1" specular="0"/>')
 
 
-@gl_backends
 @pytest.mark.parametrize(("width", "height"), [(320, 240), (640, 480)])
-def test_rays_and_opengl_show_the_same(draw, backend, width, height):
+def test_rays_and_opengl_show_the_same(draw, gl_backend, width, height):
     eye = sensor(width, height)
-    by_gl = draw(backend, STILL_LIFE, eye).astype(int)
+    by_gl = draw(gl_backend, STILL_LIFE, eye).astype(int)
     by_rays = draw("raycast", STILL_LIFE, eye).astype(int)
     difference = np.abs(by_gl - by_rays).max(axis=2)
     # Highlights are OpenGL's alone, and edges may be a pixel off.
@@ -214,8 +149,8 @@ def test_rays_and_opengl_show_the_same(draw, backend, width, height):
     np.testing.assert_allclose(by_gl.mean(axis=(0, 1)), by_rays.mean(axis=(0, 1)), atol=3)
 
 
-def test_rays_give_the_same_picture_each_time(draw):
-    first, second = (draw("raycast", STILL_LIFE, sensor()) for _ in range(2))
+def test_rays_give_the_same_picture_each_time(see_anew):
+    first, second = (see_anew(STILL_LIFE, sensor())[0] for _ in range(2))
     np.testing.assert_array_equal(first, second)
 
 
