@@ -16,7 +16,7 @@ from arm_control.parameters import ParameterSpec, build_parameters, specs_of
 from arm_control.run_inputs import InputGate, run_input
 from arm_control.state.attributes import load_attributes, save_attributes
 from arm_control.state.encoding import encode
-from arm_description.urdf.document import Description, UrdfDocument, text_of
+from arm_description.urdf.description import Description, RobotDescription, text_of
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Robot
 
@@ -116,14 +116,14 @@ class ControllerContext:
     name: str
     update_rate_hz: int
     robot_description: str = ""
-    document: UrdfDocument | None = None
+    document: RobotDescription | None = None
 
     @classmethod
     def of(
         cls, name: str, update_rate_hz: int, robot_description: Description
     ) -> "ControllerContext":
         """Return the context of a controller whose manager has parsed the description already."""
-        document = robot_description if isinstance(robot_description, UrdfDocument) else None
+        document = robot_description if isinstance(robot_description, RobotDescription) else None
         return cls(name, update_rate_hz, text_of(robot_description), document)
 
     def read_robot(self) -> Robot | None:

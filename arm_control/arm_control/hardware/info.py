@@ -3,14 +3,12 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from arm_control.errors import HardwareInfoError
-from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.description import Description, RobotDescription, as_description
+from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.mimic import Mimic
-
-if TYPE_CHECKING:
-    import lxml.etree as etree
+from arm_description.urdf.xml_document import finite_number
 
 COMPONENT_TYPES = ("system", "actuator", "sensor")
 
@@ -139,10 +137,13 @@ def parse_hardware_info(description: Description) -> tuple[HardwareInfo, ...]:
             number; the message names the component and the line.
         arm_description.errors.XmlError: the text is not XML.
     """
+    return as_description(description).read(_parse_components)
+
+
+def _parse_components(description: RobotDescription) -> tuple[HardwareInfo, ...]:
     components: dict[str, HardwareInfo] = {}
-    robot = as_document(description).root
-    mimics = _parse_mimics(robot)
-    for element in robot.iterchildren("ros2_control"):
+    mimics = _parse_mimics(description)
+    for element in description.ros2_control:
         component = _parse_component(element, mimics)
         if component.name in components:
             raise HardwareInfoError(
@@ -153,39 +154,38 @@ def parse_hardware_info(description: Description) -> tuple[HardwareInfo, ...]:
     return tuple(components.values())
 
 
-def _parse_mimics(robot: "etree._Element") -> dict[str, Mimic]:
+def _parse_mimics(description: RobotDescription) -> dict[str, Mimic]:
     """Return the `<mimic>` elements of the URDF's joints, by joint."""
     mimics: dict[str, Mimic] = {}
-    for joint in robot.iterchildren("joint"):
-        mimic = joint.find("mimic")
+    for joint in description.joints:
+        mimic = joint.first("mimic")
         if mimic is None:
             continue
-        line, where = mimic.sourceline, f"<mimic> in <joint name='{joint.get('name')}'>"
-        numbers = dict(mimic.attrib)
-        multiplier = _parse_number(numbers, "multiplier", line, where)
-        mimics[joint.get("name") or ""] = Mimic(
-            mimic.get("joint") or "",
+        name = joint.attributes.get("name")
+        line, where = mimic.line, f"<mimic> in <joint name='{name}'>"
+        multiplier = _parse_number(mimic.attributes, "multiplier", line, where)
+        mimics[name or ""] = Mimic(
+            mimic.get("joint"),
             1.0 if multiplier is None else multiplier,
-            _parse_number(numbers, "offset", line, where) or 0.0,
+            _parse_number(mimic.attributes, "offset", line, where) or 0.0,
         )
     return mimics
 
 
-def _parse_component(element: "etree._Element", mimics: Mapping[str, Mimic]) -> HardwareInfo:
+def _parse_component(element: UrdfElement, mimics: Mapping[str, Mimic]) -> HardwareInfo:
     name = _required_name(element, "<ros2_control>")
     where = f"<ros2_control name='{name}'>"
-    kind = element.get("type", "")
+    kind = element.get("type")
     if kind not in COMPONENT_TYPES:
         raise HardwareInfoError(
-            f"line {element.sourceline}: {where} has type '{kind}'; "
+            f"line {element.line}: {where} has type '{kind}'; "
             f"it must be one of {', '.join(COMPONENT_TYPES)}"
         )
-    hardware = element.find("hardware")
-    plugin = (hardware.findtext("plugin") or "").strip() if hardware is not None else ""
+    hardware = element.first("hardware")
+    plugin = _content(hardware, "plugin") if hardware else ""
     if hardware is None or not plugin:
         raise HardwareInfoError(
-            f"line {element.sourceline}: {where} has no <hardware><plugin>, "
-            "so its driver is unknown"
+            f"line {element.line}: {where} has no <hardware><plugin>, so its driver is unknown"
         )
     return HardwareInfo(
         name=name,
@@ -195,25 +195,25 @@ def _parse_component(element: "etree._Element", mimics: Mapping[str, Mimic]) -> 
         sensors=_parse_parts(element, "sensor", where),
         gpios=_parse_parts(element, "gpio", where),
         parameters=_parse_parameters(hardware, where),
-        group=(hardware.findtext("group") or "").strip(),
+        group=_content(hardware, "group"),
         read_write_rate_hz=_parse_rate(element, where),
-        is_async=element.get("is_async", "false").strip().lower() == "true",
-        line=element.sourceline or 0,
+        is_async=element.text("is_async").lower() == "true",
+        line=element.line,
     )
 
 
-def _parse_rate(element: "etree._Element", where: str) -> int:
-    text = element.get("rw_rate", "0").strip()
+def _parse_rate(element: UrdfElement, where: str) -> int:
+    text = element.text("rw_rate", "0")
     if not text.isdecimal():
         raise HardwareInfoError(
-            f"line {element.sourceline}: rw_rate of {where} is '{text}'; it must be a whole number "
+            f"line {element.line}: rw_rate of {where} is '{text}'; it must be a whole number "
             "of Hz, or 0 for the controller manager's rate"
         )
     return int(text)
 
 
 def _parse_parts(
-    element: "etree._Element",
+    element: UrdfElement,
     tag: str,
     where: str,
     mimics: Mapping[str, Mimic] | None = None,
@@ -234,7 +234,7 @@ def _parse_parts(
     return tuple(parts)
 
 
-def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[InterfaceInfo, ...]:
+def _parse_interfaces(element: UrdfElement, tag: str, where: str) -> tuple[InterfaceInfo, ...]:
     interfaces: list[InterfaceInfo] = []
     for name, child in _named_children(element, tag, where):
         here = f"<{tag} name='{name}'> of {where}"
@@ -243,7 +243,7 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
         interfaces.append(
             InterfaceInfo(
                 name=name,
-                initial_value=_parse_initial_value(parameters, data_type, child.sourceline, here),
+                initial_value=_parse_initial_value(parameters, data_type, child.line, here),
                 minimum=_parse_limit(parameters, "min"),
                 maximum=_parse_limit(parameters, "max"),
                 parameters=parameters,
@@ -255,34 +255,34 @@ def _parse_interfaces(element: "etree._Element", tag: str, where: str) -> tuple[
 
 
 def _named_children(
-    element: "etree._Element", tag: str, where: str
-) -> Iterator[tuple[str, "etree._Element"]]:
+    element: UrdfElement, tag: str, where: str
+) -> Iterator[tuple[str, UrdfElement]]:
     """Yield the children with a tag and their names, which must be there and differ."""
     names: set[str] = set()
-    for child in element.iterchildren(tag):
+    for child in element.children(tag):
         name = _required_name(child, f"<{tag}> of {where}")
         if name in names:
             raise HardwareInfoError(
-                f"line {child.sourceline}: {where} has a second <{tag}> named '{name}'"
+                f"line {child.line}: {where} has a second <{tag}> named '{name}'"
             )
         names.add(name)
         yield name, child
 
 
-def _is_limited(element: "etree._Element") -> bool:
-    limits = element.find("limits")
+def _is_limited(element: UrdfElement) -> bool:
+    limits = element.first("limits")
     return limits is None or _is_on(limits, "enable")
 
 
-def _is_on(element: "etree._Element", attribute: str) -> bool:
+def _is_on(element: UrdfElement, attribute: str) -> bool:
     """Return whether an attribute is not 'false'; xacro may write it as Python's 'False'."""
-    return element.get(attribute, "").strip().lower() != "false"
+    return element.text(attribute).lower() != "false"
 
 
-def _parse_parameters(element: "etree._Element", where: str) -> dict[str, str]:
+def _parse_parameters(element: UrdfElement, where: str) -> dict[str, str]:
     return {
-        _required_name(child, f"<param> of {where}"): (child.text or "").strip()
-        for child in element.iterchildren("param")
+        _required_name(child, f"<param> of {where}"): child.content
+        for child in element.children("param")
     }
 
 
@@ -304,8 +304,8 @@ def _parse_number(
     text = parameters.get(key)
     if not text:
         return None
-    value = _number(text)
-    if value is None:
+    value = finite_number(text)
+    if math.isnan(value):
         raise HardwareInfoError(
             f"line {line}: '{key}' of {where} is '{text}'; it must be a finite number"
         )
@@ -317,19 +317,17 @@ def _parse_limit(parameters: Mapping[str, str], key: str) -> float | None:
 
     Published descriptions, for example Universal Robots', contain "{2*pi}" here.
     """
-    return _number(parameters.get(key, ""))
+    value = finite_number(parameters.get(key, ""))
+    return None if math.isnan(value) else value
 
 
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
+def _content(element: UrdfElement, tag: str) -> str:
+    child = element.first(tag)
+    return child.content if child else ""
 
 
-def _required_name(element: "etree._Element", what: str) -> str:
-    name = (element.get("name") or "").strip()
+def _required_name(element: UrdfElement, what: str) -> str:
+    name = element.text("name")
     if not name:
-        raise HardwareInfoError(f"line {element.sourceline}: {what} has no name")
+        raise HardwareInfoError(f"line {element.line}: {what} has no name")
     return name

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from arm_control.errors import HardwareInfoError
 from arm_control.hardware.info import InterfaceInfo, JointInfo, parse_hardware_info
 from arm_description.errors import DescriptionError
-from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.description import Description, as_description
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Joint
 
@@ -68,7 +68,7 @@ def read_joint_limits(description: Description) -> dict[str, JointLimits]:
         HardwareInfoError: the description cannot be read, or allows a joint no position at all.
     """
     try:
-        document = as_document(description)
+        document = as_description(description)
         robot = parse_urdf(document, remark=ignore_remark)
         components = parse_hardware_info(document)
     except DescriptionError as error:

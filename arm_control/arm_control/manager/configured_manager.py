@@ -6,7 +6,7 @@ from arm_control.hardware.driver import Hardware
 from arm_control.hardware.joint_limits import read_joint_limits
 from arm_control.manager.controller_manager import NO_LIMITS, ControllerManager
 from arm_control.manager.settings import ManagerSettings
-from arm_description.urdf.document import Description
+from arm_description.urdf.description import Description
 
 
 def configured_manager(

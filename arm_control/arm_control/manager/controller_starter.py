@@ -21,7 +21,7 @@ from arm_control.manager.parameter_file import ControllerParameterFile, Paramete
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.parameters import build_parameters, known_parameters, specs_of
-from arm_description.urdf.document import Description
+from arm_description.urdf.description import Description
 
 MANAGER = "controller_manager"
 ROOT = "/"

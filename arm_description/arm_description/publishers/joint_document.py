@@ -12,8 +12,8 @@ import lxml.etree as etree
 
 from arm_description.errors import UrdfError
 from arm_description.urdf.element import Remark, UrdfElement
-from arm_description.urdf.joint_reader import read_joint
 from arm_description.urdf.joint_type import JointType
+from arm_description.urdf.parser import read_joint
 from arm_description.urdf.robot import Joint, JointLimit
 from arm_description.urdf.xml_document import parse_xml
 

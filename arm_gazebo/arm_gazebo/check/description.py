@@ -10,12 +10,12 @@ import mujoco
 
 from arm_control.errors import ArmControlError
 from arm_control.hardware.info import HardwareInfo, parse_hardware_info
-from arm_description.errors import DescriptionError
+from arm_description.errors import DescriptionError, XmlError
 from arm_description.package_search import PackagePlace
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.element import Remark
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Mesh, Robot
-from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
 from arm_gazebo.check.mesh_sizes import mesh_sizes
 from arm_gazebo.check.ros_parser import refused_by_ros
@@ -126,6 +126,12 @@ def check_description(
         options: options of the model; `strict` makes an unavailable mesh an error.
     """
     report = BuildReport()
+    try:
+        description = RobotDescription(urdf, source)
+    except XmlError as error:
+        # Without XML no other check is possible.
+        return DescriptionCheck(None, (_failure(error, source),), options.resources.used)
+    report.add(*unread_elements(description), *refused_by_ros(description))
     robot: Robot | None = None
     hardware: tuple[HardwareInfo, ...] = ()
     cameras: tuple[CameraSensor, ...] = ()
@@ -136,20 +142,15 @@ def check_description(
         report.repair(remark.element, remark.problem, remark.line)
 
     with failures(report, source):
-        report.add(*unread_elements(urdf, source), *refused_by_ros(urdf, parse_xml(urdf, source)))
-    if report.findings and report.findings[-1].outcome is BuildOutcome.FAILED:
-        # Without XML no other check is possible.
-        return DescriptionCheck(None, report.findings, options.resources.used)
+        robot = parse_urdf(description, source, note)
     with failures(report, source):
-        robot = parse_urdf(urdf, source, note)
-    with failures(report, source):
-        cameras = parse_cameras(urdf, report.add)
-        tags = parse_gazebo_tags(urdf)
+        cameras = parse_cameras(description, report.add)
+        tags = parse_gazebo_tags(description)
     if robot is not None:
         with failures(report, source):
-            sensors = parse_link_sensors(urdf, robot, report.add)
+            sensors = parse_link_sensors(description, robot, report.add)
     with failures(report, source):
-        hardware = parse_hardware_info(urdf)
+        hardware = parse_hardware_info(description)
         if not hardware and robot is not None:
             hardware = _default_hardware(urdf, robot, report)
         _check_interfaces(hardware, sensors, report)
@@ -172,10 +173,13 @@ def failures(report: BuildReport, source: str) -> Iterator[None]:
     try:
         yield
     except (DescriptionError, ArmControlError, GazeboError) as error:
-        message = str(error).removeprefix(source).removeprefix(", ").removeprefix(" ")
-        line = int(found.group(1)) if (found := _LINE.search(message)) else 0
-        message = message.removeprefix(f"line {line}: ")
-        report.add(Finding(BuildOutcome.FAILED, source, message, line))
+        report.add(_failure(error, source))
+
+
+def _failure(error: Exception, source: str) -> Finding:
+    message = str(error).removeprefix(source).removeprefix(", ").removeprefix(" ")
+    line = int(found.group(1)) if (found := _LINE.search(message)) else 0
+    return Finding(BuildOutcome.FAILED, source, message.removeprefix(f"line {line}: "), line)
 
 
 def _default_hardware(urdf: str, robot: Robot, report: BuildReport) -> tuple[HardwareInfo, ...]:

@@ -7,9 +7,9 @@ without the whole <inertial>, <visual>, <collision> or colour for one in a link.
 
 import re
 from collections.abc import Iterator
-from typing import Any
 
-from arm_description.urdf.element import QUATERNION, written_name
+from arm_description.urdf.description import RobotDescription
+from arm_description.urdf.element import QUATERNION, UrdfElement
 from arm_gazebo.build_report import BuildOutcome, Finding
 
 VERSION = "1.0"
@@ -32,28 +32,23 @@ _ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _OTHER_BLANK = re.compile(r"[^\S ]|&#0*(?:9|10|13);|&#[xX]0*(?:9|[aA]|[dD]);")
 
 
-def refused_by_ros(text: str, robot: Any) -> Iterator[Finding]:
-    """Yield what urdfdom refuses or leaves out in silence of a description that is read here.
-
-    Args:
-        text: the description; a parsed document no longer has the tabs and line ends in it.
-        robot: its <robot> element.
-    """
+def refused_by_ros(description: RobotDescription) -> Iterator[Finding]:
+    """Yield what urdfdom refuses or leaves out in silence of a description that is read here."""
+    robot = description.root
     version = robot.get("version", VERSION)
     if robot.tag == "robot" and version != VERSION:
         yield _finding(robot, "<robot>", f"has version='{version}'; Jazzy knows only {VERSION}")
-    for dynamics in robot.iterfind("joint/dynamics"):
-        if dynamics.get("damping") is None and dynamics.get("friction") is None:
-            yield _finding(dynamics, _of_joint(dynamics), "has neither damping nor friction")
-    for safety in robot.iterfind("joint/safety_controller"):
-        if safety.get("k_velocity") is None:
-            yield _finding(safety, _of_joint(safety), "has no k_velocity")
-    for material in robot.iterfind("link/visual/material"):
+    for dynamics in robot.find("joint/dynamics"):
+        if not dynamics.attributes.keys() & {"damping", "friction"}:
+            yield _finding(dynamics, dynamics.label, "has neither damping nor friction")
+    for safety in robot.find("joint/safety_controller"):
+        if "k_velocity" not in safety.attributes:
+            yield _finding(safety, safety.label, "has no k_velocity")
+    for material in robot.find("link/visual/material"):
         if not material.get("name"):
-            link = material.getparent().getparent().get("name")
-            where = f"<material> of link '{link}'"
-            yield _finding(material, where, "has no name")
-    yield from _blanks(text)
+            yield _finding(material, material.label, "has no name")
+    # Parsed elements no longer have the tabs and line ends in them.
+    yield from _blanks(description.text)
 
 
 def _blanks(text: str) -> Iterator[Finding]:
@@ -76,10 +71,6 @@ def _blanks(text: str) -> Iterator[Finding]:
             yield Finding(BuildOutcome.DOUBTFUL, f"<{name}>", message, line)
 
 
-def _of_joint(element: Any) -> str:
-    return f"<{written_name(element)}> of joint '{element.getparent().get('name')}'"
-
-
-def _finding(element: Any, name: str, problem: str) -> Finding:
+def _finding(element: UrdfElement, name: str, problem: str) -> Finding:
     message = f"{problem}; {NOT_ACCEPTED}"
-    return Finding(BuildOutcome.DOUBTFUL, name, message, int(element.sourceline or 0))
+    return Finding(BuildOutcome.DOUBTFUL, name, message, element.line)

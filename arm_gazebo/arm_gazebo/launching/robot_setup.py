@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from arm_description.resources import ResourceFinder
-from arm_description.urdf.xml_document import parse_xml
+from arm_description.urdf.description import RobotDescription
 from arm_description.xacro.expansion import XacroExpansion, arguments_of_text, expand_xacro_file
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import (
@@ -88,12 +88,13 @@ def set_up_robot(
     """
     given = folders(package_path)
     expansion = _expanded(model, arguments_of_text(model_args), given)
-    description = expansion.text
+    text = expansion.text
     remarks: list[str] = []
-    joints = HardwareJoints()
-    if not has_hardware(description) or not controllers:
+    joints, named_files = HardwareJoints(), list[str]()
+    if not has_hardware(text) or not controllers:
         # Only in this case, so that a complete robot is not parsed twice.
         description, joints = _completed(expansion, remarks)
+        text, named_files = description.text, gz_parameter_files(description)
     if isinstance(controllers, Mapping):
         content = checked_controllers(controllers, "the controllers' parameters")
     elif controllers:
@@ -103,11 +104,11 @@ def set_up_robot(
         remarks.append(f"no controllers are given: {_describe_defaults(joints)}")
         remarks += (
             f"the description names a file for Gazebo's plugin; to use it: controllers:={file}"
-            for file in gz_parameter_files(description)
+            for file in named_files
         )
     spawned, left_out = _spawned(spawn, content if controllers else None, joints, remarks)
     required = spawn.strip() != SPAWN_AUTO
-    return RobotSetup(description, content, spawned, required, given, tuple(remarks), left_out)
+    return RobotSetup(text, content, spawned, required, given, tuple(remarks), left_out)
 
 
 def _expanded(
@@ -140,20 +141,22 @@ def folders(path: str) -> tuple[Path, ...]:
     return tuple(Path(folder).expanduser() for folder in path.split(os.pathsep) if folder.strip())
 
 
-def _completed(expansion: XacroExpansion, remarks: list[str]) -> tuple[str, HardwareJoints]:
+def _completed(
+    expansion: XacroExpansion, remarks: list[str]
+) -> tuple[RobotDescription, HardwareJoints]:
     """Return the description with hardware, and the joints by their interfaces."""
     from arm_control.hardware.info import parse_hardware_info
     from arm_description.urdf.parser import ignore_remark, parse_urdf
 
-    description = expansion.text
-    robot = parse_urdf(description, expansion.source, ignore_remark)
-    if not has_hardware(description):
+    description = RobotDescription(expansion.text, expansion.source)
+    robot = parse_urdf(description, remark=ignore_remark)
+    if not has_hardware(description.text):
         joints = commandable_joints(robot)
         remarks.append(
             f"robot '{robot.name}' has no <ros2_control> block: a default one commands "
             f"{', '.join(joints) or 'nothing, because no joint can be commanded'}"
         )
-        description = with_hardware(description, robot)
+        description = RobotDescription(with_hardware(description.text, robot))
     return description, hardware_joints(robot, parse_hardware_info(description))
 
 
@@ -173,10 +176,9 @@ def _describe_defaults(joints: HardwareJoints) -> str:
     return "; ".join(clauses)
 
 
-def gz_parameter_files(description: str) -> list[str]:
+def gz_parameter_files(description: RobotDescription) -> list[str]:
     """Return the parameter files that a description names for gz_ros2_control."""
-    named = parse_xml(description).iterfind("gazebo/plugin/parameters")
-    files = (str(element.text or "").strip() for element in named)
+    files = [named.content for named in description.root.find("gazebo/plugin/parameters")]
     return [file for file in files if os.path.isfile(file)]
 
 

@@ -1,12 +1,13 @@
 """Read the physics and colours of links from `<gazebo>` tags. Sensors are read elsewhere."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from arm_description.mesh.data import Color
-from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.description import Description, RobotDescription, as_description
+from arm_description.urdf.element import UrdfElement
+from arm_description.urdf.xml_document import finite_number
 from arm_gazebo.build_report import BuildReport, Finding
 from arm_node.names import listing
 
@@ -133,9 +134,13 @@ def parse_gazebo_tags(description: Description) -> GazeboTags:
     Raises:
         XmlError: the text is not XML.
     """
-    root = as_document(description).root
-    reader = _TagReader({str(e.get("name")) for e in root if e.tag in ("link", "joint")})
-    for gazebo in root.findall("gazebo"):
+    return as_description(description).read(_read_tags)
+
+
+def _read_tags(description: RobotDescription) -> GazeboTags:
+    parts = (*description.links, *description.joints)
+    reader = _TagReader({part.get("name") for part in parts})
+    for gazebo in description.gazebo:
         reader.read(gazebo)
     return reader.tags()
 
@@ -157,23 +162,23 @@ class _TagReader:
             self._report.drop(f"<gazebo> <{tag}>{others}", reason, lines[0])
         return GazeboTags(self._links, self._self_collide, self._report.findings)
 
-    def read(self, gazebo: Any) -> None:
-        reference = str(gazebo.get("reference", "")).strip()
+    def read(self, gazebo: UrdfElement) -> None:
+        reference = gazebo.text("reference")
         if reference and reference not in self._names:
             self._report.warn(
                 f"<gazebo reference='{reference}'>",
                 f"no link or joint has this name; there are {listing(sorted(self._names))}",
-                int(gazebo.sourceline or 0),
+                gazebo.line,
             )
             return
         before = self._links.get(reference, NO_LINK_TAGS)
         after = before
-        for element in gazebo.iterchildren(tag="*"):
+        for element in gazebo.elements:
             after = self._take(after, element, reference)
         if reference and after != before:
             self._links[reference] = after
 
-    def _take(self, tags: LinkTags, element: Any, reference: str) -> LinkTags:
+    def _take(self, tags: LinkTags, element: UrdfElement, reference: str) -> LinkTags:
         if element.tag in FRICTION_TAGS and reference:
             friction = self._friction(element)
             known = tags.friction
@@ -193,74 +198,73 @@ class _TagReader:
             self._leave_out_plugin(element)
         elif element.tag == "sensor" and not reference:
             self._report.drop(
-                f"<gazebo> <sensor name='{element.get('name')}'>",
+                f"<gazebo> <sensor name='{element.attributes.get('name')}'>",
                 "no link carries it: its <gazebo> has no reference",
-                int(element.sourceline or 0),
+                element.line,
             )
         elif element.tag not in IGNORED_TAGS:
-            self._left_out.setdefault(str(element.tag), []).append(int(element.sourceline or 0))
+            self._left_out.setdefault(element.tag, []).append(element.line)
         return tags
 
-    def _leave_out_plugin(self, element: Any) -> None:
-        file = str(element.get("filename", "")).strip()
-        name = f"{file} {element.get('name', '')}".lower()
+    def _leave_out_plugin(self, element: UrdfElement) -> None:
+        file = element.text("filename")
+        name = f"{file} {element.get('name')}".lower()
         if any(part in name for part in IGNORED_PLUGINS):
             return
         instead = next((text for part, text in INSTEAD_OF_PLUGINS.items() if part in name), "")
         self._report.drop(
             f"<gazebo> <plugin filename='{file}'>",
             f"Gazebo's plugins are not loaded{instead}",
-            int(element.sourceline or 0),
+            element.line,
         )
 
-    def _friction(self, element: Any) -> float | None:
-        value = next(_numbers(_text(element)), math.nan)
-        if not (math.isfinite(value) and value >= 0):
+    def _friction(self, element: UrdfElement) -> float | None:
+        value = next(iter(_numbers(_text(element))), math.nan)
+        if not value >= 0:
             self._warn(element, "is not a number of at least 0; it is left out")
             return None
         return min(max(value, MIN_FRICTION), MAX_FRICTION)
 
-    def _grip(self, tags: LinkTags, element: Any) -> LinkTags:
-        direction = list(_numbers(_text(element)))
-        if len(direction) != 3 or not all(map(math.isfinite, direction)) or not any(direction):
+    def _grip(self, tags: LinkTags, element: UrdfElement) -> LinkTags:
+        direction = _numbers(_text(element))
+        if len(direction) != 3 or any(map(math.isnan, direction)) or not any(direction):
             self._warn(element, "is not a direction x y z; it is left out")
             return tags
-        frames = [value for key, value in element.items() if key.endswith("expressed_in")]
+        frames = [
+            value for key, value in element.attributes.items() if key.endswith("expressed_in")
+        ]
         if frames and frames[0] not in self._names:
             self._warn(element, f"is given in '{frames[0]}', which is not a link; it is left out")
             return tags
         x, y, z = direction
         return replace(tags, grip=(x, y, z), grip_frame=frames[0] if frames else "")
 
-    def _color(self, element: Any) -> Color | None:
+    def _color(self, element: UrdfElement) -> Color | None:
         if element.tag == "material" and _text(element):
             color = gazebo_color(_text(element))
             if color is None:
                 self._warn(element, "is not a material of Gazebo's; the link keeps its colours")
             return color
         for tag in ("diffuse", "ambient"):
-            found = element.find(f".//{tag}")
-            numbers = [] if found is None else list(_numbers(_text(found)))
-            if len(numbers) in (3, 4) and all(map(math.isfinite, numbers)):
+            found = next((inner for inner in element.inside() if inner.tag == tag), None)
+            numbers = _numbers(_text(found)) if found else []
+            if len(numbers) in (3, 4) and not any(map(math.isnan, numbers)):
                 red, green, blue, alpha = (min(max(n, 0.0), 1.0) for n in [*numbers, 1.0][:4])
                 return red, green, blue, alpha
         return None
 
-    def _warn(self, element: Any, problem: str) -> None:
+    def _warn(self, element: UrdfElement, problem: str) -> None:
         self._report.warn(
             f"<gazebo> <{element.tag}>",
             f"'{_text(element)}' {problem}",
-            int(element.sourceline or 0),
+            element.line,
         )
 
 
-def _text(element: Any) -> str:
-    return str(element.text or element.get("value") or "").strip()
+def _text(element: UrdfElement) -> str:
+    return element.content or element.text("value")
 
 
-def _numbers(text: str) -> Iterator[float]:
-    for word in text.split():
-        try:
-            yield float(word)
-        except ValueError:
-            yield math.nan
+def _numbers(text: str) -> list[float]:
+    """Return the numbers of a text; nan for a word that is no finite number."""
+    return [finite_number(word) for word in text.split()]

@@ -8,7 +8,7 @@ from arm_control.manager.configured_manager import bring_up, configured_manager
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.settings import ManagerSettings
 from arm_description.resources import ResourceFinder
-from arm_description.urdf.document import UrdfDocument
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
@@ -45,7 +45,7 @@ class AssembledRobot:
                 or is invalid.
         """
         self._settings = settings
-        self.document = UrdfDocument(settings.robot_description)
+        self.document = RobotDescription(settings.robot_description)
         self._hardware_info = parse_hardware_info(self.document)
         if not self._hardware_info:
             raise SimSettingsError(

@@ -1,10 +1,10 @@
 """An element of an SDF file that keeps track of what has been read from it."""
 
 import math
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import lxml.etree as etree
 import numpy as np
@@ -13,17 +13,31 @@ from numpy.typing import NDArray
 from arm_description.errors import XmlError
 from arm_description.mesh.data import Color
 from arm_description.transforms import rotation_from_quaternion, rotation_from_rpy, transform
-from arm_description.urdf.element import written_name
-from arm_description.urdf.xml_document import parse_xml
+from arm_description.urdf.xml_document import XmlElement
 from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.errors import WorldError
-from arm_gazebo.sdf.unread import NOT_SIMULATED, unread_outcome
 from arm_node.user_file import read_text
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 IGNORED_ATTRIBUTES = frozenset({"name", "attached_to", "canonical_link", "version"})
 """Attributes that have no effect if they are not read, because a model is one rigid body."""
 MODEL_FILE = "model.sdf"
+SCENE_ELEMENTS = frozenset(
+    {
+        *("actor", "joint", "gripper", "light", "sensor", "road", "population"),
+        *("particle_emitter", "projector", "wind", "model", "include"),
+    }
+)
+"""Elements that add something to the scene, or move it."""
+EMPTY_SHAPES = frozenset({"empty"})
+"""The children of <geometry> that are not shapes."""
+SYSTEM_PLUGINS = (
+    *("physics", "scenebroadcaster", "usercommands", "sensors", "contact", "imu", "altimeter"),
+    *("magnetometer", "airpressure", "navsat", "forcetorque", "ros", "rosinit", "rosfactory"),
+    *("rosstate", "rosclock", "levels", "worldcontrol", "logicalcamera", "logrecord"),
+)
+"""World plugins that Gazebo itself needs; the simulation does not."""
+RIGID = "the links of a model are one rigid body"
+NOT_SIMULATED = "it is not simulated"
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -35,28 +49,33 @@ class SdfPose:
     relative_to: str = ""
 
 
-class SdfElement:
+@dataclass(frozen=True, slots=True)
+class SdfFile:
+    """A file that elements are read from.
+
+    Attributes:
+        path: the file; plain paths in it are relative to its folder.
+        includers: the chain of files that led here by <include>, the outermost first.
+    """
+
+    path: Path
+    includers: tuple[Path, ...] = ()
+
+
+class SdfElement(XmlElement[SdfFile]):
     """An element of an SDF file; most of its values are the texts of its children.
 
     Every method raises WorldError for an invalid value; the message names the file, the line and
-    the element.
+    the element. `home` is the file.
     """
 
-    def __init__(
-        self,
-        element: etree._Element,
-        source: Path,
-        owner: str = "",
-        includers: tuple[Path, ...] = (),
-    ) -> None:
-        self._element = element
-        self._owner = owner
-        self._children: dict[str, list[SdfElement]] = {}
-        self._read_attributes: set[str] = set()
+    __slots__ = ("_left_out", "_read_attributes", "_read_tags")
+
+    def __init__(self, element: etree._Element, home: SdfFile, parent: Self | None = None) -> None:
+        super().__init__(element, home, parent)
+        self._read_tags: dict[str, Sequence[SdfElement]] = {}
+        self._read_attributes: frozenset[str] = frozenset()
         self._left_out = ""
-        self.source = source
-        self.includers = includers
-        """The chain of files that led here by <include>, the outermost first."""
 
     @classmethod
     def read(cls, path: Path, includers: tuple[Path, ...] = ()) -> "SdfElement":
@@ -65,37 +84,23 @@ class SdfElement:
             text = read_text(path)
         except (OSError, UnicodeDecodeError) as error:
             raise WorldError(f"cannot read {path}: {error}") from error
-        return cls.parse(text, path, includers)
+        return cls.of_text(text, path, includers)
 
     @classmethod
-    def parse(cls, text: str, source: Path, includers: tuple[Path, ...] = ()) -> "SdfElement":
+    def of_text(cls, text: str, source: Path, includers: tuple[Path, ...] = ()) -> "SdfElement":
         """Return the root of a text, an <sdf> element; plain paths are relative to the source."""
         try:
-            root = parse_xml(text, str(source))
+            read = cls.parse(text, str(source), SdfFile(source, includers))
         except XmlError as error:
             raise WorldError(str(error)) from error
-        read = cls(root, source, includers=includers)
         if read.tag != "sdf":
             raise read.error("is not SDF; the root element must be <sdf>")
         return read
 
     @property
-    def tag(self) -> str:
-        """The element's name."""
-        return written_name(self._element)
-
-    @property
-    def line(self) -> int:
-        """The element's line in its file."""
-        return int(self._element.sourceline or 0)
-
-    @property
-    def label(self) -> str:
-        """The element's name in messages: "link 'can'", or "<box> of link 'can'"."""
-        name = self.name
-        if name:
-            return f"{self.tag} '{name}'"
-        return f"<{self.tag}> of {self._owner}" if self._owner else f"<{self.tag}>"
+    def source(self) -> Path:
+        """The file that it is read from."""
+        return self.home.path
 
     @property
     def file_label(self) -> str:
@@ -106,12 +111,12 @@ class SdfElement:
     @property
     def name(self) -> str:
         """The attribute `name`, "" if there is none."""
-        return self.attribute("name")
+        return self.get("name").strip()
 
     def attribute(self, key: str) -> str:
         """Return an attribute without surrounding blanks, "" if there is none."""
-        self._read_attributes.add(key)
-        return str(self._element.get(key, "")).strip()
+        self._read_attributes |= {key}
+        return self.get(key).strip()
 
     def boolean(self, key: str) -> bool:
         """Return an attribute as a boolean, False if there is none."""
@@ -128,19 +133,11 @@ class SdfElement:
         """Report this element as left out, for a reason, instead of what is unread in it."""
         self._left_out = reason
 
-    def children(self, tag: str) -> "list[SdfElement]":
-        """Return the children with this tag."""
-        if tag not in self._children:
-            self._children[tag] = self.peek_children(tag)
-        return self._children[tag]
-
-    def peek_children(self, tag: str) -> "list[SdfElement]":
-        """Return the children with this tag without marking them as read."""
-        return [
-            SdfElement(child, self.source, self.label if self.name else self._owner, self.includers)
-            for child in self._element.iterchildren("*")
-            if written_name(child) == tag
-        ]
+    def children(self, tag: str) -> "Sequence[SdfElement]":
+        """Return the children with this tag, which count as read."""
+        if tag not in self._read_tags:
+            self._read_tags[tag] = self.find(tag)
+        return self._read_tags[tag]
 
     def child(self, tag: str) -> "SdfElement | None":
         """Return the first child with this tag, or None."""
@@ -164,16 +161,16 @@ class SdfElement:
     def text(self, tag: str, default: str = "") -> str:
         """Return the text of a child, or a default."""
         child = self.child(tag)
-        return default if child is None else child._text()
+        return default if child is None else child.content
 
     def flag(self, tag: str) -> bool:
         """Return a child's text as a boolean; False if there is no such child."""
         child = self.child(tag)
         if child is None:
             return False
-        if child._text().lower() not in _BOOLEANS:
-            raise child.error(f"has '{child._text()}', which is neither true nor false")
-        return _BOOLEANS[child._text().lower()]
+        if child.content.lower() not in _BOOLEANS:
+            raise child.error(f"has '{child.content}', which is neither true nor false")
+        return _BOOLEANS[child.content.lower()]
 
     def number(self, tag: str, default: float | None = None) -> float:
         """Return the number of a child, which must exist unless there is a default."""
@@ -193,7 +190,8 @@ class SdfElement:
         child = self.child(tag)
         if child is None and default is not None:
             return default
-        return self.required(tag)._numbers(count)
+        child = self.required(tag)
+        return child.numbers_of(child.content, (count,))
 
     def color(self, tag: str, default: Color | None = None) -> Color:
         """Return the colour of a child, which must exist unless there is a default.
@@ -202,7 +200,8 @@ class SdfElement:
         """
         if self.child(tag) is None and default is not None:
             return default
-        r, g, b, a = (*self.required(tag)._numbers(3, 4), 1.0)[:4]
+        child = self.required(tag)
+        r, g, b, a = (*child.numbers_of(child.content, (3, 4)), 1.0)[:4]
         return r, g, b, a
 
     def pose(self) -> SdfPose:
@@ -210,19 +209,19 @@ class SdfElement:
         pose = self.child("pose")
         if pose is None:
             return SdfPose(np.eye(4))
-        matrix = pose._transform() if pose._text() else np.eye(4)
+        matrix = pose._transform() if pose.content else np.eye(4)
         return SdfPose(matrix, pose.attribute("relative_to"))
 
     def _transform(self) -> NDArray[np.float64]:
         """Return the transform (4, 4) that a <pose> holds."""
         match self.attribute("rotation_format"):
             case "" | "euler_rpy":
-                x, y, z, *rpy = self._numbers(6)
+                x, y, z, *rpy = self.numbers_of(self.content, (6,))
                 if self.boolean("degrees"):
                     rpy = [math.radians(angle) for angle in rpy]
                 return transform(rotation_from_rpy(rpy), (x, y, z))
             case "quat_xyzw":
-                x, y, z, *quaternion = self._numbers(7)
+                x, y, z, *quaternion = self.numbers_of(self.content, (7,))
                 norm = math.hypot(*quaternion)
                 if norm == 0.0:
                     raise self.error("has a quaternion of length 0")
@@ -239,37 +238,21 @@ class SdfElement:
             yield Unread(self, BuildOutcome.LEFT_OUT, self._left_out)
             return
         # Old SDF versions write empty attributes; "{...}" is a namespace.
-        for key, value in self._element.attrib.items():
-            name = str(key)
+        for name, value in self.attributes.items():
             if (
                 value.strip()
                 and name[0] != "{"
                 and name not in self._read_attributes | IGNORED_ATTRIBUTES
             ):
                 yield Unread(self, BuildOutcome.DROPPED, NOT_SIMULATED, name)
-        for child in self._element.iterchildren("*"):
-            if written_name(child) not in self._children:
-                attributes = {str(key): str(value) for key, value in child.attrib.items()}
-                outcome = unread_outcome(written_name(child), self.tag, attributes)
+        for child in self.elements:
+            if child.tag not in self._read_tags:
+                outcome = _unread_outcome(child)
                 if outcome:
-                    owner = self.label if self.name else self._owner
-                    yield Unread(SdfElement(child, self.source, owner), *outcome)
-        for children in self._children.values():
+                    yield Unread(child, *outcome)
+        for children in self._read_tags.values():
             for child in children:
                 yield from child.unread()
-
-    def _text(self) -> str:
-        return str(self._element.text or "").strip()
-
-    def _numbers(self, *counts: int) -> tuple[float, ...]:
-        words = self._text().split()
-        if len(words) not in counts:
-            wanted = " or ".join(map(str, counts))
-            raise self.error(f"has '{' '.join(words)}': {len(words)} values, not {wanted}")
-        for word in words:
-            if not (_NUMBER.fullmatch(word) and math.isfinite(float(word))):
-                raise self.error(f"has '{word}', which is not a finite number")
-        return tuple(float(word) for word in words)
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,3 +294,28 @@ def unread_findings(read: Iterable[SdfElement]) -> Iterator[Finding]:
         more = f" and {others} more" if others else ""
         what = f"{first.label} in {first.element.file_label}{more}"
         yield Finding(first.outcome, what, first.reason, first.element.line, len(group))
+
+
+def _unread_outcome(element: SdfElement) -> tuple[BuildOutcome, str] | None:
+    """Return what happens to an unread element, and why; None if nothing is missing."""
+    tag, parent = element.tag, element.parent.tag if element.parent else ""
+    if tag == "joint":
+        # A fixed joint changes nothing: the links of a model are one rigid body anyway.
+        return None if element.get("type") == "fixed" else (BuildOutcome.LEFT_OUT, RIGID)
+    if parent == "geometry":
+        return None if tag in EMPTY_SHAPES else (BuildOutcome.LEFT_OUT, NOT_SIMULATED)
+    if tag in SCENE_ELEMENTS or (tag == "plugin" and not _is_system_plugin(element)):
+        return BuildOutcome.LEFT_OUT, NOT_SIMULATED
+    return BuildOutcome.DROPPED, NOT_SIMULATED
+
+
+def _is_system_plugin(plugin: SdfElement) -> bool:
+    """Return whether a plugin is one of Gazebo's own systems."""
+    file = plugin.get("filename").lower().removeprefix("lib").removesuffix(".so")
+    words = file.replace("_", "-").split("-")
+    plain = [word for word in words if word not in ("gz", "ignition", "gazebo", "sim", "system")]
+    return (
+        plugin.parent is not None
+        and plugin.parent.tag == "world"
+        and "".join(word for word in plain if not word[:1].isdigit()) in SYSTEM_PLUGINS
+    )

@@ -61,7 +61,7 @@ def sdf_file_in(folder: Path) -> Path | None:
 
 def _read(file: Path, include: SdfElement) -> SdfElement:
     """Read an included file, unless it is in its own chain of includes."""
-    chain = [*include.includers, include.source]
+    chain = [*include.home.includers, include.source]
     if file.resolve() in (source.resolve() for source in chain):
         start = next(i for i, path in enumerate(chain) if path.resolve() == file.resolve())
         circle = " -> ".join(path.name for path in (*chain[start:], file))

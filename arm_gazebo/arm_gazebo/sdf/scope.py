@@ -64,7 +64,7 @@ class SdfScope:
         self._gazebos: list[SdfElement] = []
         self.links = element.children("link") if element.tag == "model" else []
         # Only the poses of joints are used, so joints still count as unread.
-        self.joints = element.peek_children("joint")
+        self.joints = element.find("joint")
         models = (*self._nested(), *self._included())
         self.models = {model.name: model for model in models}
         _check_names((*self.links, *(model.element for model in models)), models)

@@ -2,15 +2,14 @@
 
 import math
 from collections import deque
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import UrdfError
 from arm_description.transforms import rotation_from_rpy
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.element import UrdfElement
-from arm_description.urdf.parser import ignore_remark
 from arm_description.urdf.robot import Pose
 
 Matrix = NDArray[np.float64]
@@ -25,20 +24,21 @@ class CameraFrames:
     """A link of a URDF and every link that fixed joints attach to it.
 
     Args:
-        root: the root element of the URDF.
+        description: the URDF.
         link: name of the link that carries the camera.
     """
 
-    def __init__(self, root: Any, link: str) -> None:
+    def __init__(self, description: RobotDescription, link: str) -> None:
         self._link = link
         self._poses: dict[str, Matrix] = {link: np.eye(4)}
-        fixed = [joint for joint in root.findall("joint") if joint.get("type") == "fixed"]
+        fixed = [joint for joint in description.joints if joint.get("type") == "fixed"]
         pending = deque([link])
         while pending:
             parent = pending.popleft()
             for joint in fixed:
-                child, origin = _child_of(joint, parent), _origin(joint)
-                if child and origin is not None and child not in self._poses:
+                child = _child_of(joint, parent)
+                origin = _origin(joint) if child and child not in self._poses else None
+                if origin is not None:
                     self._poses[child] = self._poses[parent] @ origin.matrix()
                     pending.append(child)
 
@@ -64,17 +64,18 @@ class CameraFrames:
         return np.linalg.inv(pose) @ optics
 
 
-def _child_of(joint: Any, parent: str) -> str:
+def _child_of(joint: UrdfElement, parent: str) -> str:
     """Return the child link of a joint; empty if the joint has another parent link."""
-    above, below = joint.find("parent"), joint.find("child")
+    above, below = joint.first("parent"), joint.first("child")
     if above is None or below is None or above.get("link") != parent:
         return ""
-    return str(below.get("link", ""))
+    return below.get("link")
 
 
-def _origin(joint: Any) -> Pose | None:
+def _origin(joint: UrdfElement) -> Pose | None:
     """Return the pose of a joint in its parent link; None if the origin is invalid."""
+    origin = joint.first("origin")
     try:
-        return UrdfElement(joint, ignore_remark).origin()
+        return origin.pose() if origin else Pose()
     except UrdfError:
         return None

@@ -4,11 +4,10 @@ import logging
 import math
 from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.robot import Pose
 from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.camera import (
@@ -27,7 +26,6 @@ from arm_gazebo.sensors.reader import TYPES, sensor_type
 from arm_gazebo.sensors.tags import (
     COLOR_FORMATS,
     SensorTags,
-    sensor_elements,
     unique_names,
 )
 
@@ -58,11 +56,11 @@ def parse_cameras(
         SensorError: a value is invalid; the message names sensor, element and line.
         XmlError: the text is not XML.
     """
-    root = as_document(description).root
-    links = [str(link.get("name")) for link in root.findall("link")]
+    document = as_description(description)
+    links = [link.get("name") for link in document.links]
     cameras: list[CameraSensor] = []
     taken: dict[str, CameraSensor] = {}
-    for tags in _camera_tags(root):
+    for tags in _camera_tags(document):
         tags.check_reference("link", links)
         if any((c.name, c.link) == (tags.name, tags.reference) for c in cameras):
             raise tags.error(
@@ -70,7 +68,7 @@ def parse_cameras(
                 f"a second camera of this name on link {tags.reference!r}; each needs a name of "
                 "its own",
             )
-        camera = _read_camera(tags, root, taken)
+        camera = _read_camera(tags, document, taken)
         _take_topics(camera, tags, taken)
         cameras.append(camera)
         for finding in tags.findings():
@@ -79,15 +77,15 @@ def parse_cameras(
     return tuple(replace(c, name=name) for c, name in zip(cameras, names, strict=True))
 
 
-def _camera_tags(root: Any) -> Iterator[SensorTags]:
-    for link, sensor in sensor_elements(root):
+def _camera_tags(document: RobotDescription) -> Iterator[SensorTags]:
+    for link, sensor in document.sensors:
         kind = sensor_type(sensor)
         if kind in CAMERA_TYPES:
             yield SensorTags(sensor, link, kind, "camera")
         elif kind is None:
             logger.warning(
                 "sensor %r (line %s) has type %r: it is not simulated, only %s are",
-                *(sensor.get("name"), sensor.sourceline, sensor.get("type")),
+                *(sensor.attributes.get("name"), sensor.line, sensor.attributes.get("type")),
                 ", ".join(dict.fromkeys(TYPES.values())),
             )
 
@@ -126,7 +124,9 @@ def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
     return tuple(f"{topic}/{name}" for topic in topics)
 
 
-def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSensor:
+def _read_camera(
+    tags: SensorTags, document: RobotDescription, taken: Container[str]
+) -> CameraSensor:
     near = tags.number("clip/near", DEFAULT_CLIP[0], lambda v: v > 0, "above 0")
     far_default = max(DEFAULT_CLIP[1], 2 * near)
     if tags.type == "camera":
@@ -135,7 +135,7 @@ def _read_camera(tags: SensorTags, root: Any, taken: Container[str]) -> CameraSe
     topics = _Topics.of(tags, taken)
     numbers = tags.pose()
     pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
-    frames = CameraFrames(root, tags.reference)
+    frames = CameraFrames(document, tags.reference)
     frame = tags.frame(frames.optical())
     optics = frames.optics_in(frame, pose)
     if optics is not None and np.abs(optics[:3, :3] - np.eye(3)).max() > ROTATION_TOLERANCE:

@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
-from arm_description.urdf.document import Description, as_document
+from arm_description.urdf.description import Description, as_description
+from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.robot import Robot
 from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.force_torque import ForceTorqueSensor
 from arm_gazebo.sensors.imu import ImuSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
-from arm_gazebo.sensors.tags import SensorTags, sensor_elements, unique_names
+from arm_gazebo.sensors.tags import SensorTags, unique_names
 
 SENSORS: Mapping[str, type[LinkSensor]] = {
     sensor.type: sensor for sensor in (ImuSensor, ForceTorqueSensor, ContactSensor)
@@ -29,9 +29,9 @@ TYPES: Mapping[str, str] = {
 """The simulated types by Gazebo's names, older names included."""
 
 
-def sensor_type(element: Any) -> str | None:
+def sensor_type(element: UrdfElement) -> str | None:
     """Return the type of a `<sensor>` element; None if it is not simulated."""
-    return TYPES.get(str(element.get("type", "")).strip())
+    return TYPES.get(element.text("type"))
 
 
 def parse_link_sensors(
@@ -51,7 +51,7 @@ def parse_link_sensors(
         XmlError: the text is not XML.
     """
     sensors: list[LinkSensor] = []
-    for reference, element in sensor_elements(as_document(description).root):
+    for reference, element in as_description(description).sensors:
         kind = sensor_type(element) or ""
         sensor_class = SENSORS.get(kind)
         if sensor_class is None:

@@ -4,9 +4,10 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
-from arm_description.urdf.element import written_name
+from arm_description.urdf.element import UrdfElement
+from arm_description.urdf.xml_document import finite_number
 from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.errors import SensorError
 
@@ -21,19 +22,6 @@ COUNTS = {2: "two", 6: "six"}
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/]")
 _SLASHES = re.compile(r"/+")
 _DIGIT_FIRST = re.compile(r"(^|/)(?=[0-9])")
-
-
-def sensor_elements(root: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the link or joint and the `<sensor>` element of each sensor of a URDF, in order.
-
-    As in Gazebo, sensors of missing links and joints are skipped: a xacro condition that leaves
-    out a link often forgets its tags. `parse_gazebo_tags` reports them.
-    """
-    known = {str(part.get("name")).strip() for part in root if part.tag in ("link", "joint")}
-    for gazebo in root.findall("gazebo"):
-        reference = str(gazebo.get("reference", "")).strip()
-        for sensor in gazebo.findall("sensor") if reference in known else ():
-            yield reference, sensor
 
 
 class _AttachedSensor(Protocol):
@@ -79,22 +67,22 @@ class SensorTags:
     """
 
     def __init__(
-        self, element: Any, reference: str, type_name: str, below: str | None = None
+        self, element: UrdfElement, reference: str, type_name: str, below: str | None = None
     ) -> None:
         self._element = element
-        self._below = below or type_name
+        self._inner = element.find(below or type_name)
         self._known: set[str] = set(HARMLESS)
         self._single: set[str] = set()
         self._doubts: list[Finding] = []
         self.reference = reference
         self.type = type_name
-        self.name = str(element.get("name") or "").strip()
+        self.name = element.text("name")
         if not self.name:
             raise self.error("sensor", "a sensor needs a name")
 
-    def error(self, tag: str, problem: str, element: Any = None) -> SensorError:
+    def error(self, tag: str, problem: str, element: UrdfElement | None = None) -> SensorError:
         """Return an error about one tag or attribute of this sensor."""
-        line = (self._element if element is None else element).sourceline
+        line = (element or self._element).line
         return SensorError(f"{self.type} sensor {self.name!r}, <{tag}> (line {line}): {problem}")
 
     def doubt(self, tag: str, problem: str) -> None:
@@ -126,10 +114,10 @@ class SensorTags:
                 "gazebo", f"no {kind} {self.reference!r}; the robot has {', '.join(known)}"
             )
 
-    def texts(self, *tags: str) -> list[tuple[Any, str]]:
+    def texts(self, *tags: str) -> list[tuple[UrdfElement, str]]:
         """Return element and text of every non-empty tag of these names, outer ones first."""
         found = (element for tag in tags for element in self._find(tag))
-        return [(e, str(e.text or "").strip()) for e in found if str(e.text or "").strip()]
+        return [(element, element.content) for element in found if element.content]
 
     def has(self, tag: str) -> bool:
         """Return whether there is a tag of this name."""
@@ -143,7 +131,7 @@ class SensorTags:
         """Return an attribute of the first tag of this name; empty if there is none."""
         self._known.add(f"{tag}@{name}")
         found = self._find(tag)
-        return str(found[0].get(name, "")).strip() if found else ""
+        return found[0].text(name) if found else ""
 
     def number(
         self, tag: str, default: float, fits: Callable[[float], bool], must_be: str
@@ -151,11 +139,8 @@ class SensorTags:
         """Return a finite number that `fits` accepts; `must_be` words the condition for errors."""
         self._single.add(tag)
         for element, text in self.texts(tag):
-            try:
-                value = float(text)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value) or not fits(value):
+            value = finite_number(text)
+            if math.isnan(value) or not fits(value):
                 raise self.error(tag, f"must be {must_be}, not {text!r}", element)
             return value
         return default
@@ -195,11 +180,8 @@ class SensorTags:
         """Return a tag's finite numbers, as many as the default has."""
         self._single.add(tag)
         for element, text in self.texts(tag):
-            try:
-                values = tuple(float(word) for word in text.split())
-            except ValueError:
-                values = ()
-            if len(values) != len(default) or not all(map(math.isfinite, values)):
+            values = tuple([finite_number(word) for word in text.split()])
+            if len(values) != len(default) or any(map(math.isnan, values)):
                 wanted = f"{COUNTS[len(default)]} numbers"
                 raise self.error(tag, f"{text!r} is not {wanted}", element)
             return values
@@ -209,19 +191,19 @@ class SensorTags:
         """Return x y z roll pitch yaw of the sensor in its link or joint."""
         return self.numbers("pose", (0.0,) * 6)
 
-    def _find(self, tag: str) -> list[Any]:
+    def _find(self, tag: str) -> list[UrdfElement]:
         """Return the tags of this name, outer ones first."""
         self._known.add(tag)
-        paths = (f"./{tag}", f"./{self._below}/{tag}")
-        return [element for path in paths for element in self._element.xpath(path)]
+        if tag == ".":
+            return [self._element, *self._inner]
+        return [found for outer in (self._element, *self._inner) for found in outer.find(tag)]
 
-    def _unread(self, element: Any, path: str, seen: set[str]) -> Iterator[Finding]:
-        for child in element.iterchildren(tag="*"):
-            name = written_name(child)
-            here = path + name
+    def _unread(self, element: UrdfElement, path: str, seen: set[str]) -> Iterator[Finding]:
+        for child in element.elements:
+            here = path + child.tag
             if here in self._known:
                 yield from self._unread_attributes(child, here)
-            if not path and name == self._below and element is self._element:
+            if child in self._inner:
                 yield from self._unread(child, "", seen)
             elif any(known.startswith(here + "/") for known in self._known):
                 yield from self._unread(child, here + "/", seen)
@@ -233,16 +215,18 @@ class SensorTags:
                 yield self._finding(BuildOutcome.DOUBTFUL, child, here, problem)
             seen.add(here)
 
-    def _unread_attributes(self, element: Any, path: str) -> Iterator[Finding]:
-        for name, value in element.attrib.items():
+    def _unread_attributes(self, element: UrdfElement, path: str) -> Iterator[Finding]:
+        for name, value in element.attributes.items():
             if f"{path}@{name}" not in self._known and value.strip() not in UNCHANGED:
                 problem = f"the simulation does not use {name}='{value}'"
                 yield self._finding(BuildOutcome.DROPPED, element, path, problem)
 
-    def _finding(self, outcome: BuildOutcome, element: Any, tag: str, problem: str) -> Finding:
+    def _finding(
+        self, outcome: BuildOutcome, element: UrdfElement, tag: str, problem: str
+    ) -> Finding:
         owner = f"{self.type} '{self.name}'"
         name = owner if element is self._element else f"<{tag}> of {owner}"
-        return Finding(outcome, name, problem, int(element.sourceline or 0))
+        return Finding(outcome, name, problem, element.line)
 
 
 def _topic_of(name: str) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.resources import ResourceFinder, resolve_uri
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
@@ -145,13 +146,13 @@ class ModelSource:
         return _checked(source, lambda: readers[tag](text, path, BuildReport()))
 
     def _read_urdf(self, text: str, path: Path | None, report: BuildReport) -> SpawnModel:
-        robot = parse_urdf(text, "resource_string" if path is None else str(path))
-        tags = parse_gazebo_tags(text)
+        description = RobotDescription(text, "resource_string" if path is None else str(path))
+        robot, tags = parse_urdf(description), parse_gazebo_tags(description)
         report.add(*tags.findings)
         spec, meshes = self._empty(ResourceFinder.of_description(text, self.package_path))
         default = mujoco.MjSpec().default
         geometry = LinkGeometry(meshes, default, tags, WORLD_MASKS, True, report)
-        free = robot.root != WORLD_LINK and not _is_static(text)
+        free = robot.root != WORLD_LINK and not _is_static(description)
         bodies = BodyTree(
             spec, robot, geometry, TreeOptions(self.step_s, default, free, Pose()), report
         ).add()
@@ -162,7 +163,7 @@ class ModelSource:
         return SpawnModel(spec, root, "urdf", report.findings, _origin(robot, root, bodies))
 
     def _read_sdf(self, text: str, path: Path | None, report: BuildReport) -> SpawnModel:
-        root = SdfElement.parse(text, path or Path("resource_string"))
+        root = SdfElement.of_text(text, path or Path("resource_string"))
         model = root.child("model")
         if model is None:
             raise root.error("has no <model> to spawn; a <world> is for LoadWorld")
@@ -260,11 +261,9 @@ def _origin(robot: Robot, root: str, bodies: Mapping[str, mujoco.MjsBody]) -> ND
     return np.eye(4) if first is None else first.origin.matrix()
 
 
-def _is_static(urdf: str) -> bool:
-    return any(
-        str(static.text).strip().lower() in ("true", "1")
-        for static in parse_xml(urdf).findall("gazebo/static")
-    )
+def _is_static(description: RobotDescription) -> bool:
+    flags = description.root.find("gazebo/static")
+    return any(flag.content.lower() in ("true", "1") for flag in flags)
 
 
 def _too_large(source: str) -> RequestError:

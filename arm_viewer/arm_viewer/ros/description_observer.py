@@ -9,7 +9,7 @@ from std_msgs.msg import String
 
 from arm_description.errors import DescriptionError
 from arm_description.resources import ResourceFinder
-from arm_description.urdf.initial_values import initial_values
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes
@@ -59,7 +59,8 @@ def _read(topic: str, text: str) -> Description:
     namespace = topic.removesuffix(f"/{WORD}")
     try:
         # The text may name the folders of its meshes, so each robot needs its own finder.
-        robot = ResourceFinder.of_description(text).located(parse_urdf(text))
-        return Description(topic, namespace, robot, initial=initial_values(text))
+        description = RobotDescription(text)
+        robot = ResourceFinder.of_description(text).located(parse_urdf(description))
+        return Description(topic, namespace, robot, initial=description.initial_values())
     except DescriptionError as error:
         return Description(topic, namespace, None, f"{topic} is not a valid robot: {error}")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_control.hardware.info import parse_hardware_info
-from arm_description.urdf.document import UrdfDocument
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.camera.on_demand import OnDemandCameras
 from arm_gazebo.camera.pipeline import CameraPipeline
@@ -59,7 +59,7 @@ class Published:
 
 
 def test_a_picture_is_that_of_the_camera_process_with_its_noise():
-    document = UrdfDocument(ROBOT)
+    document = RobotDescription(ROBOT)
     cameras = parse_cameras(document)
     hardware = parse_hardware_info(document)
     built = build_model(parse_urdf(document), hardware, cameras, world="objects")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_description.transforms import quaternion_from_rpy
-from arm_description.urdf.initial_values import initial_values
+from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_node.rigid_transform import RigidTransform
 from arm_viewer.scene.frame_poses import (
@@ -67,8 +67,8 @@ PLACES = {"base": "base", "arm": "arm", "hand": "hand", "f": "f"}
 
 
 def test_the_state_interfaces_initial_value_takes_precedence():
-    assert initial_values(URDF.format(start=1.5)) == {"turn": 1.5}
-    assert initial_values(URDF.format(start="nothing")) == {"turn": 0.5}
+    assert RobotDescription(URDF.format(start=1.5)).initial_values() == {"turn": 1.5}
+    assert RobotDescription(URDF.format(start="nothing")).initial_values() == {"turn": 0.5}
 
 
 def test_a_robot_without_joint_states_is_drawn_at_its_initial_pose():

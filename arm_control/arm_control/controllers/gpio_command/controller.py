@@ -26,7 +26,7 @@ from arm_control.parameters import (
     take_group,
 )
 from arm_control.run_inputs import run_input
-from arm_description.urdf.document import as_document
+from arm_description.urdf.description import as_description
 
 MAX_WAITING = 1000
 """Commands between two cycles; of a faster stream the oldest are lost."""
@@ -226,10 +226,10 @@ class GpioCommandController(Controller[GpioCommandParameters]):
         context = self.context
         described: dict[str, tuple[str, ...]] = {}
         if context.robot_description:
-            robot = as_document(context.document or context.robot_description).root
-            for gpio in robot.iterfind("ros2_control/gpio"):
-                states = gpio.iterfind("state_interface")
-                described[gpio.get("name", "")] = tuple(state.get("name", "") for state in states)
+            robot = as_description(context.document or context.robot_description).root
+            for gpio in robot.find("ros2_control/gpio"):
+                states = gpio.find("state_interface")
+                described[gpio.get("name")] = tuple(state.get("name") for state in states)
         return {gpio: described.get(gpio, ()) for gpio in gpios}
 
 

@@ -29,7 +29,7 @@ from arm_control.manager.ros.controller_node import ControllerNode
 from arm_control.manager.ros.parameter_node import OF_CONTROLLERS
 from arm_control.manager.switch_planner import Strictness, SwitchRequest, SwitchResult
 from arm_control.parameters import ParameterSpec
-from arm_description.urdf.document import Description
+from arm_description.urdf.description import Description
 
 logger = logging.getLogger("controller_manager")
 

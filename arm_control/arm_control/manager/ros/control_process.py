@@ -26,7 +26,7 @@ from arm_control.manager.ros.controllers_executor import controllers_executor
 from arm_control.manager.ros.description_topic import DescriptionTopic
 from arm_control.manager.ros.simulated_clock import DeadlineClock, SimulatedClock
 from arm_description.errors import DescriptionError
-from arm_description.urdf.document import UrdfDocument
+from arm_description.urdf.description import RobotDescription
 from arm_node.process import EXIT_FAILED, NodeProcess
 from arm_node.workarounds.discovery import first_node
 
@@ -81,7 +81,7 @@ def control_process(process: NodeProcess, arguments: Sequence[str]) -> Iterator[
 
 def _wait_for_robot(
     process: NodeProcess, node: ControllerManagerNode, descriptions: DescriptionTopic
-) -> tuple[UrdfDocument, ControllerManager] | None:
+) -> tuple[RobotDescription, ControllerManager] | None:
     """Return the first usable description and its manager; None if the process must end."""
     description = _description_parameter(node)
     reminder = Throttle(REMINDER_INTERVAL_S)
@@ -121,10 +121,10 @@ def _description_parameter(node: ControllerManagerNode) -> str | None:
 
 def _manager(
     description: str, node: ControllerManagerNode
-) -> tuple[UrdfDocument, ControllerManager] | None:
+) -> tuple[RobotDescription, ControllerManager] | None:
     """Create a manager for a description's hardware; log the reason if that fails."""
     try:
-        document = UrdfDocument(description)
+        document = RobotDescription(description)
         infos = parse_hardware_info(document)
         if not infos:
             raise HardwareInfoError("it has no <ros2_control> block, which describes the hardware")

@@ -22,7 +22,7 @@ from arm_control.manager.ros.emergency_stop import EmergencyStopServer
 from arm_control.manager.ros.introspection_publisher import IntrospectionPublisher
 from arm_control.manager.ros.manager_services import ManagerServices
 from arm_control.manager.ros.messages import activity_message
-from arm_description.urdf.document import Description, text_of
+from arm_description.urdf.description import Description, text_of
 from arm_node.executor_thread import ExecutorThread
 from arm_node.logger_levels import LoggerLevelServices
 from arm_node.names import as_node_name

@@ -4,7 +4,7 @@ import pytest
 
 from arm_control import ControllerContext, parse_hardware_info, read_joint_limits
 from arm_description import UrdfError, XmlError, parse_urdf
-from arm_description.urdf.document import UrdfDocument, as_document, text_of
+from arm_description.urdf.description import RobotDescription, as_description, text_of
 
 ROBOT = """\
 <robot name="r">
@@ -22,7 +22,7 @@ ROBOT = """\
 
 
 def test_readers_of_a_document_find_what_they_find_in_its_text():
-    document = UrdfDocument(ROBOT)
+    document = RobotDescription(ROBOT)
     assert parse_urdf(document) == parse_urdf(ROBOT)
     assert parse_hardware_info(document) == parse_hardware_info(ROBOT)
     assert read_joint_limits(document) == read_joint_limits(ROBOT)
@@ -30,7 +30,7 @@ def test_readers_of_a_document_find_what_they_find_in_its_text():
 
 def test_a_document_has_one_robot_and_remarks_once():
     remarks = []
-    document = UrdfDocument(f"<urdf>{ROBOT}</urdf>")
+    document = RobotDescription(f"<urdf>{ROBOT}</urdf>")
     robot = parse_urdf(document, remark=remarks.append)
     assert document.is_wrapped
     assert len(remarks) == 1
@@ -39,7 +39,7 @@ def test_a_document_has_one_robot_and_remarks_once():
 
 
 def test_controllers_share_the_robot_of_their_managers_document():
-    document = UrdfDocument(ROBOT)
+    document = RobotDescription(ROBOT)
     robot = parse_urdf(document)
     context = ControllerContext.of("c", 100, document)
     assert context.robot_description == ROBOT
@@ -49,14 +49,14 @@ def test_controllers_share_the_robot_of_their_managers_document():
 
 
 def test_a_text_becomes_a_document_and_a_document_stays_itself():
-    document = as_document(ROBOT, "arm.urdf")
+    document = as_description(ROBOT, "arm.urdf")
     assert (document.text, document.source) == (ROBOT, "arm.urdf")
-    assert as_document(document) is document
+    assert as_description(document) is document
     assert text_of(document) == text_of(ROBOT) == ROBOT
 
 
 def test_what_is_wrong_is_said_with_the_documents_source():
     with pytest.raises(XmlError, match=r"^arm\.urdf, line 1: not XML"):
-        UrdfDocument("<robot", "arm.urdf")
+        RobotDescription("<robot", "arm.urdf")
     with pytest.raises(UrdfError, match=r"^arm\.urdf, line 1: <thing> is not a robot"):
-        parse_urdf(UrdfDocument("<thing/>", "arm.urdf"))
+        parse_urdf(RobotDescription("<thing/>", "arm.urdf"))
