@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass
 from difflib import SequenceMatcher
 from functools import cache
+from types import MappingProxyType
 from typing import Any, TypeGuard, get_args, get_origin, get_type_hints
 
 from arm_control.errors import ParameterError
@@ -20,6 +21,7 @@ NEAREST, MANY = 5, 15
 """How many known parameters a message names, if there are more than the second."""
 
 _METADATA_KEY = "arm_control.parameter"
+_GROUPS_KEY = "arm_control.parameter_groups"
 _SCALARS = (bool, int, float, str)
 
 
@@ -148,16 +150,91 @@ def parameter(
     return dataclasses.field(default=default, metadata={_METADATA_KEY: rules})
 
 
+@dataclass(frozen=True, slots=True)
+class _Groups:
+    """What `parameter_groups` says about a field."""
+
+    kind: type[Any]
+    by: str
+    prefix: str
+    only: str
+    single: bool
+
+    def names(self, values: Mapping[str, Any]) -> tuple[Any, ...]:
+        if not self.single:
+            return list_among(values, self.by)
+        return tuple(filter(None, (values.get(self.by),)))
+
+    def take(self, values: dict[str, Any]) -> Any:
+        """Remove the groups' values from those by full name; return what the field holds."""
+        groups = {
+            name: take_group(self.kind, f"{self.prefix}.{name}.", values)
+            for name in self.names(values)
+        }
+        if self.single:
+            return next(iter(groups.values()), self.kind())
+        return {name: getattr(g, self.only) if self.only else g for name, g in groups.items()}
+
+
+def parameter_groups(
+    kind: type[Any], by: str, *, prefix: str = "gains", only: str = "", single: bool = False
+) -> Any:
+    """Describe a field with a group of parameters for each name that another parameter has.
+
+    `gains: Mapping[str, Gains] = parameter_groups(Gains, by="joints")` stands for 'gains.j0.p' and
+    so on if 'j0' is among the joints.
+
+    Args:
+        kind: the dataclass of each group.
+        by: the parameter that has the names.
+        prefix: what precedes them in the parameters' names.
+        only: the one parameter of each group whose value stands for the group.
+        single: whether `by` is one name, and the field the group itself.
+    """
+    groups = _Groups(kind, by, prefix, only, single)
+    return dataclasses.field(
+        default_factory=kind if single else dict, metadata={_GROUPS_KEY: groups}
+    )
+
+
+def specs_of(
+    parameters_type: type[Any], prefix: str = "", given: Mapping[str, Any] = MappingProxyType({})
+) -> tuple[ParameterSpec, ...]:
+    """Return the parameters that a dataclass describes, including those of its groups.
+
+    Args:
+        parameters_type: the dataclass.
+        prefix: what precedes each name.
+        given: values by full name, from which `parameter_groups` take the names of their groups.
+    """
+    groups = _groups_of(parameters_type).values()
+    named = dict.fromkeys((name, g.by) for g in groups for name in g.names(given))
+    return _fixed_specs(parameters_type, prefix) + tuple(
+        spec
+        for name, by in named
+        for group in groups
+        if group.by == by
+        for spec in _fixed_specs(group.kind, f"{prefix}{group.prefix}.{name}.")
+    )
+
+
+@cache
+def _groups_of(parameters_type: type[Any]) -> Mapping[str, _Groups]:
+    fields = dataclasses.fields(parameters_type)
+    return {f.name: f.metadata[_GROUPS_KEY] for f in fields if _GROUPS_KEY in f.metadata}
+
+
 @cache  # Reading a dataclass is slow, and a node asks at every change.
-def specs_of(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpec, ...]:
-    """Return the parameters that a dataclass describes, including those of its groups."""
+def _fixed_specs(parameters_type: type[Any], prefix: str = "") -> tuple[ParameterSpec, ...]:
     specs: list[ParameterSpec] = []
     hints = get_type_hints(parameters_type)
     for field in dataclasses.fields(parameters_type):
+        if _GROUPS_KEY in field.metadata:
+            continue
         hint = hints[field.name]
         name = prefix + field.name
         if dataclasses.is_dataclass(hint) and isinstance(hint, type):
-            specs.extend(specs_of(hint, f"{name}."))
+            specs.extend(_fixed_specs(hint, f"{name}."))
             continue
         rules = field.metadata.get(_METADATA_KEY, _Rules("", read_only=False))
         is_list = get_origin(hint) is tuple
@@ -193,7 +270,7 @@ def _is_list(value: object) -> TypeGuard[Iterable[object]]:
 
 
 def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -> Any:
-    """Make an instance of a parameters dataclass.
+    """Make an instance of a parameters dataclass, and call its `check_together` if it has one.
 
     Args:
         parameters_type: the dataclass.
@@ -202,17 +279,20 @@ def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -
     Raises:
         ParameterError: a name is unknown, or a value has the wrong type.
     """
-    specs = specs_of(parameters_type)
+    rest = dict(values)
+    groups = {name: each.take(rest) for name, each in _groups_of(parameters_type).items()}
+    specs = _fixed_specs(parameters_type)
     known = [spec.name for spec in specs]
-    unknown = sorted(set(values) - set(known))
+    unknown = sorted(set(rest) - set(known))
     if unknown:
         raise ParameterError(
             f"unknown parameter {', '.join(unknown)}; {known_parameters(unknown[0], known)}"
         )
-    converted = {
-        spec.name: spec.convert(values[spec.name]) for spec in specs if spec.name in values
-    }
-    return _build(parameters_type, converted, "")
+    converted = {spec.name: spec.convert(rest[spec.name]) for spec in specs if spec.name in rest}
+    parameters = _build(parameters_type, {**converted, **groups}, "")
+    if hasattr(parameters, "check_together"):
+        parameters.check_together()
+    return parameters
 
 
 def known_parameters(unknown: str, known: Iterable[str]) -> str:
@@ -256,12 +336,6 @@ def take_group(parameters_type: type[Any], prefix: str, values: dict[str, Any]) 
         raise ParameterError(f"under '{prefix[:-1]}': {error}") from error
 
 
-def extend_parameters(parameters_type: type[Any], base: Any, **groups: Any) -> Any:
-    """Return an instance of a derived dataclass: the base's values, and those of its groups."""
-    fields = {field.name: getattr(base, field.name) for field in dataclasses.fields(base)}
-    return parameters_type(**fields, **groups)
-
-
 def check_values(parameters: object, specs: Iterable[ParameterSpec], prefix: str = "") -> None:
     """Check the values of an instance that was made without `build_parameters`.
 
@@ -283,8 +357,8 @@ def _build(parameters_type: type[Any], values: Mapping[str, Any], prefix: str) -
     for field in dataclasses.fields(parameters_type):
         hint = hints[field.name]
         name = prefix + field.name
-        if dataclasses.is_dataclass(hint) and isinstance(hint, type):
-            arguments[field.name] = _build(hint, values, f"{name}.")
-        elif name in values:
+        if name in values:
             arguments[field.name] = values[name]
+        elif dataclasses.is_dataclass(hint) and isinstance(hint, type):
+            arguments[field.name] = _build(hint, values, f"{name}.")
     return parameters_type(**arguments)

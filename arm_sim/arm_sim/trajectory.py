@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from arm_control.controllers.joint_trajectory.goals import TrajectoryPoint, TrajectoryRequest
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_sim.errors import CallError
 
 

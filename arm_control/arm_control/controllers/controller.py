@@ -218,12 +218,11 @@ class Controller(ABC, Generic[ParametersT]):
     def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
         """Return the controller's parameters.
 
-        Override it if the names of some parameters depend on the values of others.
-
         Args:
-            given: values from parameter files and arguments, by full name.
+            given: values from parameter files and arguments, by full name; the names of some
+                parameters may depend on them, see `parameter_groups`.
         """
-        return specs_of(cls.parameters_type)
+        return specs_of(cls.parameters_type, given=given)
 
     @classmethod
     def build_parameters(cls, values: Mapping[str, Any]) -> ParametersT:

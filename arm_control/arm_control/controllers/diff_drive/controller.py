@@ -1,8 +1,7 @@
 """diff_drive_controller/DiffDriveController: drives a robot with two rows of wheels."""
 
-from collections.abc import Mapping
 from math import inf, isfinite
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
 from arm_control.controllers.diff_drive.speed_limits import SpeedLimiter
 from arm_control.controllers.drive import DriveController
 from arm_control.loop.schedule import Schedule
-from arm_control.parameters import build_parameters
 
 STANDSTILL = PlanarTwist()
 REFERENCES = ("linear/velocity", "angular/velocity")
@@ -55,13 +53,6 @@ class DiffDriveController(DriveController[DiffDriveParameters, PlanarTwist]):
         self.sink: DriveSink | None = None
         self._odometry = Odometry()
         self._last_angles: np.ndarray | None = None
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> DiffDriveParameters:
-        """Return the values as one object, checked."""
-        parameters = build_parameters(DiffDriveParameters, values)
-        parameters.check()
-        return parameters
 
     def on_configure(self, parameters: DiffDriveParameters) -> None:
         """Take the parameters and reset the pose to the origin.

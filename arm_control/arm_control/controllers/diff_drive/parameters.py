@@ -110,7 +110,7 @@ class DiffDriveParameters:
         )
         return f"{prefix}/{name}" if prefix else name
 
-    def check(self) -> None:
+    def check_together(self) -> None:
         """Raise `ParameterError` if a value or the bounds of a speed are invalid."""
         check_values(self, specs_of(DiffDriveParameters))
         self.linear.x.check("linear.x.")

@@ -3,8 +3,8 @@
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,21 +17,14 @@ from arm_control.controllers.controller import (
 )
 from arm_control.errors import ControllerError
 from arm_control.parameters import (
-    ParameterSpec,
-    build_parameters,
-    extend_parameters,
-    list_among,
     parameter,
-    specs_of,
-    take_group,
+    parameter_groups,
 )
 from arm_control.run_inputs import run_input
 from arm_description.urdf.description import as_description
 
 MAX_WAITING = 1000
 """Commands between two cycles; of a faster stream the oldest are lost."""
-STATES = "state_interfaces"
-COMMANDS = "command_interfaces"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +46,7 @@ class _StateInterfaces:
 
 
 @dataclass(frozen=True, slots=True)
-class _CommonGpioParameters:
-    """The parameters whose names do not depend on the GPIOs."""
-
-    gpios: tuple[str, ...] = parameter((), "Names of the GPIOs", read_only=True)
-
-
-@dataclass(frozen=True, slots=True)
-class GpioCommandParameters(_CommonGpioParameters):
+class GpioCommandParameters:
     """All parameters.
 
     Attributes:
@@ -68,35 +54,13 @@ class GpioCommandParameters(_CommonGpioParameters):
         states: likewise.
     """
 
-    commands: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    states: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-
-    @classmethod
-    def specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return all parameters; the interfaces are named after the given GPIOs."""
-        specs = specs_of(_CommonGpioParameters)
-        for gpio in list_among(given, "gpios"):
-            specs += specs_of(_CommandInterfaces, f"{COMMANDS}.{gpio}.")
-            specs += specs_of(_StateInterfaces, f"{STATES}.{gpio}.")
-        return specs
-
-    @classmethod
-    def build(cls, values: Mapping[str, Any]) -> "GpioCommandParameters":
-        """Make an instance from values by full name; missing ones take their defaults.
-
-        Raises:
-            ParameterError: a name is unknown, or a value cannot be used.
-        """
-        rest = dict(values)
-        gpios = list_among(rest, "gpios")
-        commands = {g: take_group(_CommandInterfaces, f"{COMMANDS}.{g}.", rest) for g in gpios}
-        states = {g: take_group(_StateInterfaces, f"{STATES}.{g}.", rest) for g in gpios}
-        return extend_parameters(
-            cls,
-            build_parameters(_CommonGpioParameters, rest),
-            commands={gpio: group.interfaces for gpio, group in commands.items()},
-            states={gpio: group.interfaces for gpio, group in states.items()},
-        )
+    gpios: tuple[str, ...] = parameter((), "Names of the GPIOs", read_only=True)
+    commands: Mapping[str, tuple[str, ...]] = parameter_groups(
+        _CommandInterfaces, by="gpios", prefix="command_interfaces", only="interfaces"
+    )
+    states: Mapping[str, tuple[str, ...]] = parameter_groups(
+        _StateInterfaces, by="gpios", prefix="state_interfaces", only="interfaces"
+    )
 
 
 class GpioStateSink(Protocol):
@@ -132,16 +96,6 @@ class GpioCommandController(Controller[GpioCommandParameters]):
         self.sink: GpioStateSink | None = None
         self._command_names: tuple[str, ...] = ()
         self._waiting: deque[dict[int, float]] = deque(maxlen=MAX_WAITING)
-
-    @classmethod
-    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return the parameters; those of interfaces are named after the given GPIOs."""
-        return GpioCommandParameters.specs(given)
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> GpioCommandParameters:
-        """Return the values as one object."""
-        return GpioCommandParameters.build(values)
 
     def on_configure(self, parameters: GpioCommandParameters) -> None:
         """Take the GPIOs and their interfaces.

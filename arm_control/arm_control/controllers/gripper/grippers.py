@@ -1,6 +1,5 @@
 """The three gripper controllers of ros2_controllers: position, parallel and effort."""
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +14,6 @@ from arm_control.controllers.gripper.parameters import (
 )
 from arm_control.controllers.pid import Pid, PidGains
 from arm_control.errors import ControllerError
-from arm_control.parameters import ParameterSpec
 
 
 class PositionGripperController(GripperController[PositionGripperParameters]):
@@ -120,20 +118,6 @@ class EffortGripperController(GripperController[EffortGripperParameters]):
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
         self._pid = Pid([PidGains()])
-
-    @classmethod
-    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return the parameters; the gains are named after the given joint."""
-        return EffortGripperParameters.specs(given)
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> EffortGripperParameters:
-        """Return parameters from values by full name.
-
-        Raises:
-            ParameterError: a name is unknown, or a value cannot be used.
-        """
-        return EffortGripperParameters.build(values)
 
     def command_interface_configuration(self) -> InterfaceConfiguration:
         """Claim the joint's effort."""

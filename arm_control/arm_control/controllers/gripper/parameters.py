@@ -1,19 +1,14 @@
 """Parameters of the gripper controllers."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 from arm_control.controllers.pid import PidGains
 from arm_control.errors import ParameterError
 from arm_control.parameters import (
-    ParameterSpec,
-    build_parameters,
     check_values,
-    extend_parameters,
     parameter,
+    parameter_groups,
     specs_of,
-    take_group,
 )
 
 LOWEST_MONITOR_RATE_HZ = 0.1
@@ -95,22 +90,16 @@ class _GripperGains:
 
 
 @dataclass(frozen=True, slots=True)
-class _CommonEffortGripperParameters(GripperParameters):
-    """The parameters that do not depend on the name of the joint."""
-
-    # Read-only: the gains of a loaded controller are named after this joint.
-    joint: str = parameter("", JOINT, read_only=True)
-
-
-@dataclass(frozen=True, slots=True)
-class EffortGripperParameters(_CommonEffortGripperParameters):
+class EffortGripperParameters(GripperParameters):
     """Parameters of the controller that commands efforts.
 
     Attributes:
         gains: PID gains of its joint.
     """
 
-    gains: _GripperGains = field(default_factory=_GripperGains)
+    # Read-only: the gains of a loaded controller are named after this joint.
+    joint: str = parameter("", JOINT, read_only=True)
+    gains: _GripperGains = parameter_groups(_GripperGains, by="joint", single=True)
 
     @property
     def pid_gains(self) -> PidGains:
@@ -118,35 +107,12 @@ class EffortGripperParameters(_CommonEffortGripperParameters):
         gains = self.gains
         return PidGains(gains.p, gains.i, gains.d, i_max=gains.i_clamp, i_min=-gains.i_clamp)
 
-    @classmethod
-    def specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return all parameters; the gains are named after the given joint."""
-        joint = given.get("joint")
-        gains = specs_of(_GripperGains, _prefix(joint)) if joint else ()
-        return (*specs_of(_CommonEffortGripperParameters), *gains)
-
-    @classmethod
-    def build(cls, values: Mapping[str, Any]) -> "EffortGripperParameters":
-        """Make an instance from values by full name; missing ones take their defaults.
-
-        Raises:
-            ParameterError: a name is unknown, or a value cannot be used.
-        """
-        rest = dict(values)
-        gains = take_group(_GripperGains, _prefix(values.get("joint")), rest)
-        common = build_parameters(_CommonEffortGripperParameters, rest)
-        return extend_parameters(cls, common, gains=gains)
-
     def check(self) -> None:
         """Raise `ParameterError` if a value is out of its range."""
         GripperParameters.check(self)
         # Infinity is allowed: it means no bound.
         if not self.gains.i_clamp >= 0.0:
             raise ParameterError(
-                f"parameter '{_prefix(self.joint)}i_clamp' must be at least 0, "
+                f"parameter 'gains.{self.joint}.i_clamp' must be at least 0, "
                 f"but is {self.gains.i_clamp:g}"
             )
-
-
-def _prefix(joint: object) -> str:
-    return f"gains.{joint}."

@@ -47,8 +47,6 @@ from arm_control.controllers.joint_trajectory.goals import (
     GoalRequest,
     GoalResult,
     JointTolerance,
-    TrajectoryPoint,
-    TrajectoryRequest,
 )
 from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.state import (
@@ -59,6 +57,7 @@ from arm_control.controllers.joint_trajectory.state import (
     StateLayout,
     TrajectorySink,
 )
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 
 __all__ = [
     "ControllerState",

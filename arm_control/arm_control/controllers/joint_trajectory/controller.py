@@ -1,6 +1,5 @@
 """joint_trajectory_controller/JointTrajectoryController: executes joint trajectories."""
 
-from collections.abc import Mapping
 from math import inf
 from typing import Any, ClassVar
 
@@ -12,7 +11,6 @@ from arm_control.controllers.controller import (
     InterfaceConfiguration,
     ReturnType,
 )
-from arm_control.controllers.joint_trajectory.configuration import Configuration
 from arm_control.controllers.joint_trajectory.execution import (
     GoalCancel,
     GoalStart,
@@ -26,11 +24,13 @@ from arm_control.controllers.joint_trajectory.goals import (
     GoalRefusal,
     GoalRequest,
     GoalResult,
-    TrajectoryRequest,
     deactivated,
     not_running,
 )
-from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
+from arm_control.controllers.joint_trajectory.parameters import (
+    Configuration,
+    JointTrajectoryParameters,
+)
 from arm_control.controllers.joint_trajectory.plans import POSITION
 from arm_control.controllers.joint_trajectory.state import (
     MOTION_ROWS,
@@ -38,10 +38,9 @@ from arm_control.controllers.joint_trajectory.state import (
     StateLayout,
     TrajectorySink,
 )
-from arm_control.controllers.joint_trajectory.trajectory import Trajectory
+from arm_control.controllers.joint_trajectory.trajectory import Trajectory, TrajectoryRequest
 from arm_control.controllers.joint_trajectory.validation import find_fault
 from arm_control.errors import ControllerError, ParameterError
-from arm_control.parameters import ParameterSpec
 from arm_control.run_inputs import run_input
 from arm_control.state.attributes import load_attributes, save_attributes
 from arm_description.errors import DescriptionError
@@ -82,20 +81,6 @@ class JointTrajectoryController(Controller[JointTrajectoryParameters]):
         self._executor: TrajectoryExecutor | None = None
         # Caches the trajectory between the check and the submission of a goal.
         self._prepared: tuple[tuple[object, ...], Trajectory | None] = ((), None)
-
-    @classmethod
-    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return the parameters; those of joints are named after the given joints."""
-        return JointTrajectoryParameters.specs(given)
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> JointTrajectoryParameters:
-        """Return parameters from values by full name.
-
-        Raises:
-            ParameterError: a name is unknown, or a value cannot be used.
-        """
-        return JointTrajectoryParameters.build(values)
 
     # Requests: any thread, once configured
 

@@ -1,10 +1,9 @@
 """The clients' requests, not yet checked, and the results of goals."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from itertools import chain
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,121 +15,17 @@ from arm_control.controllers.goals import (
     ended_at_deactivation,
     refused_while_inactive,
 )
+from arm_control.controllers.joint_trajectory.plans import (
+    ACCELERATION,
+    POSITION,
+    QUANTITIES,
+    VELOCITY,
+)
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryRequest
 from arm_control.controllers.loaned_interfaces import describe_unmeasured
+from arm_control.errors import ArmControlError
 
 Array = NDArray[np.float64]
-
-FIELDS = ("positions", "velocities", "accelerations", "effort")
-"""The sequences of a waypoint, in the order of a motion's rows."""
-
-
-@dataclass(frozen=True, slots=True)
-class TrajectoryPoint:
-    """A waypoint; each sequence has one number per joint or is empty.
-
-    Attributes:
-        time_from_start_s: its time since the start of the trajectory.
-        positions: rad or m.
-        velocities: rad/s or m/s.
-        accelerations: rad/s² or m/s².
-        effort: N m or N.
-    """
-
-    time_from_start_s: float
-    positions: Sequence[float] = ()
-    velocities: Sequence[float] = ()
-    accelerations: Sequence[float] = ()
-    effort: Sequence[float] = ()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class WayPoints(Sequence[TrajectoryPoint]):
-    """Waypoints as arrays, of which NumPy processes a hundred thousand in some milliseconds.
-
-    A Python loop over as many takes most of a second, in which every other thread waits for the
-    interpreter. Immutable.
-
-    Attributes:
-        times_s: time of each point, shape (m,).
-        sizes: how many numbers each point has in each field, shape (m, 4).
-        numbers: for each field, the numbers of all points one after another.
-    """
-
-    times_s: Array
-    sizes: NDArray[np.intp]
-    numbers: Sequence[Array]
-    _ends: NDArray[np.intp] = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        # The sum of each column of `sizes` is the length of that field.
-        object.__setattr__(self, "numbers", tuple(self.numbers))
-        object.__setattr__(self, "_ends", np.cumsum(self.sizes, axis=0))
-
-    @classmethod
-    def of(cls, points: Iterable[TrajectoryPoint]) -> "WayPoints":
-        """Return points as arrays."""
-        if isinstance(points, WayPoints):
-            return points
-        points = list(points)
-        fields = [[getattr(point, field) for point in points] for field in FIELDS]
-        sizes = np.array([[len(values) for values in field] for field in fields], dtype=np.intp)
-        return cls(
-            np.array([point.time_from_start_s for point in points], dtype=np.float64),
-            sizes.T.reshape(-1, len(FIELDS)),
-            # The numbers of a message are `array.array`s; converting them one by one takes 30 times
-            # longer.
-            [np.fromiter(chain.from_iterable(field), np.float64) for field in fields],
-        )
-
-    def given(self, kind: int, columns: int) -> tuple[NDArray[np.intp], Array]:
-        """Return which points have numbers in one of FIELDS, and these numbers, (k, columns).
-
-        Each point must have `columns` numbers or none.
-        """
-        return np.flatnonzero(self.sizes[:, kind]), self.numbers[kind].reshape(-1, columns)
-
-    def __len__(self) -> int:
-        return len(self.times_s)
-
-    @overload
-    def __getitem__(self, index: int) -> TrajectoryPoint: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> Sequence[TrajectoryPoint]: ...
-
-    def __getitem__(self, index: int | slice) -> TrajectoryPoint | Sequence[TrajectoryPoint]:
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        index = range(len(self))[index]
-        ends, sizes = self._ends[index].tolist(), self.sizes[index].tolist()
-        fields = [
-            numbers[end - size : end].tolist()
-            for numbers, end, size in zip(self.numbers, ends, sizes, strict=True)
-        ]
-        return TrajectoryPoint(float(self.times_s[index]), *fields)
-
-
-@dataclass(frozen=True, slots=True)
-class TrajectoryRequest:
-    """A trajectory.
-
-    Attributes:
-        joint_names: the joints, in the order of the points' numbers.
-        points: the waypoints in order of time; stored as `WayPoints`.
-        stamp_s: start time; 0 starts at once.
-    """
-
-    joint_names: Sequence[str]
-    points: Sequence[TrajectoryPoint]
-    stamp_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "points", WayPoints.of(self.points))
-
-    @property
-    def way_points(self) -> WayPoints:
-        """The points as arrays."""
-        return WayPoints.of(self.points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,4 +142,139 @@ def too_late(late_s: float) -> GoalResult:
     return GoalResult.aborted(
         ErrorCode.GOAL_TOLERANCE_VIOLATED,
         f"Aborted due to goal_time_tolerance exceeding by {late_s:f} seconds",
+    )
+
+
+CHECKED_ROWS = 3
+"""Position, velocity and acceleration; there is no tolerance for efforts."""
+
+DISABLED = -1.0
+"""In a goal: no tolerance, regardless of the controller's."""
+
+Array = NDArray[np.float64]
+
+
+class ToleranceError(ArmControlError):
+    """A goal's tolerance cannot be used; the message says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """The largest allowed errors, as absolute values.
+
+    Attributes:
+        values: for position, velocity and acceleration, shape (3, n); infinite for no bound.
+        is_any: whether there is any bound.
+    """
+
+    values: NDArray[np.float64]
+    is_any: bool
+
+    @classmethod
+    def of(cls, tolerances: Array) -> "Bounds":
+        """Make bounds from tolerances, shape (3, n), of which 0 or less means none."""
+        values = np.where(tolerances > 0.0, tolerances, np.inf)
+        return cls(values, bool(np.isfinite(values).any()))
+
+    def hold(self, error: Array) -> bool:
+        """Return whether errors, shape (k, n) with k <= 3, are within bounds; NaN never is."""
+        return not self.is_any or not self._is_outside(error).any()
+
+    def excess(self, error: Array, joints: Sequence[str]) -> str:
+        """Return which error is out of bounds, as a message; there must be one."""
+        row, joint = np.argwhere(self._is_outside(error))[0]
+        return (
+            f"{QUANTITIES[row]} error of joint {joints[joint]} is {error[row, joint]:f}, "
+            f"tolerance {self.values[row, joint]:f}"
+        )
+
+    def _is_outside(self, error: Array) -> NDArray[np.bool_]:
+        bounds = self.values[: len(error)]
+        # Not `error > bounds`: a comparison with NaN is false, so NaN would pass.
+        return np.isfinite(bounds) & ~(np.abs(error) <= bounds)
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """The tolerances that are checked while a trajectory is executed.
+
+    Attributes:
+        path: bounds along the path.
+        goal: bounds at the end.
+        goal_time_s: how late `goal` may be met; 0 for any time.
+    """
+
+    path: Bounds
+    goal: Bounds
+    goal_time_s: float
+
+    @classmethod
+    def of(
+        cls, path: Array, goal: Array, stopped_velocity: float, goal_time_s: float
+    ) -> "Tolerances":
+        """Make tolerances from the controller's parameters.
+
+        Args:
+            path: position tolerances along the path, shape (n,).
+            goal: position tolerances at the end, shape (n,).
+            stopped_velocity: velocity tolerance of every joint at the end.
+            goal_time_s: how late the goal may be reached.
+        """
+        on_the_way, at_end = np.zeros((2, CHECKED_ROWS, len(path)))
+        on_the_way[POSITION] = path
+        at_end[POSITION] = goal
+        at_end[VELOCITY] = stopped_velocity
+        return cls(Bounds.of(on_the_way), Bounds.of(at_end), goal_time_s)
+
+    def switched_off(self) -> "Tolerances":
+        """Return tolerances of the same joints without any bound."""
+        off = Bounds.of(np.zeros_like(self.path.values))
+        return Tolerances(off, off, 0.0)
+
+    def for_goal(self, goal: GoalRequest, joints: Sequence[str]) -> "Tolerances":
+        """Return these tolerances, overridden by a goal's.
+
+        Raises:
+            ToleranceError: the goal has a negative tolerance other than -1, or names an unknown
+                joint.
+        """
+        return replace(
+            self,
+            path=_overridden(self.path, goal.path_tolerance, joints),
+            goal=_overridden(self.goal, goal.goal_tolerance, joints),
+            goal_time_s=_resolve(
+                self.goal_time_s, goal.goal_time_tolerance_s, 0.0, "goal_time_tolerance"
+            ),
+        )
+
+
+def _overridden(
+    bounds: Bounds, tolerances: Iterable[JointTolerance], joints: Sequence[str]
+) -> Bounds:
+    values = bounds.values.copy()
+    for tolerance in tolerances:
+        if tolerance.name not in joints:
+            raise ToleranceError(
+                f"there is no joint '{tolerance.name}'; the joints are {', '.join(joints)}"
+            )
+        column = joints.index(tolerance.name)
+        for row, asked in (
+            (POSITION, tolerance.position),
+            (VELOCITY, tolerance.velocity),
+            (ACCELERATION, tolerance.acceleration),
+        ):
+            what = f"the {QUANTITIES[row]} tolerance of joint '{tolerance.name}'"
+            values[row, column] = _resolve(values[row, column], asked, np.inf, what)
+    return Bounds(values, bool(np.isfinite(values).any()))
+
+
+def _resolve(default: float, asked: float, off: float, what: str) -> float:
+    if asked == 0.0:
+        return default
+    if asked > 0.0:
+        return asked
+    if asked == DISABLED:
+        return off
+    raise ToleranceError(
+        f"{what} is {asked:f}; it may be positive, 0 for the default or -1 for none"
     )

@@ -35,7 +35,6 @@ from arm_control.controllers.joint_trajectory import (
     QueriedState,
     StateLayout,
 )
-from arm_control.controllers.joint_trajectory.goals import FIELDS
 from arm_control.controllers.joint_trajectory.plans import QUANTITIES
 from arm_control.controllers.joint_trajectory.ros_serialized_goals import (
     TakenGoal,
@@ -46,6 +45,7 @@ from arm_control.controllers.joint_trajectory.serialized import (
     SerializedTrajectoryError,
     read_trajectory,
 )
+from arm_control.controllers.joint_trajectory.trajectory import FIELDS
 from arm_control.controllers.ros_action import ControllerAction
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.controllers.ros_times import (

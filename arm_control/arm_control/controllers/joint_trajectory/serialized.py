@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.joint_trajectory.goals import FIELDS, TrajectoryRequest, WayPoints
+from arm_control.controllers.joint_trajectory.trajectory import FIELDS, TrajectoryRequest, WayPoints
 from arm_control.errors import ArmControlError
 
 HEADER_BYTES = 4

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.joint_trajectory.configuration import InterfaceLayout
 from arm_control.controllers.joint_trajectory.goals import GoalResult
+from arm_control.controllers.joint_trajectory.parameters import InterfaceLayout
 from arm_control.controllers.joint_trajectory.plans import EFFORT, QUANTITIES, ROWS
 
 MOTION_ROWS = 3

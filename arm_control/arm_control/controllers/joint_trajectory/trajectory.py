@@ -1,13 +1,15 @@
 """A trajectory in the controller's form."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
+from itertools import chain
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.controllers.angles import nearest_turn
-from arm_control.controllers.joint_trajectory.goals import TrajectoryRequest
 from arm_control.controllers.joint_trajectory.plans import (
     ACCELERATION,
     POSITION,
@@ -22,6 +24,118 @@ from arm_control.controllers.joint_trajectory.plans import (
 from arm_control.state.encoding import StateValue
 
 Array = NDArray[np.float64]
+
+FIELDS = ("positions", "velocities", "accelerations", "effort")
+"""The sequences of a waypoint, in the order of a motion's rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryPoint:
+    """A waypoint; each sequence has one number per joint or is empty.
+
+    Attributes:
+        time_from_start_s: its time since the start of the trajectory.
+        positions: rad or m.
+        velocities: rad/s or m/s.
+        accelerations: rad/s² or m/s².
+        effort: N m or N.
+    """
+
+    time_from_start_s: float
+    positions: Sequence[float] = ()
+    velocities: Sequence[float] = ()
+    accelerations: Sequence[float] = ()
+    effort: Sequence[float] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WayPoints(Sequence[TrajectoryPoint]):
+    """Waypoints as arrays, of which NumPy processes a hundred thousand in some milliseconds.
+
+    A Python loop over as many takes most of a second, in which every other thread waits for the
+    interpreter. Immutable.
+
+    Attributes:
+        times_s: time of each point, shape (m,).
+        sizes: how many numbers each point has in each field, shape (m, 4).
+        numbers: for each field, the numbers of all points one after another.
+    """
+
+    times_s: Array
+    sizes: NDArray[np.intp]
+    numbers: Sequence[Array]
+    _ends: NDArray[np.intp] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # The sum of each column of `sizes` is the length of that field.
+        object.__setattr__(self, "numbers", tuple(self.numbers))
+        object.__setattr__(self, "_ends", np.cumsum(self.sizes, axis=0))
+
+    @classmethod
+    def of(cls, points: Iterable[TrajectoryPoint]) -> "WayPoints":
+        """Return points as arrays."""
+        if isinstance(points, WayPoints):
+            return points
+        points = list(points)
+        fields = [[getattr(point, field) for point in points] for field in FIELDS]
+        sizes = np.array([[len(values) for values in field] for field in fields], dtype=np.intp)
+        return cls(
+            np.array([point.time_from_start_s for point in points], dtype=np.float64),
+            sizes.T.reshape(-1, len(FIELDS)),
+            # The numbers of a message are `array.array`s; converting them one by one takes 30 times
+            # longer.
+            [np.fromiter(chain.from_iterable(field), np.float64) for field in fields],
+        )
+
+    def given(self, kind: int, columns: int) -> tuple[NDArray[np.intp], Array]:
+        """Return which points have numbers in one of FIELDS, and these numbers, (k, columns).
+
+        Each point must have `columns` numbers or none.
+        """
+        return np.flatnonzero(self.sizes[:, kind]), self.numbers[kind].reshape(-1, columns)
+
+    def __len__(self) -> int:
+        return len(self.times_s)
+
+    @overload
+    def __getitem__(self, index: int) -> TrajectoryPoint: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[TrajectoryPoint]: ...
+
+    def __getitem__(self, index: int | slice) -> TrajectoryPoint | Sequence[TrajectoryPoint]:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        index = range(len(self))[index]
+        ends, sizes = self._ends[index].tolist(), self.sizes[index].tolist()
+        fields = [
+            numbers[end - size : end].tolist()
+            for numbers, end, size in zip(self.numbers, ends, sizes, strict=True)
+        ]
+        return TrajectoryPoint(float(self.times_s[index]), *fields)
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryRequest:
+    """A trajectory.
+
+    Attributes:
+        joint_names: the joints, in the order of the points' numbers.
+        points: the waypoints in order of time; stored as `WayPoints`.
+        stamp_s: start time; 0 starts at once.
+    """
+
+    joint_names: Sequence[str]
+    points: Sequence[TrajectoryPoint]
+    stamp_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", WayPoints.of(self.points))
+
+    @property
+    def way_points(self) -> WayPoints:
+        """The points as arrays."""
+        return WayPoints.of(self.points)
 
 
 class Interpolation(Enum):

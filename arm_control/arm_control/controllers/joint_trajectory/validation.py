@@ -8,12 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.controllers.angles import nearest_turn
-from arm_control.controllers.joint_trajectory.goals import (
-    FIELDS,
-    ErrorCode,
-    GoalRefusal,
-    TrajectoryRequest,
-)
+from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalRefusal
 from arm_control.controllers.joint_trajectory.plans import (
     EFFORT,
     LARGEST,
@@ -22,7 +17,11 @@ from arm_control.controllers.joint_trajectory.plans import (
     VELOCITY,
     MotionPlan,
 )
-from arm_control.controllers.joint_trajectory.trajectory import Trajectory
+from arm_control.controllers.joint_trajectory.trajectory import (
+    FIELDS,
+    Trajectory,
+    TrajectoryRequest,
+)
 from arm_description.urdf.robot import Robot
 
 SAMPLES_PER_SEGMENT = 8

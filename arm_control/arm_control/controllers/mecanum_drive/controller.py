@@ -1,6 +1,5 @@
 """mecanum_drive_controller/MecanumDriveController: drives a robot with four mecanum wheels."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
 from typing import Any, Protocol
@@ -21,7 +20,7 @@ from arm_control.controllers.mecanum_drive.kinematics import (
     MecanumTwist,
 )
 from arm_control.errors import ControllerError
-from arm_control.parameters import build_parameters, check_values, parameter, specs_of
+from arm_control.parameters import check_values, parameter, specs_of
 
 REFERENCES = ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 STANDSTILL = MecanumTwist()
@@ -112,6 +111,10 @@ class MecanumDriveParameters:
             offset.theta,
         )
 
+    def check_together(self) -> None:
+        """Raise `ParameterError` if a value, which may be a default, is out of its range."""
+        check_values(self, specs_of(MecanumDriveParameters))
+
     def check_robot(self) -> None:
         """Raise `ControllerError` if a wheel has no joint or a covariance has the wrong length."""
         for wheel, joint in zip(WHEELS, self.command_joints, strict=True):
@@ -164,13 +167,6 @@ class MecanumDriveController(DriveController[MecanumDriveParameters, MecanumTwis
         super().__init__(context)
         self.sink: MecanumSink | None = None
         self._odometry = MecanumOdometry()
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> MecanumDriveParameters:
-        """Return the values as one checked object."""
-        parameters = build_parameters(MecanumDriveParameters, values)
-        check_values(parameters, specs_of(MecanumDriveParameters))
-        return parameters
 
     def on_configure(self, parameters: MecanumDriveParameters) -> None:
         """Take the parameters and set the pose to the origin.

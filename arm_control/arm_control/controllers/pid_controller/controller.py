@@ -1,9 +1,9 @@
 """pid_controller/PidController: tracks references from a topic or another controller."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,6 @@ from arm_control.controllers.controller import (
 from arm_control.controllers.pid import Pid
 from arm_control.controllers.pid_controller.parameters import DofGains, PidControllerParameters
 from arm_control.errors import ControllerError
-from arm_control.parameters import ParameterSpec
 from arm_control.run_inputs import run_input
 
 STATE_FIELDS = (
@@ -95,16 +94,6 @@ class PidController(ChainableController[PidControllerParameters]):
         self._offered: deque[Array] = deque(maxlen=1)
         self._measured = np.empty((0, 0))
         self._set_up(PidControllerParameters())
-
-    @classmethod
-    def parameter_specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return the parameters; the gains are named after the given degrees of freedom."""
-        return PidControllerParameters.specs(given)
-
-    @classmethod
-    def build_parameters(cls, values: Mapping[str, Any]) -> PidControllerParameters:
-        """Return the values as one object."""
-        return PidControllerParameters.build(values)
 
     def on_configure(self, parameters: PidControllerParameters) -> None:
         """Take the parameters.

@@ -1,20 +1,14 @@
 """Parameters of pid_controller/PidController."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import inf
-from typing import Any
 
 from arm_control.controllers.pid import AntiWindup, PidGains
 from arm_control.errors import ParameterError
 from arm_control.parameters import (
-    ParameterSpec,
-    build_parameters,
-    extend_parameters,
-    list_among,
     parameter,
-    specs_of,
-    take_group,
+    parameter_groups,
 )
 
 
@@ -66,8 +60,12 @@ class DofGains:
 
 
 @dataclass(frozen=True, slots=True)
-class _CommonPidParameters:
-    """The parameters that do not depend on the names of the degrees of freedom."""
+class PidControllerParameters:
+    """All parameters.
+
+    Attributes:
+        gains: by degree of freedom.
+    """
 
     dof_names: tuple[str, ...] = parameter((), "Joints or axes to command", read_only=True)
     reference_and_state_dof_names: tuple[str, ...] = parameter(
@@ -86,17 +84,7 @@ class _CommonPidParameters:
         at_configuration=True,
     )
     enable_feedforward: bool = parameter(False, "Add the reference times feedforward_gain")
-
-
-@dataclass(frozen=True, slots=True)
-class PidControllerParameters(_CommonPidParameters):
-    """All parameters.
-
-    Attributes:
-        gains: by degree of freedom.
-    """
-
-    gains: Mapping[str, DofGains] = field(default_factory=dict)
+    gains: Mapping[str, DofGains] = parameter_groups(DofGains, by="dof_names")
 
     @property
     def state_dof_names(self) -> tuple[str, ...]:
@@ -112,36 +100,11 @@ class PidControllerParameters(_CommonPidParameters):
             for dof in self.state_dof_names
         )
 
-    @classmethod
-    def specs(cls, given: Mapping[str, Any]) -> tuple[ParameterSpec, ...]:
-        """Return all parameters; the gains are named after the given degrees of freedom."""
-        specs = specs_of(_CommonPidParameters)
-        for dof in list_among(given, "dof_names"):
-            specs += specs_of(DofGains, f"gains.{dof}.")
-        return specs
-
-    @classmethod
-    def build(cls, values: Mapping[str, Any]) -> "PidControllerParameters":
-        """Make an instance from values by full name; missing ones take their defaults.
-
-        Raises:
-            ParameterError: a name is unknown, or a value cannot be used.
-        """
-        rest = dict(values)
-        gains = {
-            dof: take_group(DofGains, f"gains.{dof}.", rest)
-            for dof in list_among(rest, "dof_names")
-        }
-        common = build_parameters(_CommonPidParameters, rest)
-        parameters = extend_parameters(cls, common, gains=gains)
-        parameters.check()
-        return parameters
-
     def gains_of(self, dof: str) -> DofGains:
         """Return the gains of a degree of freedom, or the defaults."""
         return self.gains.get(dof, DofGains())
 
-    def check(self) -> None:
+    def check_together(self) -> None:
         """Raise `ParameterError` if values contradict each other."""
         for dof, gains in self.gains.items():
             for low, high in (("u_clamp_min", "u_clamp_max"), ("i_clamp_min", "i_clamp_max")):

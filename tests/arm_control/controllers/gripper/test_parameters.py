@@ -7,6 +7,7 @@ import pytest
 from arm_control.controllers.gripper.parameters import EffortGripperParameters
 from arm_control.errors import ParameterError
 from arm_control.manager.registry import controller_class
+from arm_control.parameters import build_parameters, specs_of
 
 COMMON = {
     "action_monitor_rate": (20.0, False),
@@ -48,15 +49,15 @@ def test_they_are_those_of_a_real_one(type_name: str, expected: dict[str, Any]) 
 
 
 def test_without_a_joint_there_are_no_gains() -> None:
-    assert {spec.name for spec in EffortGripperParameters.specs({})} == set(COMMON)
+    assert {spec.name for spec in specs_of(EffortGripperParameters, given={})} == set(COMMON)
 
 
 def test_gains_are_those_of_the_joint() -> None:
-    parameters = EffortGripperParameters.build({"joint": "grip", "gains.grip.p": 3})
+    parameters = build_parameters(EffortGripperParameters, {"joint": "grip", "gains.grip.p": 3})
     assert (parameters.joint, parameters.pid_gains.p) == ("grip", 3.0)
     assert (parameters.pid_gains.i_max, parameters.pid_gains.i_min) == (0.0, -0.0)
 
 
 def test_gains_of_another_joint_are_unknown() -> None:
     with pytest.raises(ParameterError, match=r"unknown parameter gains\.j0\.p"):
-        EffortGripperParameters.build({"joint": "grip", "gains.j0.p": 3.0})
+        build_parameters(EffortGripperParameters, {"joint": "grip", "gains.j0.p": 3.0})

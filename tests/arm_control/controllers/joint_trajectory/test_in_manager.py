@@ -20,14 +20,16 @@ from arm_control.controllers.joint_trajectory import (
 )
 from arm_control.errors import ControllerManagerError
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
+from arm_control.parameters import build_parameters
 
 JOINTS = ("j0", "j1", "j2", "j3")
-PARAMETERS = JointTrajectoryParameters.build(
+PARAMETERS = build_parameters(
+    JointTrajectoryParameters,
     {
         "joints": JOINTS,
         "command_interfaces": ["position"],
         "state_interfaces": ["position", "velocity"],
-    }
+    },
 )
 
 

@@ -10,6 +10,7 @@ from arm_control.controllers.joint_trajectory import (
     JointTrajectoryParameters,
 )
 from arm_control.errors import ControllerError, ParameterError
+from arm_control.parameters import build_parameters, specs_of
 
 MakeRig = Callable[..., Any]
 
@@ -24,8 +25,8 @@ def specs() -> dict[str, Any]:
 
 
 def test_parameters_of_each_joint_are_found_by_its_name():
-    parameters = JointTrajectoryParameters.build(
-        {"joints": JOINTS, "gains.j1.p": 3.0, "constraints.j2.goal": 0.5}
+    parameters = build_parameters(
+        JointTrajectoryParameters, {"joints": JOINTS, "gains.j1.p": 3.0, "constraints.j2.goal": 0.5}
     )
 
     assert parameters.gains_of("j1").p == 3.0
@@ -36,9 +37,9 @@ def test_parameters_of_each_joint_are_found_by_its_name():
 @pytest.mark.parametrize("joints", [5, True, "j0"])
 def test_joints_that_are_not_a_list_are_refused_in_a_sentence(joints: object):
     given = {"joints": joints}
-    assert "joints" in {spec.name for spec in JointTrajectoryParameters.specs(given)}
+    assert "joints" in {spec.name for spec in specs_of(JointTrajectoryParameters, given=given)}
     with pytest.raises(ParameterError, match=f"'joints' must be a list, not {joints!r}"):
-        JointTrajectoryParameters.build(given)
+        build_parameters(JointTrajectoryParameters, given)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,7 @@ def test_there_are_no_others():
 )
 def test_values_that_cannot_be(values: dict[str, Any], words: str):
     with pytest.raises(ParameterError, match=words):
-        JointTrajectoryParameters.build({"joints": JOINTS, **values})
+        build_parameters(JointTrajectoryParameters, {"joints": JOINTS, **values})
 
 
 def test_a_refused_change_leaves_the_old_ones(make_rig: MakeRig):

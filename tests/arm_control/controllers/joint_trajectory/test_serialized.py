@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_control.controllers.joint_trajectory.goals import FIELDS, TrajectoryPoint, WayPoints
 from arm_control.controllers.joint_trajectory.serialized import (
     SerializedTrajectoryError,
     read_trajectory,
 )
+from arm_control.controllers.joint_trajectory.trajectory import FIELDS, TrajectoryPoint, WayPoints
 
 
 class Writer:

@@ -6,8 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory.goals import GoalRequest, JointTolerance
-from arm_control.controllers.joint_trajectory.tolerances import ToleranceError, Tolerances
+from arm_control.controllers.joint_trajectory.goals import (
+    GoalRequest,
+    JointTolerance,
+    ToleranceError,
+    Tolerances,
+)
 
 JOINTS = ("j0", "j1", "j2")
 INF = np.inf

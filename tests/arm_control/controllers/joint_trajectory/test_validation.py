@@ -7,11 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory.goals import (
-    ErrorCode,
-    TrajectoryPoint,
-    TrajectoryRequest,
-)
+from arm_control.controllers.joint_trajectory.goals import ErrorCode
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.controllers.joint_trajectory.validation import TrajectoryRules, find_fault
 
 JOINTS = ("j0", "j1", "j2")
