@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from arm_control.lifecycle import LifecycleState, Transition
     from arm_control.loop.control_loop import ControlLoop
     from arm_control.loop.pacer import Pacer, PacerStatistics
-    from arm_control.manager.controller_manager import ControllerManager
-    from arm_control.manager.manager_observer import ManagerObserver
+    from arm_control.manager.controller_manager import ControllerManager, ManagerObserver
     from arm_control.manager.settings import ManagerPolicy
     from arm_control.manager.switch_planner import Strictness, SwitchRequest, SwitchResult
     from arm_control.parameters import parameter

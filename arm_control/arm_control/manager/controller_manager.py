@@ -3,32 +3,30 @@
 import logging
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from math import nan
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 from arm_control.controllers.controller import Controller
 from arm_control.errors import ControllerError, ControllerManagerError
 from arm_control.hardware.command_limits import CommandLimiter
 from arm_control.hardware.driver import Hardware
-from arm_control.hardware.joint_limits import JointLimits
+from arm_control.hardware.joint_limits import JointLimits, read_joint_limits
 from arm_control.hardware.resource_manager import HardwareFault, ResourceManager
 from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.loop.clock import Clock
 from arm_control.loop.run_record import RunRecord
 from arm_control.loop.supervision import RunSupervision, log_failure, raise_failure
-from arm_control.manager.controller_chain import ControllerChain
-from arm_control.manager.controller_lifecycle import ControllerLifecycle
-from arm_control.manager.controller_selection import ControllerSelection
 from arm_control.manager.controller_switcher import DEFAULT_NAME, ControllerSwitcher
-from arm_control.manager.emergency_stop import LATCHED, EmergencyStop
-from arm_control.manager.halts import ControllerHalts
 from arm_control.manager.hardware_lifecycle import HardwareLifecycle
-from arm_control.manager.managed_controller import ManagedController
-from arm_control.manager.manager_observer import ManagerObserver
+from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
 from arm_control.manager.manager_state import ManagerState
-from arm_control.manager.settings import ManagerPolicy
+from arm_control.manager.running_controllers import LATCHED, RunningControllers
+from arm_control.manager.settings import ManagerPolicy, ManagerSettings
 from arm_control.manager.switch_planner import SwitchRequest, SwitchResult
 from arm_control.run_inputs import InputGate, run_input, run_input_noted_as
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
+from arm_description.urdf.document import Description
 
 STATISTICS_S = 5
 """The statistics cover the last few seconds, so that a stall shows for a while, not for ever."""
@@ -37,6 +35,20 @@ DEFAULT_POLICY = ManagerPolicy()
 NO_LIMITS: Mapping[str, JointLimits] = MappingProxyType({})
 
 logger = logging.getLogger("controller_manager")
+
+
+class ManagerObserver(Protocol):
+    """Is told of changes on the loop thread; it must return quickly and must not raise."""
+
+    def controller_transitioned(
+        self, name: str, transition: Transition, start: LifecycleState, end: LifecycleState
+    ) -> None:
+        """A controller attempted a transition; `end` is the transition's goal if it succeeded."""
+        ...
+
+    def activity_changed(self) -> None:
+        """The set of controllers or components, or the state of one of them, has changed."""
+        ...
 
 
 def _describe_load(arguments: Mapping[str, Any]) -> Mapping[str, object]:
@@ -100,39 +112,25 @@ class ControllerManager:
             command_inactive=policy.activate_with_inactive_hardware,
         )
         self._limiter = CommandLimiter(limits, self.resources) if limits else None
-        self._controllers: dict[str, ManagedController] = {}
-        self._lifecycle = ControllerLifecycle(self.resources, self._controller_transitioned)
-        self._chain = ControllerChain(self._controllers, self.resources.exported)
+        self._loaded = loaded = LoadedControllers(self.resources.exported)
         self._switcher = ControllerSwitcher(
-            self._controllers, self.resources, self._lifecycle, self._chain, name
+            loaded, self.resources, self._controller_transitioned, name
         )
-        self._hardware_lifecycle = HardwareLifecycle(
-            self._controllers, self.resources, self._chain, self._switcher, policy
+        self._hardware = HardwareLifecycle(loaded, self.resources, self._switcher, policy)
+        self._active = RunningControllers(
+            loaded, self.resources, self._switcher, self._limiter, name
         )
-        self._emergency = EmergencyStop(self.resources)
-        self._active = ControllerSelection(
-            self._controllers,
-            self._chain,
-            self._switcher,
-            ControllerHalts(self.resources, self._chain, self._emergency, name),
-            self._emergency,
-            self._limiter,
-        )
-        self.state = self._state()
-        self._observers: list[ManagerObserver] = []
-        self._changes = 0
-
-    def _state(self) -> ManagerState:
-        return ManagerState(
-            self._controllers,
+        self.state = ManagerState(
+            loaded,
             self.resources,
-            self._limiter,
-            self._emergency,
-            self._chain,
             self._switcher,
-            self._hardware_lifecycle,
+            self._hardware,
+            self._active,
+            self._limiter,
             self._tracking_changes,
         )
+        self._observers: list[ManagerObserver] = []
+        self._changes = 0
 
     def add_observer(self, observer: ManagerObserver) -> None:
         """Notify this observer of every change from now on."""
@@ -141,21 +139,21 @@ class ControllerManager:
     def set_input_gate(self, gate: InputGate | None) -> None:
         """Route the inputs of the manager and its controllers through a gate; None removes it."""
         self.input_gate = gate
-        for managed in self._controllers.values():
+        for managed in self._loaded.values():
             managed.controller.input_gate = gate
 
     @property
     def controllers(self) -> Mapping[str, ManagedController]:
         """The loaded controllers by name, in the order in which they were loaded."""
-        return self._controllers
+        return self._loaded
 
     # One tick
 
     def update(self, time_s: float, period_s: float) -> None:
         """Update the controllers with commands, and those whose exported states they read."""
         began_s = self._supervision.now_s()
-        if self._emergency.is_engaged:
-            self._emergency.hold()
+        if self._active.is_stopped:
+            self._active.hold()
         elif failed := [c for c in self._active.running if not c.run(time_s, period_s)]:
             self._replace_failed(failed)
         self.updates.add_period(period_s)
@@ -186,17 +184,14 @@ class ControllerManager:
     @property
     def emergency_stopped(self) -> bool:
         """Whether an emergency stop holds everything; any thread."""
-        return self._emergency.is_engaged
+        return self._active.is_stopped
 
     @run_input
     def set_emergency_stop(self, engaged: bool) -> bool:
         """Engage or release the emergency stop; return False if that changes nothing."""
-        if engaged == self._emergency.is_engaged:
+        if engaged == self._active.is_stopped:
             return False
-        if engaged:
-            self._emergency.engage()
-        else:
-            self._emergency.release()
+        self._active.set_emergency_stop(engaged)
         self._select_active()
         return True
 
@@ -213,7 +208,7 @@ class ControllerManager:
                 the policy makes that an error.
         """
         try:
-            self._hardware_lifecycle.bring_up(unconfigured, inactive)
+            self._hardware.bring_up(unconfigured, inactive)
         finally:
             self._select_active()
         self.read(0.0, 1.0 / self.update_rate_hz)
@@ -224,7 +219,7 @@ class ControllerManager:
     def set_hardware_component_state(self, name: str, target: LifecycleState) -> None:
         """Bring a component to a state; controllers whose interfaces disappear are stopped."""
         with self._tracking_changes():
-            self._hardware_lifecycle.set_state(name, target)
+            self._hardware.set_state(name, target)
 
     def list_hardware_components(self) -> tuple[HardwareComponentStatus, ...]:
         """Return every component."""
@@ -240,11 +235,11 @@ class ControllerManager:
 
     def list_controllers(self) -> tuple[ControllerStatus, ...]:
         """Return every loaded controller in order of execution: newest first, along the chains."""
-        return tuple(c.status(self._chain.connections(c)) for c in self._chain.in_order())
+        return tuple(c.status(self._loaded.connections(c)) for c in self._loaded.in_order())
 
     def controller_runs(self) -> tuple[tuple[ControllerStatus, RunRecord], ...]:
         """Return every loaded controller with the record of its updates, the newest first."""
-        return tuple((s, self._controllers[s.name].runs) for s in self.list_controllers())
+        return tuple((s, self._loaded[s.name].runs) for s in self.list_controllers())
 
     @run_input_noted_as(_describe_load)
     def load_controller(
@@ -252,7 +247,7 @@ class ControllerManager:
     ) -> None:
         """Add a new, unconfigured controller."""
         name = controller.name
-        if name in self._controllers:
+        if name in self._loaded:
             raise ControllerManagerError(
                 f"A controller named '{name}' was already loaded inside the controller manager"
             )
@@ -262,7 +257,7 @@ class ControllerManager:
             controller, type_name, tuple(fallback_names), self.update_rate_hz, self._supervision
         )
         controller.input_gate = self.input_gate
-        self._controllers[name] = managed
+        self._loaded[name] = managed
         self._activity_changed()
 
     @run_input
@@ -276,7 +271,7 @@ class ControllerManager:
             parameters: instance of its `parameters_type`.
             requested_rate_hz: its update rate; 0 for the manager's.
         """
-        controller = self._find(name, "configure")
+        controller = self._loaded.find(name, "configure")
         if controller.state is LifecycleState.INACTIVE:
             self._clean_up(controller)
         if controller.state is not LifecycleState.UNCONFIGURED:
@@ -284,7 +279,7 @@ class ControllerManager:
                 f"Controller '{name}' can not be configured from '{controller.state.label}' state."
             )
         controller.set_update_rate(requested_rate_hz)
-        reason = self._lifecycle.configure(controller, parameters)
+        reason = self._switcher.configure(controller, parameters)
         self._activity_changed()
         if reason:
             raise ControllerManagerError(f"controller '{name}' was not configured: {reason}")
@@ -292,7 +287,7 @@ class ControllerManager:
     @run_input
     def cleanup_controller(self, name: str) -> None:
         """Return a controller to unconfigured; has no effect if it already is."""
-        controller = self._find(name, "clean up")
+        controller = self._loaded.find(name, "clean up")
         if controller.state in (LifecycleState.ACTIVE, LifecycleState.FINALIZED):
             raise ControllerManagerError(
                 f"Controller '{name}' can not be cleaned-up from '{controller.state.label}' state."
@@ -306,26 +301,26 @@ class ControllerManager:
         self._supervision.on_exception(
             f"controller '{name}' raised in its update", ControllerError(reason)
         )
-        self._replace_failed([self._find(name, "fail")])
+        self._replace_failed([self._loaded.find(name, "fail")])
 
     @run_input
     def unload_controller(self, name: str) -> None:
         """Clean up, finalize and remove a controller."""
-        controller = self._find(name, "unload")
+        controller = self._loaded.find(name, "unload")
         if controller.is_active:
             raise ControllerManagerError(
                 f"Could not unload controller with name '{name}' because it is still active"
             )
         if controller.state is LifecycleState.INACTIVE:
-            self._lifecycle.clean_up(controller)
-        self._lifecycle.shut_down(controller)
-        del self._controllers[name]
+            self._switcher.clean_up(controller)
+        self._switcher.shut_down(controller)
+        del self._loaded[name]
         self._activity_changed()
 
     @run_input
     def switch_controller(self, request: SwitchRequest) -> SwitchResult:
         """Deactivate and activate controllers in one step; never raises, see the result."""
-        if request.activate and self._emergency.is_engaged:
+        if request.activate and self._active.is_stopped:
             logger.error("no controller is switched: %s", LATCHED)
             return SwitchResult(False, LATCHED)
         with self._tracking_changes():
@@ -334,39 +329,30 @@ class ControllerManager:
     @run_input
     def shutdown(self) -> None:
         """Deactivate and finalize every controller, then every component."""
-        self._switcher.deactivate([c for c in self._chain.in_order() if c.is_active])
+        self._switcher.deactivate([c for c in self._loaded.in_order() if c.is_active])
         self._select_active()
-        for controller in self._controllers.values():
+        for controller in self._loaded.values():
             if controller.state is LifecycleState.INACTIVE:
-                self._lifecycle.clean_up(controller)
+                self._switcher.clean_up(controller)
             if controller.state is not LifecycleState.FINALIZED:
-                self._lifecycle.shut_down(controller)
-        self._hardware_lifecycle.shut_down()
+                self._switcher.shut_down(controller)
+        self._hardware.shut_down()
         self._activity_changed()
 
     def _clean_up(self, controller: ManagedController) -> None:
-        reason = self._lifecycle.clean_up(controller)
+        reason = self._switcher.clean_up(controller)
         self._activity_changed()
         if reason:
             raise ControllerManagerError(
                 f"controller '{controller.name}' was not cleaned up: {reason}"
             )
 
-    def _find(self, name: str, action: str) -> ManagedController:
-        controller = self._controllers.get(name)
-        if controller is None:
-            raise ControllerManagerError(
-                f"Could not {action} controller with name '{name}' because no controller with "
-                f"this name exists; loaded: {', '.join(self._controllers) or 'none'}"
-            )
-        return controller
-
     def _replace_failed(self, failed: Sequence[ManagedController]) -> None:
         self._switcher.replace_failed(failed)
         self._select_active()
 
     def _stop_faulty(self, faults: Sequence[HardwareFault], exchange: str) -> None:
-        self._hardware_lifecycle.stop_faulty(faults, exchange)
+        self._hardware.stop_faulty(faults, exchange)
         self._select_active()
 
     @contextmanager
@@ -382,14 +368,14 @@ class ControllerManager:
     def _activity(self) -> tuple[int, list[str], list[LifecycleState]]:
         """Return the data that decide which controllers run and in which order."""
         components = self.resources.components.values()
-        return self._changes, list(self._controllers), [c.state for c in components]
+        return self._changes, list(self._loaded), [c.state for c in components]
 
     def _select_active(self) -> None:
         """Find which controllers run now, and the interfaces of inactive ones that exist now."""
         self._active.refresh()
-        for controller in self._controllers.values():
+        for controller in self._loaded.values():
             if controller.state is LifecycleState.INACTIVE:
-                self._lifecycle.resolve(controller)
+                self._switcher.resolve(controller)
         self._activity_changed()
 
     def _controller_transitioned(
@@ -402,3 +388,78 @@ class ControllerManager:
     def _activity_changed(self) -> None:
         for observer in self._observers:
             observer.activity_changed()
+
+
+def configured_manager(
+    hardware: Sequence[Hardware],
+    settings: ManagerSettings,
+    robot_description: Description,
+    name: str,
+) -> ControllerManager:
+    """Return a manager whose components are still unconfigured; see `bring_up`.
+
+    Args:
+        hardware: the components' drivers.
+        settings: the manager's settings.
+        robot_description: the hardware's URDF, which has the command limits.
+        name: fully qualified name of its node, for command lines in messages.
+
+    Raises:
+        ArmControlError: names are used twice, or requested limits cannot be read.
+    """
+    limited = settings.enforce_command_limits
+    return ControllerManager(
+        hardware,
+        settings.update_rate,
+        settings.policy,
+        read_joint_limits(robot_description) if limited else NO_LIMITS,
+        name,
+    )
+
+
+def bring_up(manager: ControllerManager, settings: ManagerSettings) -> None:
+    """Bring the components to their initial states.
+
+    Raises:
+        ArmControlError: one of them fails, and the settings make that an error.
+    """
+    initial = settings.hardware_components_initial_state
+    manager.bring_up(initial.unconfigured, initial.inactive)
+
+
+class ControlCycle:
+    """Reads states, updates controllers, writes commands, runs broadcasters. Loop thread only.
+
+    Commands are written before the broadcasters run, so that hardware need not wait for publishing.
+    """
+
+    def __init__(
+        self, manager: ControllerManager, clock: Clock, ticker: Clock | None = None
+    ) -> None:
+        """Prepare the cycle.
+
+        Args:
+            manager: the core.
+            clock: time of the states, used for the controllers' stamps.
+            ticker: measures the periods if `clock` may be set; None uses `clock`.
+        """
+        self._manager = manager
+        self._now_s = clock.now_s
+        self._tick_s = (ticker or clock).now_s
+        self._nominal_period_s = 1.0 / manager.update_rate_hz
+        self._last_s = nan
+
+    def __call__(self) -> None:
+        """Run one cycle; its period is the time since the last one.
+
+        The period is the nominal one for the first cycle, and if the ticker has not advanced.
+        """
+        manager, time_s, tick_s = self._manager, self._now_s(), self._tick_s()
+        period_s = tick_s - self._last_s
+        if not period_s > 0.0:
+            period_s = self._nominal_period_s
+        self._last_s = tick_s
+        manager.read(time_s, period_s)
+        manager.update(time_s, period_s)
+        manager.write(time_s, period_s)
+        manager.publish(time_s, period_s)

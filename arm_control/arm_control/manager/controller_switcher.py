@@ -1,12 +1,13 @@
-"""Activates and deactivates controllers together, and switches the hardware's command modes."""
+"""Takes controllers through their life cycle, one by one or several in one switch."""
 
 import logging
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 
 from arm_control.hardware.resource_manager import ResourceManager
-from arm_control.manager.controller_chain import ControllerChain
-from arm_control.manager.controller_lifecycle import ControllerLifecycle
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.loop.supervision import failure_of
+from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
 from arm_control.manager.switch_planner import (
     Strictness,
     SwitchPlan,
@@ -34,40 +35,34 @@ def manager_option(manager_name: str) -> str:
     return "" if manager_name == DEFAULT_NAME else f" -c {manager_name}"
 
 
-class ControllerSwitcher:
-    """Carries out switches, on request or after a failure.
+TransitionListener = Callable[[str, Transition, LifecycleState, LifecycleState], None]
+"""Is told of an attempted transition: controller, transition, state before, state after."""
 
-    Loop thread only. The hardware's command modes change first, then controllers are deactivated,
-    then others are activated.
+
+class ControllerSwitcher:
+    """Runs the transitions of controllers, and claims and loans their interfaces.
+
+    Loop thread only. In a switch the hardware's command modes change first, then controllers are
+    deactivated, then others are activated. The methods for one controller return why it failed, or
+    an empty string; the manager checks that the transition is allowed from the current state.
     """
 
     def __init__(
         self,
-        controllers: Mapping[str, ManagedController],
+        loaded: LoadedControllers,
         resources: ResourceManager,
-        lifecycle: ControllerLifecycle,
-        chain: ControllerChain,
+        listener: TransitionListener,
         manager_name: str,
     ) -> None:
-        """Refer to the manager's controllers.
-
-        Args:
-            controllers: by name; the manager adds and removes some later.
-            resources: the hardware.
-            lifecycle: runs the transitions of one controller.
-            chain: knows which controllers command which.
-            manager_name: fully qualified name of the manager's node.
-        """
-        self._controllers = controllers
+        self._loaded = loaded
         self._resources = resources
-        self._lifecycle = lifecycle
-        self._chain = chain
+        self._listener = listener
         self._manager_option = manager_option(manager_name)
 
     def switch(self, request: SwitchRequest) -> SwitchResult:
         """Carry out a request, as far as its strictness and the current states allow."""
         try:
-            plan = SwitchPlanner(self._controllers, self._resources, self._chain, request).plan()
+            plan = SwitchPlanner(self._loaded, self._resources, request).plan()
         except SwitchRefusedError as error:
             logger.error("no controller is switched: %s %s", str(error).rstrip(), error.hint)
             return SwitchResult(False, str(error))
@@ -92,7 +87,7 @@ class ControllerSwitcher:
             return
         self._leave_modes([name for controller in controllers for name in controller.commands])
         for controller in self._from_above(controllers):
-            self._lifecycle.deactivate(controller)
+            self._deactivate_one(controller)
         self._set_chained_modes()
 
     def replace_failed(self, failed: Sequence[ManagedController]) -> None:
@@ -100,7 +95,7 @@ class ControllerSwitcher:
 
         Controllers that are connected with them by commands or exported states are deactivated too.
         """
-        stopped = self._chain.with_group(failed)
+        stopped = self._loaded.with_group(failed)
         names = " ".join(controller.name for controller in stopped)
         logger.error(
             "Deactivating controllers : [ %s ] as their update resulted in an error!", names
@@ -119,14 +114,121 @@ class ControllerSwitcher:
         self.switch(
             SwitchRequest(
                 tuple(name for name in fallbacks if not self._is_active(name)),
-                tuple(c.name for c in self._chain.with_preceding(self._holders_for(fallbacks))),
+                tuple(c.name for c in self._loaded.with_preceding(self._holders_for(fallbacks))),
                 Strictness.STRICT,
             )
         )
 
+    # One controller
+
+    def configure(self, managed: ManagedController, parameters: object) -> str:
+        """Pass the parameters to the controller and find its interfaces."""
+        reason = self._run(
+            managed, Transition.CONFIGURE, lambda: managed.controller.on_configure(parameters)
+        )
+        if not reason:
+            reason = self._export(managed) or self.resolve(managed)
+            if reason:
+                failure_of(managed.controller.on_cleanup, f"on_cleanup of '{managed.name}'")
+                self._resources.exported.remove(managed.name)
+        if not reason:
+            managed.controller.configured_with = parameters
+        return self._arrive(managed, Transition.CONFIGURE, reason)
+
+    def resolve(self, managed: ManagedController) -> str:
+        """Find the interfaces that the controller requests among those that exist now."""
+        reason = failure_of(
+            lambda: managed.resolve_interfaces(self._resources),
+            f"the interface configuration of controller '{managed.name}'",
+        )
+        reason = reason or _repeated_names("command", managed.commands)
+        reason = reason or _repeated_names("state", managed.states)
+        if reason:
+            managed.forget_interfaces()
+        return reason
+
+    def clean_up(self, managed: ManagedController) -> str:
+        """Clean up the controller; it stays inactive if its `on_cleanup` fails."""
+        reason = self._run(managed, Transition.CLEANUP, managed.controller.on_cleanup)
+        if not reason:
+            self._forget(managed)
+        return self._arrive(managed, Transition.CLEANUP, reason)
+
+    def _activate_one(self, managed: ManagedController) -> str:
+        """Loan and claim the interfaces, then activate the controller."""
+        reason = self._run(managed, Transition.ACTIVATE, lambda: self._lend(managed))
+        reason = reason or self._run(managed, Transition.ACTIVATE, managed.controller.on_activate)
+        if reason:
+            self._take_interfaces(managed)
+        return self._arrive(managed, Transition.ACTIVATE, reason)
+
+    def _deactivate_one(self, managed: ManagedController) -> str:
+        """Deactivate the controller and release its interfaces, even if it fails.
+
+        A controller whose `on_deactivate` fails is cleaned up, because it may not start again. A
+        controller that an emergency stop has halted has done this already.
+        """
+        reason = ""
+        if managed.is_halted:
+            managed.controller.halted_by = ""
+        else:
+            reason = self._run(managed, Transition.DEACTIVATE, managed.controller.on_deactivate)
+        self._take_interfaces(managed)
+        self._arrive(managed, Transition.DEACTIVATE, "")
+        if reason:
+            self.clean_up(managed)
+        return reason
+
+    def shut_down(self, managed: ManagedController) -> str:
+        """Finalize the controller, even if its `on_shutdown` fails."""
+        reason = self._run(managed, Transition.SHUTDOWN, managed.controller.on_shutdown)
+        self._forget(managed)
+        self._arrive(managed, Transition.SHUTDOWN, "")
+        return reason
+
+    def _lend(self, managed: ManagedController) -> None:
+        managed.controller.assign_interfaces(
+            self._resources.loan_commands(managed.commands),
+            self._resources.loan_states(managed.states),
+        )
+        self._resources.claim(managed.name, managed.commands)
+        managed.restart_cadence()
+        managed.forget_references()
+
+    def _forget(self, managed: ManagedController) -> None:
+        managed.forget_interfaces()
+        self._resources.exported.remove(managed.name)
+
+    def _export(self, managed: ManagedController) -> str:
+        return failure_of(
+            lambda: self._resources.exported.add(managed),
+            f"the interface export of controller '{managed.name}'",
+        )
+
+    def _run(
+        self, managed: ManagedController, transition: Transition, step: Callable[[], None]
+    ) -> str:
+        reason = failure_of(step, f"on_{transition.label} of controller '{managed.name}'")
+        if reason:
+            logger.error("controller '%s' failed to %s: %s", managed.name, transition.label, reason)
+        return reason
+
+    def _arrive(self, managed: ManagedController, transition: Transition, reason: str) -> str:
+        start = managed.state
+        if not reason:
+            managed.state = transition.goal
+        self._listener(managed.name, transition, start, managed.state)
+        return reason
+
+    def _take_interfaces(self, managed: ManagedController) -> None:
+        managed.controller.release_interfaces()
+        self._resources.release(managed.name)
+
+    # Switches
+
     def _rivals(self, plan: SwitchPlan) -> str:
         """Return which two controllers would command one joint in different modes, if any."""
-        stays = [c for c in self._controllers.values() if c.is_active and c not in plan.deactivate]
+        stays = [c for c in self._loaded.active() if c not in plan.deactivate]
         holders: dict[str, tuple[ManagedController, str]] = {}
         for controller in (*stays, *plan.activate):
             for name in controller.commands:
@@ -143,7 +245,7 @@ class ControllerSwitcher:
 
     def _carry_out(self, plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
         modes = {controller: controller.commands for controller in plan.activate}
-        stuck = [c for c in self._from_above(plan.deactivate) if self._lifecycle.deactivate(c)]
+        stuck = [c for c in self._from_above(plan.deactivate) if self._deactivate_one(c)]
         self._set_chained_modes(plan.activate)
         refused = self._activate(plan.activate, stuck)
         if refused:
@@ -160,22 +262,22 @@ class ControllerSwitcher:
     ) -> list[ManagedController]:
         """Activate these, following ones first, except those in `stuck`; return the failed ones."""
         refused = [controller for controller in controllers if controller in stuck]
-        for controller in self._chain.from_below(c for c in controllers if c not in stuck):
-            missing = [c.name for c in self._chain.following(controller) if c in refused]
+        for controller in self._loaded.from_below(c for c in controllers if c not in stuck):
+            missing = [c.name for c in self._loaded.following(controller) if c in refused]
             if missing:
                 logger.error(
                     "controller '%s' is not activated, because %s was not",
                     controller.name,
                     " ".join(missing),
                 )
-            if missing or self._lifecycle.activate(controller):
+            if missing or self._activate_one(controller):
                 refused.append(controller)
         return refused
 
     def _from_above(
         self, controllers: Sequence[ManagedController]
     ) -> tuple[ManagedController, ...]:
-        return self._chain.from_below(controllers[::-1])[::-1]
+        return self._loaded.from_below(controllers[::-1])[::-1]
 
     def _leave_modes(self, commands: Sequence[str]) -> None:
         reason = self._resources.perform_mode_switch((), commands)
@@ -188,25 +290,25 @@ class ControllerSwitcher:
         Args:
             activated: controllers that are about to be active.
         """
-        every = tuple(self._controllers.values())
+        every = tuple(self._loaded.values())
         commanding = [c for c in every if c.is_active or c in activated]
         for controller in every:
-            controller.set_chained(self._chain.is_commanded(controller, commanding))
+            controller.set_chained(self._loaded.is_commanded(controller, commanding))
 
     def _is_active(self, name: str) -> bool:
-        controller = self._controllers.get(name)
+        controller = self._loaded.get(name)
         return controller is not None and controller.is_active
 
     def _holders_for(self, names: Iterable[str]) -> Iterable[ManagedController]:
         """Yield the controllers that have claimed interfaces of these inactive controllers."""
         for name in names:
-            controller = self._controllers.get(name)
+            controller = self._loaded.get(name)
             if controller is None or controller.is_active:
                 continue
             for command in controller.commands:
                 holder = self._resources.claimant(command)
                 if holder is not None:
-                    yield self._controllers[holder]
+                    yield self._loaded[holder]
 
 
 def _succeeded(plan: SwitchPlan, request: SwitchRequest) -> SwitchResult:
@@ -227,3 +329,8 @@ def _failed(
 
 def _listed(title: str, controllers: Sequence[ManagedController]) -> str:
     return f"{title}: [ {' '.join(c.name for c in controllers)} ]" if controllers else ""
+
+
+def _repeated_names(kind: str, names: tuple[str, ...]) -> str:
+    repeated = sorted(name for name, count in Counter(names).items() if count > 1)
+    return f"it requests {kind} interface {', '.join(repeated)} more than once" if repeated else ""

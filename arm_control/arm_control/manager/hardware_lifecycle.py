@@ -8,9 +8,8 @@ from arm_control.hardware.component import HardwareComponent
 from arm_control.hardware.driver import HardwareReturn
 from arm_control.hardware.resource_manager import HardwareFault, ResourceManager
 from arm_control.lifecycle import LifecycleState
-from arm_control.manager.controller_chain import ControllerChain
 from arm_control.manager.controller_switcher import ControllerSwitcher
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
 from arm_control.manager.settings import ManagerPolicy
 
 logger = logging.getLogger("controller_manager")
@@ -24,24 +23,13 @@ class HardwareLifecycle:
 
     def __init__(
         self,
-        controllers: Mapping[str, ManagedController],
+        loaded: LoadedControllers,
         resources: ResourceManager,
-        chain: ControllerChain,
         switcher: ControllerSwitcher,
         policy: ManagerPolicy,
     ) -> None:
-        """Refer to the manager's components and controllers.
-
-        Args:
-            controllers: by name; the manager adds and removes some later.
-            resources: the components.
-            chain: knows which controllers command which.
-            switcher: stops controllers.
-            policy: the user's choices.
-        """
-        self._controllers = controllers
+        self._loaded = loaded
         self._resources = resources
-        self._chain = chain
         self._switcher = switcher
         self._policy = policy
 
@@ -141,10 +129,9 @@ class HardwareLifecycle:
         self, component: str, *, commanding_only: bool = False
     ) -> Sequence[ManagedController]:
         """Return the active controllers that use a component, and those that command them."""
-        return self._chain.with_preceding(
+        return self._loaded.with_preceding(
             c
-            for c in self._controllers.values()
-            if c.is_active
-            and component
+            for c in self._loaded.active()
+            if component
             in self._resources.components_of(() if commanding_only else c.states, c.commands)
         )

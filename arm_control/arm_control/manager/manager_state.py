@@ -10,11 +10,10 @@ from arm_control.hardware.command_limits import CommandLimiter
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_control.lifecycle import LifecycleState
 from arm_control.loop.supervision import failure_of
-from arm_control.manager.controller_chain import ControllerChain
 from arm_control.manager.controller_switcher import ControllerSwitcher
-from arm_control.manager.emergency_stop import LATCHED, EmergencyStop
 from arm_control.manager.hardware_lifecycle import HardwareLifecycle
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
+from arm_control.manager.running_controllers import LATCHED, RunningControllers
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.state.encoding import NotPlainError, encode
 
@@ -26,34 +25,24 @@ class ManagerState:
 
     def __init__(
         self,
-        controllers: dict[str, ManagedController],
+        loaded: LoadedControllers,
         resources: ResourceManager,
-        limiter: CommandLimiter | None,
-        emergency: EmergencyStop,
-        chain: ControllerChain,
         switcher: ControllerSwitcher,
         hardware: HardwareLifecycle,
+        active: RunningControllers,
+        limiter: CommandLimiter | None,
         tracking: Callable[[], AbstractContextManager[None]],
     ) -> None:
-        """Refer to the manager's controllers and components.
+        """Refer to the manager's parts; `tracking` updates it afterwards, if anything changed.
 
-        Args:
-            controllers: by name; the manager adds and removes some later.
-            resources: the components.
-            limiter: clamps the commands.
-            emergency: the emergency stop; while it is engaged nothing is saved or restored.
-            chain: the order of the controllers.
-            switcher: activates and deactivates controllers.
-            hardware: runs the transitions of components.
-            tracking: updates the manager afterwards, if anything has changed.
+        While the emergency stop is engaged, nothing is saved or restored.
         """
-        self._controllers = controllers
+        self._loaded = loaded
         self._resources = resources
-        self._limiter = limiter
-        self._emergency = emergency
-        self._chain = chain
         self._switcher = switcher
         self._hardware = hardware
+        self._active = active
+        self._limiter = limiter
         self._tracking = tracking
 
     def save(self) -> dict[str, Any]:
@@ -64,9 +53,7 @@ class ManagerState:
         """
         self._check_released()
         refused: list[str] = []
-        controllers = {
-            managed.name: _saved(managed, refused) for managed in self._controllers.values()
-        }
+        controllers = {managed.name: _saved(managed, refused) for managed in self._loaded.values()}
         if refused:
             raise StateError("; ".join(refused))
         return {
@@ -120,7 +107,7 @@ class ManagerState:
         """Restore a state for which `align` has been called; nothing is run."""
         for name, controller in state["controllers"].items():
             if controller["state"] in CONFIGURED:
-                self._load_controller(self._controllers[name], controller)
+                self._load_controller(self._loaded[name], controller)
         for name, (_, component) in state["components"].items():
             self._resources.components[name].load_state(component)
         self._resources.states[:] = state["states"]
@@ -138,41 +125,40 @@ class ManagerState:
             component.reset()
         if self._limiter is not None:
             self._limiter.restart()
-        active = [c for c in self._controllers.values() if c.is_active and not c.is_halted]
+        active = [c for c in self._loaded.active() if not c.is_halted]
         reasons = {
             managed.name: failure_of(
                 managed.controller.on_reset, f"on_reset of controller '{managed.name}'"
             )
-            for managed in self._chain.from_below(active)
+            for managed in self._loaded.from_below(active)
         }
         self.restart_cadences()
-        if self._emergency.is_engaged:
-            self._emergency.hold_here()
+        if self._active.is_stopped:
+            self._active.hold_here()
         failed = [f"controller '{name}': {reason}" for name, reason in reasons.items() if reason]
         if failed:
             raise StateError("; ".join(failed))
 
     def restart_cadences(self) -> None:
         """Treat the next cycle as the first of all components and controllers."""
-        for part in (*self._resources.components.values(), *self._controllers.values()):
+        for part in (*self._resources.components.values(), *self._loaded.values()):
             part.restart_cadence()
 
     def fingerprint(self) -> Iterator[tuple[str, bytes]]:
         """Yield the parts of the state by name, as bytes that differ if the state does."""
         yield "commands", self._resources.commands.tobytes()
-        for managed in self._controllers.values():
-            if managed.is_active:
-                yield managed.name, managed.controller.fingerprint()
+        for managed in self._loaded.active():
+            yield managed.name, managed.controller.fingerprint()
 
     def _check_released(self) -> None:
-        if self._emergency.is_engaged:
+        if self._active.is_stopped:
             raise StateError(LATCHED)
 
     def _align(self, state: Mapping[str, Any]) -> None:
         saved = state["controllers"]
         active = {name for name in saved if saved[name]["state"] is LifecycleState.ACTIVE}
-        stop = [c.name for c in self._chain.in_order() if c.is_active and c.name not in active]
-        start = [name for name in saved if name in active and not self._controllers[name].is_active]
+        stop = [c.name for c in self._loaded.in_order() if c.is_active and c.name not in active]
+        start = [name for name in saved if name in active and not self._loaded[name].is_active]
         targets = {name: target for name, (target, _) in state["components"].items()}
         if start:
             # A controller may have been active before its hardware became inactive.
@@ -182,7 +168,7 @@ class ManagerState:
                     for name, target in targets.items()
                 }
             )
-            stop = [name for name in stop if self._controllers[name].is_active]
+            stop = [name for name in stop if self._loaded[name].is_active]
         if start or stop:
             request = SwitchRequest(tuple(start), tuple(stop), Strictness.STRICT)
             result = self._switcher.switch(request)
@@ -191,7 +177,7 @@ class ManagerState:
         self._bring_components(targets)
         # Controllers run in the reverse order of their loading.
         for name in saved:
-            self._controllers[name] = self._controllers.pop(name)
+            self._loaded[name] = self._loaded.pop(name)
 
     def _bring_components(self, targets: Mapping[str, LifecycleState]) -> None:
         for name, target in targets.items():
@@ -208,9 +194,9 @@ class ManagerState:
             controller.references[:], controller.exported_states[:] = saved["exports"]
 
     def _misfits(self, name: str, saved: Mapping[str, Any]) -> Iterator[str]:
-        managed = self._controllers.get(name)
+        managed = self._loaded.get(name)
         if managed is None:
-            loaded = ", ".join(self._controllers) or "none"
+            loaded = ", ".join(self._loaded) or "none"
             yield f"the snapshot has controller '{name}', which is not loaded; loaded: {loaded}"
         elif managed.type_name != saved["type"]:
             yield f"controller '{name}' was a {saved['type']} and is a {managed.type_name} now"

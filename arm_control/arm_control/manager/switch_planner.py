@@ -1,15 +1,14 @@
 """Plans a switch before anything changes, with ros2_control's checks in their order."""
 
 import logging
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_control.lifecycle import LifecycleState
-from arm_control.manager.controller_chain import ControllerChain
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
 
 
 class Strictness(IntEnum):
@@ -84,15 +83,10 @@ class SwitchPlanner:
     """Checks one request against the controllers and interfaces that exist."""
 
     def __init__(
-        self,
-        controllers: Mapping[str, ManagedController],
-        resources: ResourceManager,
-        chain: ControllerChain,
-        request: SwitchRequest,
+        self, loaded: LoadedControllers, resources: ResourceManager, request: SwitchRequest
     ) -> None:
-        self._controllers = controllers
+        self._loaded = loaded
         self._resources = resources
-        self._chain = chain
         self._request = request
 
     def plan(self) -> SwitchPlan:
@@ -126,7 +120,7 @@ class SwitchPlanner:
         known: list[ManagedController] = []
         reasons: list[str] = []
         for name in dict.fromkeys(names):
-            controller = self._controllers.get(name)
+            controller = self._loaded.get(name)
             if controller is not None:
                 known.append(controller)
                 continue
@@ -134,11 +128,11 @@ class SwitchPlanner:
                 f"Could not {action} controller with name '{name}' "
                 "because no controller with this name exists"
             )
-            self._skip_or_refuse(reason, self._loaded())
+            self._skip_or_refuse(reason, self._names())
             reasons.append(reason)
         if reasons and not known:
             message = "".join(f"{reason}\n" for reason in reasons)
-            raise SwitchRefusedError(message, self._loaded())
+            raise SwitchRefusedError(message, self._names())
         return known
 
     def _accepted(
@@ -162,8 +156,8 @@ class SwitchPlanner:
             raise SwitchRefusedError(reason, hint)
         logger.warning("%s", reason)
 
-    def _loaded(self) -> str:
-        return f"(loaded: {', '.join(self._controllers) or 'none'})"
+    def _names(self) -> str:
+        return f"(loaded: {', '.join(self._loaded) or 'none'})"
 
     def _why_not_activate(self, controller: ManagedController) -> str:
         if controller.state is LifecycleState.ACTIVE:
@@ -189,7 +183,7 @@ class SwitchPlanner:
         """Return which following controller would not be active, as a message."""
         if controller.is_active and controller not in plan.deactivate:
             return f"Controller with name '{controller.name}' is already active."
-        for follower in self._chain.following(controller):
+        for follower in self._loaded.following(controller):
             if follower in plan.activate:
                 continue
             if not follower.is_active:
@@ -206,7 +200,7 @@ class SwitchPlanner:
 
     def _why_not_leave(self, controller: ManagedController, plan: SwitchPlan) -> str:
         """Return which preceding controller would still be active, as a message."""
-        for leader in self._chain.preceding(controller):
+        for leader in self._loaded.preceding(controller):
             if leader.is_active and leader not in plan.deactivate:
                 return (
                     f"Controller with name '{controller.name}' can not be deactivated since "
@@ -218,7 +212,7 @@ class SwitchPlanner:
     def _why_not_fall_back(self, controller: ManagedController) -> str:
         """Return why the controller's fallbacks could not replace it, as a message."""
         for name in controller.fallback_names:
-            fallback = self._controllers.get(name)
+            fallback = self._loaded.get(name)
             usable = (LifecycleState.INACTIVE, LifecycleState.ACTIVE)
             if fallback is None or fallback.state not in usable:
                 state = "not loaded" if fallback is None else fallback.state.label

@@ -8,7 +8,7 @@ from typing import Any
 from arm_control.errors import StateError
 from arm_control.lifecycle import LifecycleState
 from arm_control.manager.controller_manager import ControllerManager
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.loaded_controllers import ManagedController
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.model.built_model import BuiltModel

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from arm_control.hardware.info import parse_hardware_info
-from arm_control.manager.configured_manager import bring_up, configured_manager
-from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.controller_manager import ControllerManager, bring_up, configured_manager
 from arm_control.manager.settings import ManagerSettings
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.description import RobotDescription

@@ -6,7 +6,7 @@ import pytest
 
 from arm_control import SwitchRequest
 from arm_control.loop.clock import SystemClock
-from arm_control.manager.control_cycle import ControlCycle
+from arm_control.manager.controller_manager import ControlCycle
 from arm_control.testing import ManualClock
 
 

@@ -14,7 +14,7 @@ from arm_control import (
     ReturnType,
     SwitchRequest,
 )
-from arm_control.manager.managed_controller import ManagedController
+from arm_control.manager.loaded_controllers import ManagedController
 
 
 class Counter(Controller[Any]):

@@ -86,7 +86,7 @@ def application(
     argv: Sequence[str], start: Sequence[str], paused: bool, process: NodeProcess
 ) -> Iterator[None]:
     """Run the manager over fake hardware, with these controllers active."""
-    from arm_control.manager.configured_manager import bring_up, configured_manager
+    from arm_control.manager.controller_manager import bring_up, configured_manager
     from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
     from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 

@@ -16,9 +16,12 @@ from arm_control.hardware.info import parse_hardware_info
 from arm_control.loop.clock import MonotonicClock, SystemClock, Throttle
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
-from arm_control.manager.configured_manager import bring_up, configured_manager
-from arm_control.manager.control_cycle import ControlCycle
-from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.controller_manager import (
+    ControlCycle,
+    ControllerManager,
+    bring_up,
+    configured_manager,
+)
 from arm_control.manager.registry import create_hardware
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
