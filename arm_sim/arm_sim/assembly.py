@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import ArmControlError
-from arm_control.manager.controller_starter import MANAGER, ControllerStarter, manager_settings
+from arm_control.manager.controller_creation import MANAGER, ControllerStarter, manager_settings
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.physics.tick import SilentClock, SimulationTick
 from arm_gazebo.state.complete_state import CompleteState

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from arm_control.controllers.controller import Controller
 from arm_control.errors import ControllerManagerError
 from arm_control.lifecycle import LifecycleState, Transition
+from arm_control.manager.controller_creation import ControllerStarter
 from arm_control.manager.controller_manager import ControllerManager
-from arm_control.manager.controller_starter import ControllerStarter
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_sim.errors import CallError, GoalError, UnknownNameError
 from arm_sim.goals import Goal, RunningGoals

@@ -33,7 +33,7 @@ def test_the_core_needs_neither_ros_nor_mujoco() -> None:
         "import sys, arm_control, arm_control.testing; "
         "import arm_control.controllers.forward_command.controller; "
         "import arm_control.controllers.joint_state_broadcaster.controller; "
-        "import arm_control.manager.registry, arm_control.spawner.spawner_options; "
+        "import arm_control.manager.registry, arm_control.spawner.command_line; "
         "sys.exit(bool({'rclpy', 'mujoco'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

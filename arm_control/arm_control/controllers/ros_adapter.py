@@ -1,9 +1,10 @@
-"""The ROS half of a controller: its topics, services and actions."""
+"""What the ROS halves of controllers share: the adapter to a node, and times as messages."""
 
 import logging
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
+from builtin_interfaces.msg import Duration, Time
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -14,6 +15,33 @@ from arm_control.controllers.controller import NOT_ACTIVE, Controller
 from arm_control.errors import ControllerError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import run_on_executor
+
+SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0
+"""The range of a Duration message."""
+
+
+def seconds_of(time: Time | Duration) -> float:
+    """Return a stamp or a duration in seconds; exact to 1 ns up to some months."""
+    return time.sec + time.nanosec * 1e-9
+
+
+def duration_parts(time_s: float) -> tuple[int, int]:
+    """Return seconds and nanoseconds of a Duration, clamped to its range."""
+    nanoseconds = round(min(max(time_s, SHORTEST_S), LONGEST_S) * 1e9)
+    return divmod(nanoseconds, 1_000_000_000)
+
+
+def duration_message(time_s: float) -> Duration:
+    """Return a duration as a message, clamped to its range."""
+    seconds, nanoseconds = duration_parts(time_s)
+    return Duration(sec=seconds, nanosec=nanoseconds)
+
+
+def time_message(time_s: float) -> Time:
+    """Return a time as a stamp."""
+    seconds, nanoseconds = divmod(round(time_s * 1e9), 1_000_000_000)
+    return Time(sec=seconds, nanosec=nanoseconds)
+
 
 ControllerT = TypeVar("ControllerT", bound=Controller[Any])
 

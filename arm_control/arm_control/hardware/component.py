@@ -7,9 +7,8 @@ from typing import Any
 from arm_control.errors import StateError
 from arm_control.hardware.driver import Hardware, HardwareReturn, Resettable
 from arm_control.lifecycle import LifecycleState, Transition
-from arm_control.loop.cadence import Cadence, achievable_rate_hz
-from arm_control.loop.run_record import RunRecord
-from arm_control.loop.supervision import RunSupervision, failure_of
+from arm_control.loop.schedule import Cadence, achievable_rate_hz
+from arm_control.loop.supervision import RunRecord, RunSupervision, failure_of
 from arm_control.state.attributes import Stateful
 
 logger = logging.getLogger("controller_manager")

@@ -10,8 +10,7 @@ from arm_control.errors import ControllerManagerError
 from arm_control.hardware.component import HardwareComponent
 from arm_control.hardware.driver import Hardware, HardwareReturn, SingleModeHardware
 from arm_control.lifecycle import LifecycleState
-from arm_control.loop.run_record import RunRecord
-from arm_control.loop.supervision import RunSupervision, failure_of
+from arm_control.loop.supervision import RunRecord, RunSupervision, failure_of
 from arm_control.status import HardwareComponentStatus, InterfaceStatus
 
 HardwareFault = tuple[HardwareComponent, HardwareReturn]

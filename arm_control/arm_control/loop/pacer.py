@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import nan
 
 from arm_control.loop.clock import Clock, MonotonicClock
-from arm_control.loop.run_record import RunRecord
+from arm_control.loop.supervision import RunRecord
 
 CATCH_UP_S = 0.05
 """Delays up to this long are caught up; the rest of a longer delay is given up."""

@@ -15,8 +15,7 @@ from arm_control.hardware.joint_limits import JointLimits, read_joint_limits
 from arm_control.hardware.resource_manager import HardwareFault, ResourceManager
 from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.loop.clock import Clock
-from arm_control.loop.run_record import RunRecord
-from arm_control.loop.supervision import RunSupervision, log_failure, raise_failure
+from arm_control.loop.supervision import RunRecord, RunSupervision, log_failure, raise_failure
 from arm_control.manager.controller_switcher import DEFAULT_NAME, ControllerSwitcher
 from arm_control.manager.hardware_lifecycle import HardwareLifecycle
 from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController

@@ -8,7 +8,7 @@ from enum import IntEnum
 from arm_control.controllers.loaned_interfaces import describe_unmeasured
 from arm_control.lifecycle import LifecycleState
 from arm_control.loop.control_loop import ControlLoop
-from arm_control.loop.run_record import RunRecord, Spread
+from arm_control.loop.supervision import RunRecord, Spread
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.introspection import ManagerSnapshot
 from arm_control.manager.settings import (

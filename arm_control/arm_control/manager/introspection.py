@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.lifecycle import LifecycleState, Transition
-from arm_control.loop.run_record import RunRecord, Spread
+from arm_control.loop.supervision import RunRecord, Spread
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.status import InterfaceStatus
 

@@ -10,7 +10,7 @@ from arm_control.controllers.exported_interfaces import ExportedInterfaces
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_control.lifecycle import LifecycleState
-from arm_control.loop.cadence import Cadence, achievable_rate_hz
+from arm_control.loop.schedule import Cadence, achievable_rate_hz
 from arm_control.loop.supervision import RunSupervision, failure_of
 from arm_control.status import ChainConnection, ControllerStatus
 

@@ -28,13 +28,13 @@ HARDWARE_GROUP = "arm_control.hardware"
 _BUILT_IN = "arm_control.controllers"
 _FORWARD = f"{_BUILT_IN}.forward_command.controller"
 _GRIPPER = f"{_BUILT_IN}.gripper"
-_FORCE_TORQUE = f"{_BUILT_IN}.sensor_broadcasters.force_torque"
+_SENSORS = f"{_BUILT_IN}.sensor_broadcasters.controller"
 _CONTROLLERS = {
     "diff_drive_controller/DiffDriveController": f"{_BUILT_IN}.diff_drive:DiffDriveController",
     "effort_controllers/GripperActionController": f"{_GRIPPER}:EffortGripperController",
     "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
     "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster": (
-        f"{_FORCE_TORQUE}:ForceTorqueSensorBroadcaster"
+        f"{_SENSORS}:ForceTorqueSensorBroadcaster"
     ),
     "forward_command_controller/ForwardCommandController": f"{_FORWARD}:ForwardCommandController",
     "forward_command_controller/MultiInterfaceForwardCommandController": (
@@ -43,9 +43,7 @@ _CONTROLLERS = {
     "gpio_controllers/GpioCommandController": (
         f"{_BUILT_IN}.gpio_command.controller:GpioCommandController"
     ),
-    "imu_sensor_broadcaster/IMUSensorBroadcaster": (
-        f"{_BUILT_IN}.sensor_broadcasters.imu:ImuSensorBroadcaster"
-    ),
+    "imu_sensor_broadcaster/IMUSensorBroadcaster": f"{_SENSORS}:ImuSensorBroadcaster",
     "joint_state_broadcaster/JointStateBroadcaster": (
         f"{_BUILT_IN}.joint_state_broadcaster.controller:JointStateBroadcaster"
     ),

@@ -1,4 +1,4 @@
-"""Starts controllers through the services of a controller manager."""
+"""The work of spawner, unspawner and hardware_spawner: requests to a controller manager."""
 
 import logging
 from collections.abc import Sequence
@@ -7,16 +7,114 @@ from rclpy.node import Node
 
 from arm_control.errors import SpawnError
 from arm_control.manager.parameter_file import ControllerParameterFile, manager_parameters
-from arm_control.spawner.command_line import absolute_name
+from arm_control.spawner.command_line import (
+    ControllerOptions,
+    HardwareSpawnerOptions,
+    SpawnerOptions,
+    UnspawnerOptions,
+    absolute_name,
+)
 from arm_control.spawner.ros_retrying_caller import RetryingCaller
-from arm_control.spawner.ros_unspawner import UNLOAD_SERVICES, unload_controllers
 from arm_control.spawner.spawner_lock import spawner_lock, spawner_lock_path
-from arm_control.spawner.spawner_options import ControllerOptions, SpawnerOptions
 from arm_node.controller_manager import ControllerManagerClient
-from arm_node.process import EXIT_OK, NodeProcess
+from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess
 
+SERVICE_CALL_TIMEOUT_S = 10.0
 UNLOAD_TIMEOUT_S = 2.0
-SERVICES = (*UNLOAD_SERVICES, "configure_controller", "load_controller", "set_parameters")
+UNLOAD_SERVICES = ("list_controllers", "switch_controller", "unload_controller")
+SPAWN_SERVICES = (
+    *UNLOAD_SERVICES,
+    "configure_controller",
+    "load_controller",
+    "set_parameters",
+)
+HARDWARE_SERVICES = ("list_hardware_components", "set_hardware_component_state")
+
+
+def unspawn(node: Node, process: NodeProcess, options: UnspawnerOptions) -> int:
+    """Unload controllers; return the process's exit code. Not on an executor's thread."""
+    caller = RetryingCaller(
+        node,
+        absolute_name(options.controller_manager, node.get_namespace()),
+        UNLOAD_SERVICES,
+        SERVICE_CALL_TIMEOUT_S,
+        lambda: process.stopping,
+    )
+    caller.wait_for("list_controllers", 0.0)
+    manager = ControllerManagerClient(caller)
+    log = logging.getLogger(node.get_logger().name)
+    states = manager.states()
+    active = [name for name in options.names if states.get(name) == "active"]
+    others = [name for name in options.names if name not in active]
+    if active and others:
+        # As in ros2_control, whose strict switch refuses to deactivate an inactive controller.
+        log.error(
+            "Nothing is unloaded: %s is active, but %s is not", " ".join(active), " ".join(others)
+        )
+        return EXIT_FAILED
+    return unload_controllers(manager, options.names, options.switch_timeout_s, log)
+
+
+def unload_controllers(
+    manager: ControllerManagerClient,
+    names: Sequence[str],
+    switch_timeout_s: float,
+    log: logging.Logger,
+) -> int:
+    """Deactivate the active ones in one switch, then unload all; return the exit code.
+
+    A controller that cannot be deactivated cannot be unloaded either, and unloading reports it.
+    """
+    states = manager.states()
+    active = [name for name in names if states.get(name) == "active"]
+    if active and manager.switch(deactivate=active, timeout_s=switch_timeout_s).ok:
+        log.info("Deactivated controllers: %s", " ".join(active))
+    code = EXIT_OK
+    for name in names:
+        if manager.unload(name):
+            log.info("Unloaded controller %s", name)
+        else:
+            log.error("Failed to unload controller %s", name)
+            code = EXIT_FAILED
+    return code
+
+
+def spawn_hardware(node: Node, process: NodeProcess, options: HardwareSpawnerOptions) -> int:
+    """Bring the components to their state; return the exit code. Not on an executor's thread.
+
+    As in ros2_control, a component that is missing or fails causes only a warning: the exit code
+    says only whether the manager answered.
+    """
+    log = logging.getLogger(node.get_logger().name)
+    manager = absolute_name(options.controller_manager, node.get_namespace())
+    caller = RetryingCaller(
+        node, manager, HARDWARE_SERVICES, SERVICE_CALL_TIMEOUT_S, lambda: process.stopping
+    )
+    caller.wait_for("list_hardware_components", options.controller_manager_timeout_s)
+    client = ControllerManagerClient(caller)
+    target = options.target.label
+    states = client.component_states()
+    for name in options.names:
+        if name not in states:
+            log.warning(
+                "Hardware Component is not loaded - state can not be changed: %s; %s has %s",
+                name,
+                manager,
+                ", ".join(states) or "none",
+            )
+        elif client.set_component_state(name, target).ok:
+            state = client.component_states()[name]
+            log.info("component '%s': Hardware now in state: %s.", name, state)
+        else:
+            log.warning(
+                "Could not bring component '%s' to state %s; it is in state %s, and the reason is "
+                "in the log of %s",
+                name,
+                target,
+                client.component_states()[name].label,
+                manager,
+            )
+    return EXIT_OK
 
 
 class _Spawner:
@@ -48,7 +146,7 @@ class _Spawner:
         self._caller = RetryingCaller(
             node,
             self._manager_name,
-            SERVICES,
+            SPAWN_SERVICES,
             options.service_call_timeout_s,
             lambda: process.stopping,
         )

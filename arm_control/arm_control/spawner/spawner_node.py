@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.manager.node_arguments import parameter_files, split_ros_arguments
-from arm_control.spawner.ros_manager_task import run_manager_task
-from arm_control.spawner.spawner_options import parse_spawner_options
+from arm_control.spawner.command_line import parse_spawner_options, run_manager_task
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from arm_control.manager.node_arguments import split_ros_arguments
-from arm_control.spawner.command_line import parse_unspawner_options
-from arm_control.spawner.ros_manager_task import run_manager_task
+from arm_control.spawner.command_line import parse_unspawner_options, run_manager_task
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -21,7 +20,7 @@ def main(argv: Sequence[str] | None = None) -> NoReturn:
     options = parse_unspawner_options(own)
 
     def task(node: "Node", process: "NodeProcess") -> int:
-        from arm_control.spawner.ros_unspawner import unspawn
+        from arm_control.spawner.ros_spawner import unspawn
 
         return unspawn(node, process, options)
 

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import ReadingSink
+from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
 from arm_control.hardware.info import HardwareInfo
 from arm_gazebo.feed.schedule import FrameSchedule
 from arm_gazebo.feed.stream_count import StreamCount

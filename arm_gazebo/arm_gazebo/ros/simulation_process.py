@@ -22,7 +22,7 @@ from arm_control.loop.outbox import Outbox
 from arm_control.loop.pacer import Pacer
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
-from arm_control.manager.ros.controllers_executor import controllers_executor
+from arm_control.manager.ros.controller_node import controllers_executor
 from arm_control.manager.ros.emergency_stop import EmergencyStopServer
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.faults.injector import FaultInjector

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_control.loop.run_record import RunRecord
+from arm_control.loop.supervision import RunRecord
 
 
 def record_of(starts_s: list[float], duration_s: float = 0.001, size: int = 100) -> RunRecord:

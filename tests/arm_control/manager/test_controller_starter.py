@@ -8,8 +8,8 @@ import pytest
 
 from arm_control.errors import ArmControlError, ControllerManagerError, ParameterError
 from arm_control.lifecycle import LifecycleState
+from arm_control.manager.controller_creation import ControllerStarter, manager_settings
 from arm_control.manager.controller_manager import ControllerManager
-from arm_control.manager.controller_starter import ControllerStarter, manager_settings
 from arm_control.manager.parameter_file import ParametersByNode
 from arm_control.testing import fake_hardware
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arm_control.manager.ros.health_publisher import HealthPublisher
+from arm_control.manager.ros.controller_manager_node import HealthPublisher
 from arm_control.manager.settings import DiagnosticUpdater, ManagerSettings
 
 pytestmark = pytest.mark.ros

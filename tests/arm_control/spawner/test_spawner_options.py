@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_control.spawner.spawner_options import (
+from arm_control.spawner.command_line import (
     ControllerOptions,
     SpawnerOptions,
     parse_spawner_options,

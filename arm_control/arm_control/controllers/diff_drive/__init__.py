@@ -7,8 +7,11 @@ from arm_control.controllers.diff_drive.odometry import (
     PlanarTwist,
     WheelGeometry,
 )
-from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
-from arm_control.controllers.diff_drive.speed_limits import SpeedLimiter, SpeedLimits
+from arm_control.controllers.diff_drive.parameters import (
+    DiffDriveParameters,
+    SpeedLimiter,
+    SpeedLimits,
+)
 
 __all__ = [
     "DiffDriveController",

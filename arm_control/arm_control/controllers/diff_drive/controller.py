@@ -11,8 +11,7 @@ from arm_control.controllers.controller import (
     ReturnType,
 )
 from arm_control.controllers.diff_drive.odometry import Odometry, PlanarPose, PlanarTwist
-from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
-from arm_control.controllers.diff_drive.speed_limits import SpeedLimiter
+from arm_control.controllers.diff_drive.parameters import DiffDriveParameters, SpeedLimiter
 from arm_control.controllers.drive import DriveController
 from arm_control.loop.schedule import Schedule
 

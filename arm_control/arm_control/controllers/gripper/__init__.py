@@ -16,13 +16,14 @@ For the ROS half:
 Times are those of `update(time_s, period_s)`. Nothing here uses the wall clock.
 """
 
-from arm_control.controllers.gripper.controller import GripperController, GripperSink
-from arm_control.controllers.gripper.goals import GripperRequest, GripperResult, GripperState
-from arm_control.controllers.gripper.grippers import (
+from arm_control.controllers.gripper.controller import (
     EffortGripperController,
+    GripperController,
+    GripperSink,
     ParallelGripperController,
     PositionGripperController,
 )
+from arm_control.controllers.gripper.goals import GripperRequest, GripperResult, GripperState
 
 __all__ = [
     "EffortGripperController",

@@ -47,8 +47,8 @@ from arm_control.controllers.joint_trajectory.serialized import (
 )
 from arm_control.controllers.joint_trajectory.trajectory import FIELDS
 from arm_control.controllers.ros_action import ControllerAction
-from arm_control.controllers.ros_adapter import ControllerAdapter
-from arm_control.controllers.ros_times import (
+from arm_control.controllers.ros_adapter import (
+    ControllerAdapter,
     duration_message,
     duration_parts,
     seconds_of,

@@ -11,11 +11,11 @@ from rclpy.qos import QoSPresetProfiles
 from sensor_msgs.msg import Imu
 
 from arm_control.controllers.ros_adapter import ControllerAdapter
-from arm_control.controllers.sensor_broadcasters.force_torque import (
+from arm_control.controllers.sensor_broadcasters.controller import (
     ForceTorqueSensorBroadcasterParameters,
+    ImuSensorBroadcasterParameters,
+    SensorBroadcaster,
 )
-from arm_control.controllers.sensor_broadcasters.imu import ImuSensorBroadcasterParameters
-from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import SensorBroadcaster
 from arm_node.workarounds.message_template import MessageTemplate
 
 

@@ -6,14 +6,18 @@ the nodes.
 """
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from math import isnan, nan
 
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock as ClockMessage
 
 from arm_control.errors import ArmControlError, HardwareInfoError
 from arm_control.hardware.info import parse_hardware_info
-from arm_control.loop.clock import MonotonicClock, SystemClock, Throttle
+from arm_control.loop.clock import Clock, MonotonicClock, SystemClock, Throttle
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 from arm_control.manager.controller_manager import (
@@ -22,16 +26,86 @@ from arm_control.manager.controller_manager import (
     bring_up,
     configured_manager,
 )
+from arm_control.manager.node_arguments import controller_arguments
 from arm_control.manager.registry import create_hardware
-from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.controller_manager_node import ControllerManagerNode, DescriptionTopic
 from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
-from arm_control.manager.ros.controllers_executor import controllers_executor
-from arm_control.manager.ros.description_topic import DescriptionTopic
-from arm_control.manager.ros.simulated_clock import DeadlineClock, SimulatedClock
+from arm_control.manager.ros.controller_node import controllers_executor
 from arm_description.errors import DescriptionError
 from arm_description.urdf.description import RobotDescription
 from arm_node.process import EXIT_FAILED, NodeProcess
 from arm_node.workarounds.discovery import first_node
+
+CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+ROUNDING_S = 1e-6
+
+
+class SimulatedClock:
+    """The time that a simulation publishes; see `arm_control.loop.clock.Clock`.
+
+    It has its own hidden node. The manager's node cannot be used: its services block the thread
+    that spins it, so time would stand still meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._time_s = nan
+
+    def now_s(self) -> float:
+        """Return the latest time; NaN before the first message."""
+        return self._time_s
+
+    def listen(
+        self,
+        manager_node: ControllerManagerNode,
+        executor: Executor,
+        *,
+        on_start: Callable[[], object],
+        on_advance: Callable[[], object],
+        on_set_back: Callable[[], object],
+    ) -> Node:
+        """Subscribe; return the clock's node, which the caller must destroy.
+
+        Args:
+            manager_node: provides the namespace and remaps.
+            executor: runs the callbacks.
+            on_start: called at the first message.
+            on_advance: called at each later message.
+            on_set_back: called instead if the time was set back.
+        """
+
+        def take(message: ClockMessage) -> None:
+            time_s = message.clock.sec + message.clock.nanosec * 1e-9
+            last_s, self._time_s = self._time_s, time_s
+            if isnan(last_s):
+                on_start()
+            elif time_s < last_s:
+                on_set_back()
+            else:
+                on_advance()
+
+        node = Node(
+            f"_{manager_node.get_name()}_clock",
+            namespace=manager_node.get_namespace(),
+            cli_args=controller_arguments(manager_node.arguments),
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        node.create_subscription(ClockMessage, "/clock", take, CLOCK_QOS)
+        executor.add_node(node)
+        return node
+
+
+class DeadlineClock:
+    """A clock slightly ahead of another, so that rounding does not miss a deadline."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+
+    def now_s(self) -> float:
+        """Return the other clock's time plus one microsecond."""
+        return self._clock.now_s() + ROUNDING_S
+
 
 LISTENING_S = 0.1
 REMINDER_INTERVAL_S = 1.0

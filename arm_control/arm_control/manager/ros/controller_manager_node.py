@@ -3,23 +3,172 @@
 import dataclasses
 import logging
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from difflib import get_close_matches
 
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
 
 from arm_control.loop.priority import LoopPriority
+from arm_control.manager.diagnostics import HealthReport, ManagerDiagnostics, waiting_reports
 from arm_control.manager.node_arguments import manager_arguments
-from arm_control.manager.ros.health_publisher import HealthPublisher
 from arm_control.manager.ros.parameter_node import TYPE_OF_CONTROLLER, ParameterNode
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
 from arm_node.logger_levels import LoggerLevelServices
 from arm_node.workarounds.process_clock import ProcessClock
+
+logger = logging.getLogger("controller_manager")
+
+LATCHED_QOS = QoSProfile(
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+
+
+class DescriptionTopic:
+    """Keeps the latest description until one is in use; then it ignores others with a warning.
+
+    Until `use` is called, it belongs to the thread that spins the node.
+    """
+
+    def __init__(self, node: Node, in_use: str = "") -> None:
+        """Subscribe.
+
+        Args:
+            node: the controller manager's node.
+            in_use: the description already in use; empty if there is none.
+        """
+        self._in_use = in_use
+        self._latest: str | None = None
+        self._subscription = node.create_subscription(
+            String, "robot_description", self._take, LATCHED_QOS
+        )
+
+    @property
+    def name(self) -> str:
+        """Full name of the topic."""
+        return self._subscription.topic_name
+
+    def take(self) -> str | None:
+        """Return the latest description once; None if there is no new one."""
+        latest, self._latest = self._latest, None
+        return latest
+
+    def use(self, description: str) -> None:
+        """Ignore every other description from now on."""
+        self._in_use = description
+
+    def _take(self, message: String) -> None:
+        if not self._in_use:
+            self._latest = message.data
+        elif message.data != self._in_use:
+            logger.warning(
+                "a robot description other than the one in use was published on %s. "
+                "Ignoring attempt to reload a robot description.",
+                self.name,
+            )
+
+
+TOPIC = "/diagnostics"
+HARDWARE_ID = "ros2_control"
+
+SLICE_S = 1.0
+"""A shorter period takes effect after at most this long."""
+
+
+class HealthPublisher:
+    """Publishes one DiagnosticArray per `diagnostic_updater.period` of wall time.
+
+    It has its own thread, because diagnostics matter most when the control loop is stuck and the
+    services wait for it. Until `watch` it reports that the manager waits for its description.
+    """
+
+    def __init__(
+        self, node: Node, settings: Callable[[], ManagerSettings], stamp: Callable[[], Time]
+    ) -> None:
+        """Prepare the thread.
+
+        Args:
+            node: publishes the messages.
+            settings: returns the manager's current parameters; any thread.
+            stamp: returns the time for a message's header; any thread.
+        """
+        self._node = node
+        self._settings = settings
+        self._stamp = stamp
+        self._diagnostics: ManagerDiagnostics | None = None
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="diagnostics", daemon=True)
+
+    def start(self) -> None:
+        """Start publishing; the first message follows after one period, to keep the start quick."""
+        self._thread.start()
+
+    def watch(self, diagnostics: ManagerDiagnostics) -> None:
+        """Report these diagnostics; any thread."""
+        self._diagnostics = diagnostics
+
+    def stop(self) -> None:
+        """Stop publishing, and wait until the last message has been sent."""
+        self._stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _run(self) -> None:
+        publisher = None
+        while self._wait():
+            publisher = publisher or self._node.create_publisher(DiagnosticArray, TOPIC, 1)
+            publisher.publish(self._message())
+
+    def _wait(self) -> bool:
+        """Wait for one period; return False as soon as publishing must stop.
+
+        It waits in slices, because the period may change meanwhile and may even be infinite.
+        """
+        waited_s = 0.0
+        while (rest_s := self._settings().diagnostic_updater.period - waited_s) > 0.0:
+            slice_s = min(rest_s, SLICE_S)
+            if self._stopping.wait(slice_s):
+                return False
+            waited_s += slice_s
+        return True
+
+    def _message(self) -> DiagnosticArray:
+        node, diagnostics = self._node, self._diagnostics
+        settings = self._settings()
+        reports = (
+            waiting_reports()
+            if diagnostics is None
+            else diagnostics.reports(settings.diagnostics.threshold)
+        )
+        name = (
+            node.get_fully_qualified_name()
+            if settings.diagnostic_updater.use_fqn
+            else node.get_name()
+        )
+        message = DiagnosticArray(status=[_status(name, report) for report in reports])
+        message.header.stamp = self._stamp()
+        return message
+
+
+def _status(node_name: str, report: HealthReport) -> DiagnosticStatus:
+    return DiagnosticStatus(
+        level=bytes([report.level]),
+        name=f"{node_name}: {report.task}",
+        message=report.message,
+        hardware_id=HARDWARE_ID,
+        values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
+    )
+
 
 MIN_SIMILARITY = 0.85
 """Similarity from which a parameter name counts as a mistyped one (difflib's ratio)."""

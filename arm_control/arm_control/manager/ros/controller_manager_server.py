@@ -1,12 +1,28 @@
 """The ROS half of a running controller manager: services, topics and nodes."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from controller_manager_msgs.msg import ControllerManagerActivity
+from controller_manager_msgs.srv import (
+    CleanupController,
+    ConfigureController,
+    ListControllers,
+    ListControllerTypes,
+    ListHardwareComponents,
+    ListHardwareInterfaces,
+    LoadController,
+    ReloadControllerLibraries,
+    SetHardwareComponentState,
+    SwitchController,
+    UnloadController,
+)
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.lifecycle import LifecycleState, Transition
@@ -15,17 +31,220 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.diagnostics import ManagerDiagnostics, RefusedRequests
 from arm_control.manager.introspection import ManagerSnapshot
 from arm_control.manager.node_arguments import controller_arguments
+from arm_control.manager.registry import controller_types, is_chainable
 from arm_control.manager.ros.control_plane import ControlPlane
-from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
-from arm_control.manager.ros.description_topic import LATCHED_QOS, DescriptionTopic
+from arm_control.manager.ros.controller_manager_node import (
+    LATCHED_QOS,
+    ControllerManagerNode,
+    DescriptionTopic,
+)
 from arm_control.manager.ros.emergency_stop import EmergencyStopServer
 from arm_control.manager.ros.introspection_publisher import IntrospectionPublisher
-from arm_control.manager.ros.manager_services import ManagerServices
-from arm_control.manager.ros.messages import activity_message
+from arm_control.manager.ros.messages import (
+    activity_message,
+    component_message,
+    controller_message,
+    interface_message,
+    state_message,
+)
+from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_description.urdf.description import Description, text_of
 from arm_node.executor_thread import ExecutorThread
 from arm_node.logger_levels import LoggerLevelServices
 from arm_node.names import as_node_name
+
+logger = logging.getLogger("controller_manager")
+
+SERVICE_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_ALL,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
+SERVICE_THREADS = 3
+"""One for requests that wait for the control loop, one for requests that only read, and one for the
+emergency stop, which waits for neither."""
+CONTROLLER_INTERFACE = "controller_interface::ControllerInterface"
+CHAINABLE_INTERFACE = "controller_interface::ChainableControllerInterface"
+
+
+class ManagerServices:
+    """Creates the services on a node and answers them.
+
+    Requests that change something are served one after another; each may block a thread of the
+    node's executor until the control loop has done its part. Lists are answered meanwhile.
+    """
+
+    def __init__(
+        self,
+        node: ControllerManagerNode,
+        plane: ControlPlane,
+        manager: ControllerManager,
+        snapshot: ManagerSnapshot,
+        refusals: RefusedRequests,
+    ) -> None:
+        self._node = node
+        self._plane = plane
+        self._manager = manager
+        self._snapshot = snapshot
+        self._refusals = refusals
+        reading, changing = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+        for type_, name, answer in (
+            (ListControllers, "list_controllers", self._list_controllers),
+            (ListControllerTypes, "list_controller_types", self._list_controller_types),
+            (LoadController, "load_controller", self._by_name(plane.load_controller)),
+            (
+                ConfigureController,
+                "configure_controller",
+                self._by_name(plane.configure_controller),
+            ),
+            (CleanupController, "cleanup_controller", self._by_name(plane.cleanup_controller)),
+            (UnloadController, "unload_controller", self._by_name(plane.unload_controller)),
+            (SwitchController, "switch_controller", self._switch_controller),
+            (ReloadControllerLibraries, "reload_controller_libraries", self._reload),
+            (ListHardwareInterfaces, "list_hardware_interfaces", self._list_interfaces),
+            (ListHardwareComponents, "list_hardware_components", self._list_components),
+            (SetHardwareComponentState, "set_hardware_component_state", self._set_component_state),
+        ):
+            node.create_service(
+                type_,
+                f"~/{name}",
+                answer,
+                qos_profile=SERVICE_QOS,
+                callback_group=reading if name.startswith("list_") else changing,
+            )
+
+    def _by_name(self, action: Callable[[str], None]) -> Callable[[Any, Any], Any]:
+        """Return the callback of a service whose request is a name and whose response is `ok`."""
+
+        def answer(request: Any, response: Any) -> Any:
+            response.ok = self._succeeded(
+                action.__name__, request.name, lambda: action(request.name)
+            )
+            return response
+
+        return answer
+
+    def _succeeded(self, request: str, name: str, action: Callable[[], object]) -> bool:
+        """Carry out a request and return whether it succeeded; record why it was refused."""
+        try:
+            action()
+        except ArmControlError as error:
+            logger.error("%s", error)
+            self._refusals.note(request, name, str(error))
+            return False
+        self._refusals.clear(request, name)
+        return True
+
+    def _list_controllers(
+        self, _request: ListControllers.Request, response: ListControllers.Response
+    ) -> ListControllers.Response:
+        response.controller = [controller_message(s) for s, _ in self._snapshot.controllers]
+        return response
+
+    def _list_controller_types(
+        self, _request: ListControllerTypes.Request, response: ListControllerTypes.Response
+    ) -> ListControllerTypes.Response:
+        # Controllers that are not chainable come first, as in ros2_control.
+        types = sorted((is_chainable(name), name) for name in controller_types())
+        response.types = [name for _, name in types]
+        response.base_classes = [
+            CHAINABLE_INTERFACE if chainable else CONTROLLER_INTERFACE for chainable, _ in types
+        ]
+        return response
+
+    def _switch_controller(
+        self, request: SwitchController.Request, response: SwitchController.Response
+    ) -> SwitchController.Response:
+        try:
+            strictness = self._strictness(request.strictness)
+        except ValueError:
+            response.ok = False
+            response.message = f"unknown strictness {request.strictness}; it is 1, 2, 3 or 4"
+            return response
+        # activate_asap has no effect: a switch is completed between two cycles, which is as soon as
+        # possible.
+        result = self._plane.switch_controller(
+            SwitchRequest(
+                tuple(request.activate_controllers),
+                tuple(request.deactivate_controllers),
+                strictness,
+            ),
+            request.timeout.sec + request.timeout.nanosec * 1e-9,
+        )
+        response.ok, response.message = result.ok, result.message
+        if result.ok:
+            self._refusals.clear("switch_controller", "")
+        else:
+            self._refusals.note("switch_controller", "", result.message)
+        return response
+
+    def _reload(
+        self,
+        request: ReloadControllerLibraries.Request,
+        response: ReloadControllerLibraries.Response,
+    ) -> ReloadControllerLibraries.Response:
+        response.ok = self._succeeded(
+            "reload_controller_libraries",
+            "",
+            lambda: self._plane.unload_all(force=request.force_kill),
+        )
+        return response
+
+    def _list_interfaces(
+        self, _request: ListHardwareInterfaces.Request, response: ListHardwareInterfaces.Response
+    ) -> ListHardwareInterfaces.Response:
+        commands, states = self._snapshot.interfaces
+        response.command_interfaces = [interface_message(status) for status in commands]
+        response.state_interfaces = [interface_message(status) for status in states]
+        return response
+
+    def _list_components(
+        self, _request: ListHardwareComponents.Request, response: ListHardwareComponents.Response
+    ) -> ListHardwareComponents.Response:
+        response.component = [component_message(s) for s, _, _ in self._snapshot.components]
+        return response
+
+    def _set_component_state(
+        self,
+        request: SetHardwareComponentState.Request,
+        response: SetHardwareComponentState.Response,
+    ) -> SetHardwareComponentState.Response:
+        target = request.target_state
+
+        def set_state() -> None:
+            state = _target_state(target.id, target.label)
+            self._plane.on_loop(
+                lambda: self._manager.set_hardware_component_state(request.name, state)
+            )
+
+        response.ok = self._succeeded("set_hardware_component_state", request.name, set_state)
+        for status, _, _ in self._snapshot.components:
+            if status.name == request.name:
+                response.state = state_message(status.state)
+        return response
+
+    def _strictness(self, number: int) -> Strictness:
+        if number == 0:
+            return self._node.default_strictness()
+        strictness = Strictness(number)
+        if strictness in (Strictness.AUTO, Strictness.FORCE_AUTO):
+            logger.warning("strictness %s is treated as BEST_EFFORT", strictness.name)
+        return strictness
+
+
+def _target_state(state_id: int, label: str) -> LifecycleState:
+    """Return the state with an id or, if the id is 0, with a label.
+
+    Raises:
+        ArmControlError: there is no such primary state.
+    """
+    for state in LifecycleState:
+        if state_id == state or (state_id == 0 and label == state.label):
+            return state
+    raise ArmControlError(
+        f"no hardware state has id {state_id} and label '{label}'; "
+        f"the states are {', '.join(f'{state.label} ({state.value})' for state in LifecycleState)}"
+    )
 
 
 class _ServiceExecutor(MultiThreadedExecutor):
@@ -36,13 +255,6 @@ class _ServiceExecutor(MultiThreadedExecutor):
         is_idle = super().shutdown(timeout_sec)
         self._executor.shutdown(wait=is_idle)
         return is_idle
-
-
-SERVICE_THREADS = 3
-"""One for requests that wait for the control loop, one for requests that only read, and one for the
-emergency stop, which waits for neither."""
-
-logger = logging.getLogger("controller_manager")
 
 
 class ControllerManagerServer:

@@ -16,20 +16,16 @@ from arm_control import (
     JointInfo,
     SwitchRequest,
 )
-from arm_control.controllers.sensor_broadcasters.force_torque import (
+from arm_control.controllers.sensor_broadcasters.controller import (
+    FORCE_TORQUE_INTERFACES,
+    IMU_INTERFACES,
     AxisInterfaces,
     ForceTorqueSensorBroadcaster,
     ForceTorqueSensorBroadcasterParameters,
-    WrenchInterfaces,
-)
-from arm_control.controllers.sensor_broadcasters.imu import (
     ImuSensorBroadcaster,
     ImuSensorBroadcasterParameters,
-)
-from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import (
-    FORCE_TORQUE_INTERFACES,
-    IMU_INTERFACES,
     SensorBroadcaster,
+    WrenchInterfaces,
 )
 from arm_control.errors import ParameterError
 from arm_control.testing import FakeHardware

@@ -8,7 +8,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
-from arm_control.manager.controller_starter import MANAGER
+from arm_control.manager.controller_creation import MANAGER
 from arm_control.manager.parameter_file import ParametersByNode
 from arm_gazebo.launching.controllers_file import read_controllers
 

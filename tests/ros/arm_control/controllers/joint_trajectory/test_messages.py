@@ -36,9 +36,9 @@ def messages() -> Any:
 
 @pytest.fixture
 def times() -> Any:
-    import arm_control.controllers.ros_times
+    import arm_control.controllers.ros_adapter
 
-    return arm_control.controllers.ros_times
+    return arm_control.controllers.ros_adapter
 
 
 def test_seconds_of_negative_durations(times: Any) -> None:

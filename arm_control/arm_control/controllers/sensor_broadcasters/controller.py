@@ -1,19 +1,138 @@
-"""force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster: publishes a wrench."""
+"""The broadcasters of sensors, which publish a reading in every cycle: IMU, force and torque."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.controller import ControllerContext, InterfaceConfiguration
-from arm_control.controllers.sensor_broadcasters.sensor_broadcaster import (
-    FORCE_TORQUE_INTERFACES,
-    SensorBroadcaster,
+from arm_control.controllers.controller import (
+    Controller,
+    ControllerContext,
+    InterfaceConfiguration,
+    ReturnType,
 )
 from arm_control.errors import ControllerError, ParameterError
 from arm_control.parameters import ParameterSpec, parameter
+
+IMU_INTERFACES = (
+    "orientation.x",
+    "orientation.y",
+    "orientation.z",
+    "orientation.w",
+    "angular_velocity.x",
+    "angular_velocity.y",
+    "angular_velocity.z",
+    "linear_acceleration.x",
+    "linear_acceleration.y",
+    "linear_acceleration.z",
+)
+FORCE_TORQUE_INTERFACES = ("force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z")
+
+
+ParametersT = TypeVar("ParametersT")
+
+
+class ReadingSink(Protocol):
+    """Receives the readings on the loop thread."""
+
+    def wanted(self) -> bool:
+        """Return whether there is a subscriber now."""
+        ...
+
+    def publish(self, time_s: float, reading: NDArray[np.float64]) -> None:
+        """Publish a reading, shape (n,), which is reused for the next one."""
+        ...
+
+
+class SensorBroadcaster(Controller[ParametersT]):
+    """Publishes the state interfaces that a subclass requests, in its order.
+
+    Attributes:
+        sink: receives the readings; None publishes nothing. Set it before activation.
+    """
+
+    def __init__(self, context: ControllerContext) -> None:
+        super().__init__(context)
+        self.sink: ReadingSink | None = None
+
+    def require(self, **names: str) -> None:
+        """Check that parameters are not empty.
+
+        Raises:
+            ControllerError: one is empty; the message names it.
+        """
+        for name, value in names.items():
+            if not value:
+                raise ControllerError(f"parameter '{name}' is empty; it must be set")
+
+    def command_interface_configuration(self) -> InterfaceConfiguration:
+        """Claim nothing."""
+        return InterfaceConfiguration.none()
+
+    def reading(self) -> NDArray[np.float64]:
+        """Return the current reading."""
+        return self.states.read()
+
+    def update(self, time_s: float, period_s: float) -> ReturnType:
+        """Publish the current reading."""
+        if self.sink is not None and self.sink.wanted():
+            self.sink.publish(time_s, self.reading())
+        return ReturnType.OK
+
+
+COVARIANCE_SIZE = 9
+NO_COVARIANCE = (0.0,) * COVARIANCE_SIZE
+
+
+@dataclass(frozen=True, slots=True)
+class ImuSensorBroadcasterParameters:
+    """Parameters of ImuSensorBroadcaster; covariances are 3x3, row by row."""
+
+    sensor_name: str = parameter(
+        "", "Sensor whose state interfaces are published", at_configuration=True
+    )
+    frame_id: str = parameter("", "frame_id of the published headers", at_configuration=True)
+    static_covariance_orientation: tuple[float, ...] = parameter(
+        NO_COVARIANCE, "Covariance of the orientation, in rad^2", at_configuration=True
+    )
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(
+        NO_COVARIANCE, "Covariance of the angular velocity, in rad^2/s^2", at_configuration=True
+    )
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(
+        NO_COVARIANCE, "Covariance of the linear acceleration, in m^2/s^4", at_configuration=True
+    )
+
+
+class ImuSensorBroadcaster(SensorBroadcaster[ImuSensorBroadcasterParameters]):
+    """Publishes ten state interfaces of one sensor as an IMU message."""
+
+    parameters_type: ClassVar[type[Any]] = ImuSensorBroadcasterParameters
+    adapter = "arm_control.controllers.sensor_broadcasters.ros:ImuSensorBroadcasterAdapter"
+
+    def on_configure(self, parameters: ImuSensorBroadcasterParameters) -> None:
+        """Check and take the parameters.
+
+        Raises:
+            ControllerError: a name is missing, or a covariance does not have nine numbers.
+        """
+        self.require(sensor_name=parameters.sensor_name, frame_id=parameters.frame_id)
+        for name in ("orientation", "angular_velocity", "linear_acceleration"):
+            full_name = f"static_covariance_{name}"
+            count = len(getattr(parameters, full_name))
+            if count != COVARIANCE_SIZE:
+                raise ControllerError(
+                    f"parameter '{full_name}' has {count} numbers; it takes {COVARIANCE_SIZE}, "
+                    "row by row"
+                )
+        super().on_configure(parameters)
+
+    def state_interface_configuration(self) -> InterfaceConfiguration:
+        """Read the sensor's ten interfaces."""
+        sensor = self.parameters.sensor_name
+        return InterfaceConfiguration.individual(f"{sensor}/{name}" for name in IMU_INTERFACES)
+
 
 FILTER_CHAIN = "sensor_filter_chain"
 
