@@ -42,11 +42,7 @@ setup(
             "unspawner = arm_control.spawner.unspawner_node:main",
             "hardware_spawner = arm_control.spawner.hardware_spawner_node:main",
         ],
-        "launch_py.packages": [
-            "controller_manager = arm_control",
-        ],
-        "launch_py.nodes": [
-            "ros2_control_node = controller_manager",
-        ],
+        "launch_py.packages": ["controller_manager = arm_control"],
+        "launch_py.nodes": ["ros2_control_node = controller_manager"],
     },
 )

@@ -72,9 +72,7 @@ def run_input_noted_as(
         note: returns the plain data to note instead of the arguments by name.
     """
 
-    def mark(
-        method: Input[TargetT, ArgumentsT, ResultT],
-    ) -> Input[TargetT, ArgumentsT, ResultT]:
+    def mark(method: Input[TargetT, ArgumentsT, ResultT]) -> Input[TargetT, ArgumentsT, ResultT]:
         signature = inspect.signature(method)
 
         @wraps(method)

@@ -147,8 +147,7 @@ def fake_hardware(
                     commands,
                     tuple(
                         InterfaceInfo(
-                            interface,
-                            initial.get(joint) if interface == "position" else None,
+                            interface, initial.get(joint) if interface == "position" else None
                         )
                         for interface in state_interfaces
                     ),

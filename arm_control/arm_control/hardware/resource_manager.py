@@ -247,9 +247,7 @@ class ResourceManager:
                 held[index] = states[name]
         return held
 
-    def list_interfaces(
-        self,
-    ) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
+    def list_interfaces(self) -> tuple[tuple[InterfaceStatus, ...], tuple[InterfaceStatus, ...]]:
         """Return the command and the state interfaces, each sorted by name."""
         exported = self.exported
         return (

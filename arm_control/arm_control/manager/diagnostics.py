@@ -150,8 +150,7 @@ class ManagerDiagnostics:
         active = [pair for pair in controllers if pair[0].state is LifecycleState.ACTIVE]
         if not any(s.state is LifecycleState.ACTIVE for s, _, _ in components):
             report.merge(
-                Level.ERROR,
-                "No hardware components are currently active to activate controllers",
+                Level.ERROR, "No hardware components are currently active to activate controllers"
             )
         elif not controllers:
             report.merge(Level.WARN, "No controllers are currently loaded")
@@ -225,8 +224,7 @@ class ManagerDiagnostics:
             report.merge(Level.OK, "Controller Manager is paused")
         elif pacer.remaining_s() < -STUCK_S:
             report.merge(
-                Level.ERROR,
-                f"The control loop has been stuck for {-pacer.remaining_s():.1f} s",
+                Level.ERROR, f"The control loop has been stuck for {-pacer.remaining_s():.1f} s"
             )
         else:
             report.merge(Level.OK, "Controller Manager is running")

@@ -136,9 +136,7 @@ class SwitchPlanner:
         return known
 
     def _accepted(
-        self,
-        candidates: Iterable[ManagedController],
-        why_not: Callable[[ManagedController], str],
+        self, candidates: Iterable[ManagedController], why_not: Callable[[ManagedController], str]
     ) -> list[ManagedController]:
         """Return the candidates for which `why_not` gives no reason."""
         accepted: list[ManagedController] = []

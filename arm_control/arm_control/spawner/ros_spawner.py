@@ -22,12 +22,7 @@ from arm_node.process import EXIT_FAILED, EXIT_OK, NodeProcess
 SERVICE_CALL_TIMEOUT_S = 10.0
 UNLOAD_TIMEOUT_S = 2.0
 UNLOAD_SERVICES = ("list_controllers", "switch_controller", "unload_controller")
-SPAWN_SERVICES = (
-    *UNLOAD_SERVICES,
-    "configure_controller",
-    "load_controller",
-    "set_parameters",
-)
+SPAWN_SERVICES = (*UNLOAD_SERVICES, "configure_controller", "load_controller", "set_parameters")
 HARDWARE_SERVICES = ("list_hardware_components", "set_hardware_component_state")
 
 

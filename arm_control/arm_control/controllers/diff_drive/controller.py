@@ -5,11 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from arm_control.controllers.controller import (
-    ControllerContext,
-    InterfaceConfiguration,
-    ReturnType,
-)
+from arm_control.controllers.controller import ControllerContext, InterfaceConfiguration, ReturnType
 from arm_control.controllers.diff_drive.odometry import Odometry, PlanarPose, PlanarTwist
 from arm_control.controllers.diff_drive.parameters import DiffDriveParameters, SpeedLimiter
 from arm_control.controllers.drive import DriveController

@@ -16,10 +16,7 @@ from arm_control.controllers.controller import (
     ReturnType,
 )
 from arm_control.errors import ControllerError
-from arm_control.parameters import (
-    parameter,
-    parameter_groups,
-)
+from arm_control.parameters import parameter, parameter_groups
 from arm_control.run_inputs import run_input
 from arm_description.urdf.description import as_description
 

@@ -4,12 +4,7 @@ from dataclasses import dataclass
 
 from arm_control.controllers.pid import PidGains
 from arm_control.errors import ParameterError
-from arm_control.parameters import (
-    check_values,
-    parameter,
-    parameter_groups,
-    specs_of,
-)
+from arm_control.parameters import check_values, parameter, parameter_groups, specs_of
 
 LOWEST_MONITOR_RATE_HZ = 0.1
 JOINT = "The joint that opens and closes the gripper"

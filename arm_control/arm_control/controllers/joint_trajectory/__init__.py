@@ -37,9 +37,7 @@ Behaviour that ros2_controllers leaves undefined, or does not report to the clie
 Times are those of `update(time_s, period_s)`. Nothing here uses the wall clock.
 """
 
-from arm_control.controllers.joint_trajectory.controller import (
-    JointTrajectoryController,
-)
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 from arm_control.controllers.joint_trajectory.goals import (
     ErrorCode,
     GoalOutcome,

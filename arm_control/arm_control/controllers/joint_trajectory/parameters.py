@@ -18,12 +18,7 @@ from arm_control.controllers.joint_trajectory.validation import (
 )
 from arm_control.controllers.pid import AntiWindup, PidGains
 from arm_control.errors import ControllerError, ParameterError
-from arm_control.parameters import (
-    check_values,
-    parameter,
-    parameter_groups,
-    specs_of,
-)
+from arm_control.parameters import check_values, parameter, parameter_groups, specs_of
 from arm_description.urdf.robot import Robot
 
 LOWEST_MONITOR_RATE_HZ = 0.1

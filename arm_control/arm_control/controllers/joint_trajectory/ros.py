@@ -129,12 +129,7 @@ class _JointTrajectoryAction(ControllerAction[JointTrajectoryController, GoalRes
         """
         self._accepts_faulty = accepts_faulty
         super().__init__(
-            controller,
-            node,
-            loop,
-            executor,
-            serializing_action_type(),
-            "~/follow_joint_trajectory",
+            controller, node, loop, executor, serializing_action_type(), "~/follow_joint_trajectory"
         )
 
     def publish_feedback(self, goal_id: bytes, layout: StateLayout, feedback: Feedback) -> None:

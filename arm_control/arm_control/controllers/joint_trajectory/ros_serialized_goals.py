@@ -93,11 +93,7 @@ class _Bytes(ctypes.Structure):
 class _Sequence(ctypes.Structure):
     """A sequence of a C message."""
 
-    _fields_ = (
-        ("data", ctypes.c_void_p),
-        ("size", ctypes.c_size_t),
-        ("capacity", ctypes.c_size_t),
-    )
+    _fields_ = (("data", ctypes.c_void_p), ("size", ctypes.c_size_t), ("capacity", ctypes.c_size_t))
 
 
 class _Trajectory(ctypes.Structure):

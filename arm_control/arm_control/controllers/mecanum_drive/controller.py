@@ -6,11 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from arm_control.controllers.controller import (
-    ControllerContext,
-    InterfaceConfiguration,
-    ReturnType,
-)
+from arm_control.controllers.controller import ControllerContext, InterfaceConfiguration, ReturnType
 from arm_control.controllers.drive import NO_COVARIANCE, DriveController, check_covariances
 from arm_control.controllers.mecanum_drive.kinematics import (
     WHEELS,
@@ -81,9 +77,7 @@ class MecanumDriveParameters:
         NO_COVARIANCE, "Variances of x y z roll pitch yaw", at_configuration=True
     )
     twist_covariance_diagonal: tuple[float, ...] = parameter(
-        NO_COVARIANCE,
-        "Variances of the velocities along and about x y z",
-        at_configuration=True,
+        NO_COVARIANCE, "Variances of the velocities along and about x y z", at_configuration=True
     )
 
     @property

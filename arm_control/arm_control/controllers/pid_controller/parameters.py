@@ -6,10 +6,7 @@ from math import inf
 
 from arm_control.controllers.pid import AntiWindup, PidGains
 from arm_control.errors import ParameterError
-from arm_control.parameters import (
-    parameter,
-    parameter_groups,
-)
+from arm_control.parameters import parameter, parameter_groups
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +24,7 @@ class DofGains:
         False, "Deprecated; with strategy legacy, clamp the integral, not only its contribution"
     )
     antiwindup_strategy: str = parameter(
-        "legacy",
-        "Anti-windup strategy",
-        one_of=tuple(strategy.value for strategy in AntiWindup),
+        "legacy", "Anti-windup strategy", one_of=tuple(strategy.value for strategy in AntiWindup)
     )
     tracking_time_constant: float = parameter(0.0, "Of back_calculation, in s; 0: from the gains")
     error_deadband: float = parameter(1e-16, "Errors up to this are not integrated")

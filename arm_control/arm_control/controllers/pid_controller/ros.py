@@ -5,12 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from control_msgs.msg import (
-    MultiDOFCommand,
-    MultiDOFStateStamped,
-    PidState,
-    SingleDOFState,
-)
+from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped, PidState, SingleDOFState
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy

@@ -235,10 +235,7 @@ class ControlPlane:
 
     def _own_type(self, name: str) -> tuple[str, ...]:
         """Return the type in the controller's own entry of a parameter file, if any."""
-        files = [
-            *self._node.strings(f"{name}.params_file"),
-            *parameter_files(self._node.arguments),
-        ]
+        files = [*self._node.strings(f"{name}.params_file"), *parameter_files(self._node.arguments)]
         namespace = self._node.get_namespace()
         for path in files:
             value = ControllerParameterFile(path).own_entry(name, namespace, "type")

@@ -229,10 +229,7 @@ def _loop(
     )
     cycle = ControlCycle(manager, simulated or SystemClock(), simulated or MonotonicClock())
     loop = ControlLoop(
-        cycle,
-        pacer,
-        on_failure=lambda _: process.stop(EXIT_FAILED),
-        priority=node.loop_priority(),
+        cycle, pacer, on_failure=lambda _: process.stop(EXIT_FAILED), priority=node.loop_priority()
     )
     loop.start(paused=simulated is not None)
     if simulated is not None:

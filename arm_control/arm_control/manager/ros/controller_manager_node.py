@@ -28,9 +28,7 @@ from arm_node.workarounds.process_clock import ProcessClock
 logger = logging.getLogger("controller_manager")
 
 LATCHED_QOS = QoSProfile(
-    depth=1,
-    reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
 
 

@@ -290,11 +290,7 @@ class ControllerManagerServer:
         self._executor = executor
         self._descriptions = descriptions or DescriptionTopic(node, text_of(robot_description))
         self._plane = ControlPlane(
-            node,
-            manager,
-            loop,
-            executor,
-            robot_description=robot_description,
+            node, manager, loop, executor, robot_description=robot_description
         )
         self._component_nodes = [
             self._make_component_node(component.name)

@@ -138,12 +138,7 @@ class StatisticsTopic:
             sample: returns the current numbers and their stamp, None if there are none.
         """
         # Imported here, so that a start does not load these messages.
-        from pal_statistics_msgs.msg import (
-            Statistic,
-            Statistics,
-            StatisticsNames,
-            StatisticsValues,
-        )
+        from pal_statistics_msgs.msg import Statistic, Statistics, StatisticsNames, StatisticsValues
 
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._full = node.create_publisher(Statistics, f"{prefix}/full", DEPTH)
