@@ -11,7 +11,17 @@ from typing import Any
 PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim")
 """Packages that reading a file may import."""
 
+_CONTROLLERS = "arm_control.controllers"
+_TRAJECTORY = f"{_CONTROLLERS}.joint_trajectory"
+_SENSORS = f"{_CONTROLLERS}.sensor_broadcasters"
+
 EARLIER_NAMES: dict[str, str] = {
+    f"{_CONTROLLERS}.diff_drive.speed_limits": f"{_CONTROLLERS}.diff_drive.parameters",
+    f"{_TRAJECTORY}.goals:TrajectoryRequest": f"{_TRAJECTORY}.trajectory:TrajectoryRequest",
+    f"{_TRAJECTORY}.goals:WayPoints": f"{_TRAJECTORY}.trajectory:WayPoints",
+    f"{_TRAJECTORY}.tolerances": f"{_TRAJECTORY}.goals",
+    f"{_SENSORS}.force_torque": f"{_SENSORS}.controller",
+    f"{_SENSORS}.imu": f"{_SENSORS}.controller",
     "arm_gazebo.assembly.robot_settings": "arm_gazebo.run.robot_settings",
 }
 """The present names of modules and classes, the latter as 'module:Name', by their earlier ones."""
