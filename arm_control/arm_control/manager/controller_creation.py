@@ -13,7 +13,7 @@ from arm_control.manager.registry import controller_class
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.parameters import ParameterSpec, build_parameters, known_parameters, specs_of
-from arm_description.urdf.document import Description
+from arm_description.urdf.description import Description
 from arm_node.names import listing
 from arm_node.printable import first_line
 

@@ -25,7 +25,7 @@ from arm_control.manager.settings import ManagerPolicy, ManagerSettings
 from arm_control.manager.switch_planner import SwitchRequest, SwitchResult
 from arm_control.run_inputs import InputGate, run_input, run_input_noted_as
 from arm_control.status import ControllerStatus, HardwareComponentStatus, InterfaceStatus
-from arm_description.urdf.document import Description
+from arm_description.urdf.description import Description
 
 STATISTICS_S = 5
 """The statistics cover the last few seconds, so that a stall shows for a while, not for ever."""
