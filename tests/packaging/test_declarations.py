@@ -3,6 +3,7 @@
 import ast
 import configparser
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -238,14 +239,18 @@ def test_pip_gets_what_it_imports_and_nothing_else(project, package):
 
 def imported_in(folder: Path) -> set[str]:
     """The packages that the Python files in a folder import."""
+    return {name for path in folder.rglob("*.py") for name in imported_by(path)}
+
+
+@cache
+def imported_by(path: Path) -> frozenset[str]:
     imported: set[str] = set()
-    for path in folder.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-                imported.add(node.module.split(".")[0])
-            elif isinstance(node, ast.Import):
-                imported.update(alias.name.split(".")[0] for alias in node.names)
-    return imported
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            imported.add(node.module.split(".")[0])
+        elif isinstance(node, ast.Import):
+            imported.update(alias.name.split(".")[0] for alias in node.names)
+    return frozenset(imported)
 
 
 def declared_by(package: str) -> set[str]:

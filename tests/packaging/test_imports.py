@@ -5,7 +5,7 @@ import json
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cache
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
@@ -42,12 +42,15 @@ DISTRIBUTIONS = {"warp": "warp-lang"}
 RUN = Path(__file__).with_name("run_without.py")
 
 
-def imported(file: Path) -> Iterator[str]:
+@cache
+def imported(file: Path) -> frozenset[str]:
+    found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (alias.name.partition(".")[0] for alias in node.names)
+            found.update(alias.name.partition(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.module.partition(".")[0]
+            found.add(node.module.partition(".")[0])
+    return frozenset(found)
 
 
 def modules_of(folders: Iterable[Path], but: Iterable[Path] = ()) -> set[str]:
@@ -92,18 +95,21 @@ def undeclared(modules: set[str], declared: set[str]) -> set[str]:
     }
 
 
-def closure(requirements: Iterable[str], extras: frozenset[str] = frozenset()) -> set[str]:
+def closure(requirements: Iterable[str]) -> set[str]:
     """Return the distributions that these requirements install, by their metadata."""
-    found: set[str] = set()
-    for text in requirements:
+    found: set[tuple[str, frozenset[str]]] = set()
+    left = [(text, frozenset[str]()) for text in requirements]
+    while left:
+        text, extras = left.pop()
         requirement = Requirement(text)
         marker = requirement.marker
         if marker and not any(marker.evaluate({"extra": extra}) for extra in extras | {""}):
             continue
-        name = canonicalize_name(requirement.name)
-        if name not in found:
-            found |= {name, *closure(needs_of(name), frozenset(requirement.extras))}
-    return found
+        one = canonicalize_name(requirement.name), frozenset(requirement.extras)
+        if one not in found:
+            found.add(one)
+            left += [(need, one[1]) for need in needs_of(one[0])]
+    return {name for name, _extras in found}
 
 
 def needs_of(name: str) -> list[str]:
