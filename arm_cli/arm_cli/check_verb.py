@@ -6,54 +6,45 @@ import os
 import subprocess
 import sys
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import Argument, Exclusive, Flag, positive_number, verb
 from arm_cli.errors import ArmCliError, CommandUsageError
 from arm_cli.output import say_document
 
 MODULE = "arm_cli.check_process"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the file and the options."""
-    parser.add_argument(
-        "file", metavar="FILE", help="URDF, xacro, SDF or MJCF file, or a package:// URI"
-    )
-    parser.add_argument(
-        "arguments", metavar="NAME:=VALUE", nargs="*", help="arguments of a xacro file"
-    )
-    parser.add_argument(
+@verb(
+    Argument("file", metavar="FILE", help="URDF, xacro, SDF or MJCF file, or a package:// URI"),
+    Argument("arguments", metavar="NAME:=VALUE", nargs="*", help="arguments of a xacro file"),
+    Argument(
         "--package-path",
         metavar="DIR:DIR",
         default="",
         help="folders to search for package:// and $(find ...), after the file's own package and "
         "before its neighbours and the installed packages",
-    )
-    parser.add_argument(
-        "--strict", action="store_true", help="treat a mesh that cannot be loaded as an error"
-    )
-    parser.add_argument(
+    ),
+    Flag("--strict", help="treat a mesh that cannot be loaded as an error"),
+    Argument(
         "--timeout",
         metavar="S",
         type=positive_number,
         default=60.0,
         help="time limit in seconds, because a xacro file is a program (default: 60)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--memory-limit",
         metavar="MB",
         type=positive_number,
         default=2000.0,
         help="memory limit of the check (default: 2000)",
-    )
-    shown = parser.add_mutually_exclusive_group()
-    shown.add_argument("--json", action="store_true", help="print the report as JSON")
-    shown.add_argument(
-        "--urdf",
-        action="store_true",
-        help="print the expanded URDF instead; the report's line numbers refer to it",
-    )
-
-
+    ),
+    Exclusive(
+        Flag("--json", help="print the report as JSON"),
+        Flag(
+            "--urdf", help="print the expanded URDF instead; the report's line numbers refer to it"
+        ),
+    ),
+)
 def run(options: argparse.Namespace) -> int:
     """Print the report; return 1 if the robot or world cannot be simulated.
 

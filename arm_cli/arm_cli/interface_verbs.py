@@ -3,23 +3,27 @@
 import argparse
 import sys
 
+from arm_cli.arguments import JSON, Argument, Exclusive, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.interfaces.definition import Comments, describe_type
 from arm_cli.interfaces.index import KINDS, InterfaceIndex, load_class
-from arm_cli.output import add_json_argument, print_json, say, say_document
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with, interface_names, interface_packages
+from arm_cli.output import print_json, say, say_document
+from arm_cli.word_completion import interface_names, interface_packages
 from arm_node.names import describe_known
 
 TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
+ONLY = (
+    Flag("-m", "--only-msgs", help="only message types"),
+    Flag("-s", "--only-srvs", help="only service types"),
+    Flag("-a", "--only-actions", help="only action types"),
+)
+"""The options that restrict a list to some kinds of types."""
 
 
-def add_list_types_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_kind_arguments(parser)
-    add_json_argument(parser)
-
-
+@verb(
+    *ONLY,
+    JSON,
+)
 def list_types(options: argparse.Namespace) -> None:
     """Print the names of the types, by kind."""
     index = InterfaceIndex()
@@ -33,13 +37,6 @@ def list_types(options: argparse.Namespace) -> None:
             say(f"    {name}")
 
 
-def add_kind_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that restrict a list to some kinds of types."""
-    parser.add_argument("-m", "--only-msgs", action="store_true", help="only message types")
-    parser.add_argument("-s", "--only-srvs", action="store_true", help="only service types")
-    parser.add_argument("-a", "--only-actions", action="store_true", help="only action types")
-
-
 def wanted_kinds(options: argparse.Namespace) -> tuple[str, ...]:
     """Return the requested kinds; without a request all kinds."""
     chosen = dict(
@@ -48,16 +45,11 @@ def wanted_kinds(options: argparse.Namespace) -> tuple[str, ...]:
     return tuple(kind for kind in KINDS if chosen[kind]) or KINDS
 
 
-def add_list_package_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("package_name", help="such as std_msgs"),
-        interface_packages,
-    )
-    add_kind_arguments(parser)
-    add_json_argument(parser)
-
-
+@verb(
+    Argument("package_name", help="such as std_msgs", completer=interface_packages),
+    *ONLY,
+    JSON,
+)
 def list_package(options: argparse.Namespace) -> None:
     """Print the names of the types.
 
@@ -77,12 +69,10 @@ def list_package(options: argparse.Namespace) -> None:
         say(*names)
 
 
-def add_list_packages_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_kind_arguments(parser)
-    add_json_argument(parser)
-
-
+@verb(
+    *ONLY,
+    JSON,
+)
 def list_packages(options: argparse.Namespace) -> None:
     """Print the names of the packages."""
     names = InterfaceIndex().packages(wanted_kinds(options))
@@ -92,21 +82,13 @@ def list_packages(options: argparse.Namespace) -> None:
         say(*names)
 
 
-def add_show_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("type", help="such as std_msgs/msg/String; - for stdin"),
-        interface_names,
-    )
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument(
-        "--all-comments", action="store_true", help="also show the comments of nested types"
-    )
-    group.add_argument(
-        "--no-comments", action="store_true", help="show neither comments nor empty lines"
-    )
-
-
+@verb(
+    Argument("type", help="such as std_msgs/msg/String; - for stdin", completer=interface_names),
+    Exclusive(
+        Flag("--all-comments", help="also show the comments of nested types"),
+        Flag("--no-comments", help="show neither comments nor empty lines"),
+    ),
+)
 def show(options: argparse.Namespace) -> None:
     """Print the definition.
 
@@ -123,15 +105,10 @@ def show(options: argparse.Namespace) -> None:
         say(line)
 
 
-def add_print_prototype_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("type", help="such as std_msgs/msg/String"),
-        interface_names,
-    )
-    parser.add_argument("--no-quotes", action="store_true", help="print no quotes around the text")
-
-
+@verb(
+    Argument("type", help="such as std_msgs/msg/String", completer=interface_names),
+    Flag("--no-quotes", help="print no quotes around the text"),
+)
 def print_prototype(options: argparse.Namespace) -> None:
     """Print the type's fields (a service's request, an action's goal) with their default values.
 
@@ -145,10 +122,3 @@ def print_prototype(options: argparse.Namespace) -> None:
     part = {"msg": class_, "srv": getattr(class_, "Request", None), "action": None}[type_.kind]
     text = to_yaml((part or class_.Goal)())
     say_document(text if options.no_quotes else f'"{text}"')
-
-
-LIST_TYPES = VerbFunctions(add_list_types_arguments, list_types)
-LIST_PACKAGE = VerbFunctions(add_list_package_arguments, list_package)
-LIST_PACKAGES = VerbFunctions(add_list_packages_arguments, list_packages)
-SHOW = VerbFunctions(add_show_arguments, show)
-PRINT_PROTOTYPE = VerbFunctions(add_print_prototype_arguments, print_prototype)

@@ -3,12 +3,11 @@
 import argparse
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import NoSuchNameError, UnansweredError
-from arm_cli.output import add_json_argument, complain, print_json, say
+from arm_cli.output import complain, print_json, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 from arm_node.names import describe_known
 
 if TYPE_CHECKING:
@@ -21,14 +20,14 @@ if TYPE_CHECKING:
 STATE_TYPE = "lifecycle_msgs/srv/GetState"
 
 
-def add_node_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the name of one managed node."""
-    complete_with(
-        parser.add_argument("node_name", help="a node that `arm lifecycle nodes` lists"),
-        completers.nodes,
-    )
+NODE = (
+    Argument(
+        "node_name", completer=completers.nodes, help="a node that `arm lifecycle nodes` lists"
+    ),
     # Accepted because command lines for ros2 use it. A named node may always be hidden here.
-    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
+    Flag("--include-hidden-nodes", help=argparse.SUPPRESS),
+)
+"""The name of one managed node."""
 
 
 def managed_nodes(graph: "Graph", hidden: bool = False) -> "list[NodeName]":
@@ -56,15 +55,11 @@ def managed_node(graph: "Graph", name: str) -> "NodeName":
     return node
 
 
-def add_list_nodes_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "-a", "--all", dest="hidden", action="store_true", help="include hidden nodes"
-    )
-    parser.add_argument("-c", "--count-nodes", action="store_true", help="print only their number")
-    add_json_argument(parser)
-
-
+@verb(
+    Flag("-a", "--all", dest="hidden", help="include hidden nodes"),
+    Flag("-c", "--count-nodes", help="print only their number"),
+    JSON,
+)
 def list_nodes(options: argparse.Namespace) -> None:
     """Print the nodes. Controllers are not among them, as they have no lifecycle services."""
     with connect() as session:
@@ -79,18 +74,13 @@ def list_nodes(options: argparse.Namespace) -> None:
         say(*names)
 
 
-def add_get_state_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("node_name", nargs="?", help="default: every managed node"),
-        completers.nodes,
-    )
-    parser.add_argument(
-        "--include-hidden-nodes", dest="hidden", action="store_true", help="include hidden nodes"
-    )
-    add_json_argument(parser)
-
-
+@verb(
+    Argument(
+        "node_name", nargs="?", help="default: every managed node", completer=completers.nodes
+    ),
+    Flag("--include-hidden-nodes", dest="hidden", help="include hidden nodes"),
+    JSON,
+)
 def get_state(options: argparse.Namespace) -> None:
     """Print the states.
 
@@ -125,14 +115,10 @@ def get_state(options: argparse.Namespace) -> None:
         say(f"{prefix}{state.label} [{state.id}]")
 
 
-def add_list_transitions_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    parser.add_argument(
-        "-a", "--all", action="store_true", help="include those that its state does not allow"
-    )
-
-
+@verb(
+    *NODE,
+    Flag("-a", "--all", help="include those that its state does not allow"),
+)
 def list_transitions(options: argparse.Namespace) -> None:
     """Print the transitions.
 
@@ -160,12 +146,10 @@ def list_transitions(options: argparse.Namespace) -> None:
         say(f"\tGoal: {description.goal_state.label}")
 
 
-def add_set_state_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    parser.add_argument("transition", help="its label, such as configure, or its id")
-
-
+@verb(
+    *NODE,
+    Argument("transition", help="its label, such as configure, or its id"),
+)
 def set_state(options: argparse.Namespace) -> None:
     """Request the transition and print its success.
 
@@ -202,9 +186,3 @@ def _find(word: str, node: str, available: "Sequence[TransitionDescription]") ->
             return transition
     known = describe_known(word, [transition.label for transition in transitions])
     raise NoSuchNameError(f"no transition {word!r} of {node} in its present state; {known}")
-
-
-LIST_NODES = VerbFunctions(add_list_nodes_arguments, list_nodes)
-GET_STATE = VerbFunctions(add_get_state_arguments, get_state)
-LIST_TRANSITIONS = VerbFunctions(add_list_transitions_arguments, list_transitions)
-SET_STATE = VerbFunctions(add_set_state_arguments, set_state)

@@ -3,7 +3,6 @@
 Names and strings come from other processes, so all output is made safe for a terminal here.
 """
 
-import argparse
 import math
 import sys
 from typing import Any
@@ -31,11 +30,6 @@ def complain(message: str) -> None:
     """Print a message on stderr, after all earlier output on stdout."""
     sys.stdout.flush()
     print(printable_message(message), file=sys.stderr, flush=True)
-
-
-def add_json_argument(parser: argparse.ArgumentParser) -> None:
-    """Add `--json`."""
-    parser.add_argument("--json", action="store_true", help="print JSON, for scripts")
 
 
 def print_json(value: Any) -> None:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.sax.saxutils import escape
 
+from arm_cli.arguments import Argument, verb
 from arm_cli.errors import CommandUsageError
 from arm_cli.output import say
 from arm_node.user_file import read_text
@@ -33,27 +34,23 @@ NO_DESCRIPTION = "TODO: Package description"
 NO_LICENSE = "TODO: License declaration"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments, named as in ros2."""
-    parser.add_argument("package_name", help="such as my_arm")
-    parser.add_argument(
+@verb(
+    Argument("package_name", help="such as my_arm"),
+    Argument(
         "--package-format", "--package_format", choices=("2", "3"), default="3", help="always 3"
-    )
-    parser.add_argument("--description", default=NO_DESCRIPTION, help="one sentence")
-    parser.add_argument("--license", default=NO_LICENSE, help="such as Apache-2.0")
-    parser.add_argument(
+    ),
+    Argument("--description", default=NO_DESCRIPTION, help="one sentence"),
+    Argument("--license", default=NO_LICENSE, help="such as Apache-2.0"),
+    Argument(
         "--destination-directory", default=os.curdir, metavar="FOLDER", help="default: this folder"
-    )
-    parser.add_argument(
-        "--build-type", default="ament_python", help="only ament_python, the default"
-    )
-    parser.add_argument("--dependencies", nargs="+", default=[], metavar="PACKAGE")
-    parser.add_argument("--maintainer-email", help="default: your user name at todo.todo")
-    parser.add_argument("--maintainer-name", help="default: your user name")
-    parser.add_argument("--node-name", metavar="NODE", help="default: PACKAGE_node")
-    parser.add_argument("--library-name", metavar="LIBRARY", help="also create an empty module")
-
-
+    ),
+    Argument("--build-type", default="ament_python", help="only ament_python, the default"),
+    Argument("--dependencies", nargs="+", default=[], metavar="PACKAGE"),
+    Argument("--maintainer-email", help="default: your user name at todo.todo"),
+    Argument("--maintainer-name", help="default: your user name"),
+    Argument("--node-name", metavar="NODE", help="default: PACKAGE_node"),
+    Argument("--library-name", metavar="LIBRARY", help="also create an empty module"),
+)
 def run(options: argparse.Namespace) -> None:
     """Write the package and list its files.
 

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
-from arm_cli.output import add_json_argument, print_json, say
+from arm_cli.output import print_json, say
 from arm_node.user_file import read_text
 from launch_py.system.packages import Packages
 
@@ -56,15 +57,11 @@ class _Dependency:
         return "ROS" if self.installed else f"only apt: {apt_name(self.name)}"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("paths", nargs="+", metavar="PATH", help="folders that contain packages")
-    parser.add_argument(
-        "--install", action="store_true", help="install missing dependencies that pip has"
-    )
-    add_json_argument(parser)
-
-
+@verb(
+    Argument("paths", nargs="+", metavar="PATH", help="folders that contain packages"),
+    Flag("--install", help="install missing dependencies that pip has"),
+    JSON,
+)
 def run(options: argparse.Namespace) -> int:
     """Print the dependencies, and install missing ones if requested.
 

@@ -6,11 +6,10 @@ import sysconfig
 from pathlib import Path
 from typing import Any
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import NoSuchNameError
-from arm_cli.output import add_json_argument, print_json, say, say_document
+from arm_cli.output import print_json, say, say_document
 from arm_cli.run_verb import packages as packages_with_executables
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
 from launch_py.errors import LaunchError
@@ -19,11 +18,14 @@ from launch_py.system.packages import Packages
 MANIFEST = "package.xml"
 
 
-def add_list_packages_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
+def package_names(**_: Any) -> list[str]:
+    """Return the packages, for the Tab key."""
+    return Packages(os.environ).names()
 
 
+@verb(
+    JSON,
+)
 def list_packages(options: argparse.Namespace) -> None:
     """Print the names of the packages."""
     names = Packages(os.environ).names()
@@ -33,14 +35,10 @@ def list_packages(options: argparse.Namespace) -> None:
         say(*names)
 
 
-def add_show_prefix_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("package_name", help="such as arm_description"), package_names
-    )
-    parser.add_argument("--share", action="store_true", help="print its share folder instead")
-
-
+@verb(
+    Argument("package_name", help="such as arm_description", completer=package_names),
+    Flag("--share", help="print its share folder instead"),
+)
 def show_prefix(options: argparse.Namespace) -> None:
     """Print the folder.
 
@@ -55,21 +53,16 @@ def show_prefix(options: argparse.Namespace) -> None:
         raise NoSuchNameError(str(error)) from error
 
 
-def package_names(**_: Any) -> list[str]:
-    """Return the packages, for the Tab key."""
-    return Packages(os.environ).names()
-
-
-def add_list_executables_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("package_name", nargs="?", help="default: every package"),
-        packages_with_executables,
-    )
-    parser.add_argument("--full-path", action="store_true", help="print the paths of the files")
-    add_json_argument(parser)
-
-
+@verb(
+    Argument(
+        "package_name",
+        nargs="?",
+        help="default: every package",
+        completer=packages_with_executables,
+    ),
+    Flag("--full-path", help="print the paths of the files"),
+    JSON,
+)
 def list_executables(options: argparse.Namespace) -> None:
     """Print package and name of each executable.
 
@@ -100,14 +93,10 @@ def _path(packages: Packages, package: str, name: str) -> Path:
     return Path(command[0]) if len(command) == 1 else Path(sysconfig.get_path("scripts"), name)
 
 
-def add_show_manifest_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("package_name", help="such as arm_description"), package_names
-    )
-    parser.add_argument("-t", "--tag", help="print only the text of this element, such as version")
-
-
+@verb(
+    Argument("package_name", help="such as arm_description", completer=package_names),
+    Argument("-t", "--tag", help="print only the text of this element, such as version"),
+)
 def show_manifest(options: argparse.Namespace) -> None:
     """Print the manifest, or one of its elements.
 
@@ -136,9 +125,3 @@ def show_manifest(options: argparse.Namespace) -> None:
         hint = describe_known(options.tag, (element.tag for element in elements), "it has")
         raise NoSuchNameError(f"{path} has no element {options.tag!r}; {hint}")
     say_document("\n".join(found))
-
-
-LIST_PACKAGES = VerbFunctions(add_list_packages_arguments, list_packages)
-SHOW_PREFIX = VerbFunctions(add_show_prefix_arguments, show_prefix)
-LIST_EXECUTABLES = VerbFunctions(add_list_executables_arguments, list_executables)
-SHOW_MANIFEST = VerbFunctions(add_show_manifest_arguments, show_manifest)

@@ -3,7 +3,7 @@
 import argparse
 from dataclasses import dataclass
 
-from arm_cli.command_parser import positive_number, whole_number
+from arm_cli.arguments import Argument, Group, positive_number, whole_number
 
 PROFILES = (
     "system_default",
@@ -51,27 +51,25 @@ class QosChoice:
         return self != QosChoice()
 
 
-def add_qos_arguments(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the options.
-
-    Args:
-        parser: the verb's parser.
-        default: describes the QoS without any option.
-    """
-    group = parser.add_argument_group("quality of service", f"By default: {default}.")
-    group.add_argument("--qos-profile", choices=PROFILES, help="preset to start from")
-    group.add_argument("--qos-depth", type=_depth, metavar="N", help="length of the queue")
-    group.add_argument("--qos-history", choices=HISTORIES)
-    group.add_argument("--qos-reliability", choices=RELIABILITIES)
-    group.add_argument("--qos-durability", choices=DURABILITIES)
-    group.add_argument("--qos-liveliness", choices=LIVELINESSES)
-    group.add_argument(
-        "--qos-liveliness-lease-duration-seconds", type=positive_number, metavar="SECONDS"
-    )
-
-
 def _depth(text: str) -> int:
     return whole_number(text, LARGEST_DEPTH)
+
+
+def qos_arguments(default: str) -> Group:
+    """Return the options; `default` describes the QoS without any."""
+    return Group(
+        "quality of service",
+        Argument("--qos-profile", choices=PROFILES, help="preset to start from"),
+        Argument("--qos-depth", type=_depth, metavar="N", help="length of the queue"),
+        Argument("--qos-history", choices=HISTORIES),
+        Argument("--qos-reliability", choices=RELIABILITIES),
+        Argument("--qos-durability", choices=DURABILITIES),
+        Argument("--qos-liveliness", choices=LIVELINESSES),
+        Argument(
+            "--qos-liveliness-lease-duration-seconds", type=positive_number, metavar="SECONDS"
+        ),
+        description=f"By default: {default}.",
+    )
 
 
 def qos_choice(options: argparse.Namespace) -> QosChoice:

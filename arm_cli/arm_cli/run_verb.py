@@ -7,10 +7,9 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from arm_cli.arguments import Argument, CommandParser, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.output import complain
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 from launch_py.errors import LaunchError
 from launch_py.system.child_environment import default_environment, for_program
 from launch_py.system.packages import Packages
@@ -18,14 +17,23 @@ from launch_py.system.packages import Packages
 DEFAULT_PORT = 8080
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(parser.add_argument("package_name", help="such as arm_controller"), packages)
-    complete_with(
-        parser.add_argument("executable_name", help="such as publisher_terminal"), executables
-    )
-    parser.add_argument("argv", nargs=argparse.REMAINDER, help="its arguments")
-    parser.add_argument("--prefix", default="", help="words before the command, such as gdb")
+def packages(**_: object) -> list[str]:
+    """Return the packages with executables, for the Tab key."""
+    return sorted({package for package, _ in Packages(os.environ).executables()})
+
+
+def executables(parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Return the executables of the typed package, for the Tab key."""
+    wanted = parsed_args.package_name
+    return [name for package, name in Packages(os.environ).executables() if package == wanted]
+
+
+ARGUMENTS = (
+    Argument("package_name", completer=packages, help="such as arm_controller"),
+    Argument("executable_name", completer=executables, help="such as publisher_terminal"),
+    Argument("argv", nargs=argparse.REMAINDER, help="its arguments"),
+    Argument("--prefix", default="", help="words before the command, such as gdb"),
+)
 
 
 def run(words: Sequence[str]) -> NoReturn:
@@ -36,10 +44,9 @@ def run(words: Sequence[str]) -> NoReturn:
             names.
         CommandUsageError: the prefix cannot be started, or a quotation mark in it is not closed.
     """
-    from arm_cli.command_parser import CommandParser
-
     parser = CommandParser("arm run", "Run an executable of a package.")
-    add_arguments(parser)
+    for argument in ARGUMENTS:
+        argument.add_to(parser)
     options = parser.parse_args(words)
     try:
         prefix = shlex.split(options.prefix)
@@ -82,38 +89,21 @@ def find_command(package: str, name: str) -> tuple[str, ...]:
     return command
 
 
-def packages(**_: object) -> list[str]:
-    """Return the packages with executables, for the Tab key."""
-    return sorted({package for package, _ in Packages(os.environ).executables()})
-
-
-def executables(parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Return the executables of the typed package, for the Tab key."""
-    wanted = parsed_args.package_name
-    return [name for package, name in Packages(os.environ).executables() if package == wanted]
-
-
-def add_view_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
+@verb(
+    Argument(
         "--port",
         type=int,
         default=DEFAULT_PORT,
         help=f"port of the page on 127.0.0.1 (default {DEFAULT_PORT})",
-    )
-    parser.add_argument(
+    ),
+    Flag(
         "--publish-joint-states",
-        action="store_true",
         help="publish joint states from the page's sliders, without a robot",
-    )
-
-
+    ),
+)
 def view(options: argparse.Namespace) -> NoReturn:
     """Replace this process by the node of the page."""
     publish = "true" if options.publish_joint_states else "false"
     parameters = (f"port:={options.port}", f"publish_joint_states:={publish}")
     words = [word for parameter in parameters for word in ("-p", parameter)]
     replace_process([*find_command("arm_viewer", "arm_viewer_node"), "--ros-args", *words])
-
-
-VIEW = VerbFunctions(add_view_arguments, view)

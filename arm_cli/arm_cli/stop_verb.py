@@ -3,6 +3,7 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import UnansweredError
 from arm_cli.names import absolute_name
 from arm_cli.output import complain, say
@@ -19,19 +20,15 @@ OTHERS_S = 0.5
 ANSWER_TIMEOUT_S = 10.0
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "--release", action="store_true", help="release the stop; controllers continue from rest"
-    )
-    parser.add_argument(
+@verb(
+    Flag("--release", help="release the stop; controllers continue from rest"),
+    Argument(
         "-n",
         "--namespace",
         metavar="NS",
         help="only the robot whose controller manager is in this namespace (default: all robots)",
-    )
-
-
+    ),
+)
 def run(options: argparse.Namespace) -> None:
     """Stop or release the robots, and print what each service answers.
 

@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import positive_whole_number
+from arm_cli.arguments import Argument, positive_whole_number, verb
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say
 from arm_node.printable import printable
@@ -16,29 +16,27 @@ if TYPE_CHECKING:
     from arm_sim.sweep.study import Study
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a YAML or Python file")
-    parser.add_argument(
+@verb(
+    Argument("study", type=Path, metavar="STUDY", help="a YAML or Python file"),
+    Argument(
         "--processes",
         type=positive_whole_number,
         help="processes that make runs (default: one for each core)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--ray",
         metavar="ADDRESS",
         help="make the runs on the Ray cluster whose head has this address: HOST:PORT, or auto for "
         "the cluster of this machine",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--output",
         type=Path,
         metavar="DIR",
         help="folder of the results; an interrupted study continues there "
         "(default: NAME-results beside STUDY, where NAME is its name without suffix)",
-    )
-
-
+    ),
+)
 def run(options: argparse.Namespace) -> int:
     """Make the runs, write the tables; return 1 if a run has failed.
 

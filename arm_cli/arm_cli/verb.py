@@ -4,18 +4,17 @@ The module of a verb is imported only when the verb is used. So `arm --help` and
 fast.
 """
 
-import argparse
 import signal
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say_document
 
 if TYPE_CHECKING:
-    from arm_cli.command_parser import CommandParser
+    from arm_cli.arguments import CommandParser, Declaration, VerbFunction
 
 EXIT_USAGE = 2
 
@@ -43,28 +42,6 @@ class Runnable(Protocol):
         ...
 
 
-class _VerbImplementation(Protocol):
-    """Implements a verb: a module, or a `VerbFunctions` in a module with several verbs."""
-
-    @property
-    def add_arguments(self) -> Callable[[argparse.ArgumentParser], None]:
-        """Declares the arguments."""
-        ...
-
-    @property
-    def run(self) -> Callable[[argparse.Namespace], int | None]:
-        """Runs the verb; its result is the exit code, None for 0."""
-        ...
-
-
-@dataclass(frozen=True, slots=True)
-class VerbFunctions:
-    """The two functions of one verb, in a module that has several verbs."""
-
-    add_arguments: Callable[[argparse.ArgumentParser], None]
-    run: Callable[[argparse.Namespace], int | None]
-
-
 @dataclass(frozen=True, slots=True)
 class Verb:
     """One verb.
@@ -72,8 +49,8 @@ class Verb:
     Attributes:
         name: the word on the command line.
         help: one line of help.
-        where: a module with `add_arguments(parser)` and `run(options) -> int | None`, whose result
-            is the exit code, None for 0; or "module:NAME" for a `VerbFunctions` in a module.
+        where: the function that `arm_cli.arguments.verb` decorates: "MODULE:FUNCTION", or "MODULE"
+            for its function `run`, with the module's name within arm_cli.
     """
 
     name: str
@@ -86,15 +63,18 @@ class Verb:
         run = self.load().run
         return run_reporting_errors(program, lambda: run(options))
 
-    def load(self) -> _VerbImplementation:
-        """Import and return the verb's implementation."""
+    def load(self) -> "VerbFunction":
+        """Import the verb's module; return its function."""
         module, _, name = self.where.partition(":")
-        found: Any = import_module(module)
-        return getattr(found, name) if name else found
+        return getattr(import_module(f"arm_cli.{module}"), name or "run")
+
+    def arguments(self) -> "Sequence[Declaration]":
+        """Return the verb's arguments."""
+        return self.load().arguments
 
     def parser(self, program: str) -> "CommandParser":
         """Return the verb's parser."""
-        from arm_cli.command_parser import CommandParser
+        from arm_cli.arguments import CommandParser
 
         parser = CommandParser(program, description=f"{self.help[0].upper()}{self.help[1:]}.")
         self.load().add_arguments(parser)
@@ -103,15 +83,22 @@ class Verb:
 
 @dataclass(frozen=True, slots=True)
 class PlainVerb:
-    """A verb that parses its words itself: its module defines `run(words) -> int`."""
+    """A verb that parses its words itself.
+
+    Its module within arm_cli defines `run(words) -> int`, and `ARGUMENTS` for the Tab key.
+    """
 
     name: str
     help: str
     module: str
 
+    def arguments(self) -> "Sequence[Declaration]":
+        """Return the verb's arguments, for the Tab key."""
+        return getattr(import_module(f"arm_cli.{self.module}"), "ARGUMENTS", ())
+
     def run(self, program: str, words: Sequence[str]) -> int:
         """Run it with the words after the verb; return the exit code."""
-        run = cast("Callable[[Sequence[str]], int]", import_module(self.module).run)
+        run = cast("Callable[[Sequence[str]], int]", import_module(f"arm_cli.{self.module}").run)
         return run_reporting_errors(program, lambda: run(words))
 
 

@@ -8,20 +8,13 @@ at the running graph.
 import argparse
 import os
 import shlex
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from arm_cli.arguments import Argument, verb
 from arm_cli.output import say_document
-from arm_cli.verb import VerbFunctions
-
-Completer = Callable[..., Iterable[str]]
 
 SHELLS = ("bash", "zsh", "fish")
-
-
-def complete_with(argument: argparse.Action, completer: Completer) -> None:
-    """Set the completer of an argument."""
-    argument.completer = completer  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def complete_words() -> None:
@@ -77,33 +70,25 @@ def _parser(family: Any) -> argparse.ArgumentParser:
 
 
 def _add_verbs(parser: argparse.ArgumentParser, verbs: Iterable[Any], typed: Sequence[str]) -> None:
-    from importlib import import_module
-
-    from arm_cli.verb import Verb, VerbFamily
+    from arm_cli.verb import VerbFamily
 
     choices = parser.add_subparsers()
-    for verb in verbs:
-        inner = choices.add_parser(verb.name, help=verb.help)
-        if verb.name != next(iter(typed), None):
+    for entry in verbs:
+        inner = choices.add_parser(entry.name, help=entry.help)
+        if entry.name != next(iter(typed), None):
             continue
-        if isinstance(verb, VerbFamily):
-            _add_verbs(inner, verb.verbs, typed[1:])
+        if isinstance(entry, VerbFamily):
+            _add_verbs(inner, entry.verbs, typed[1:])
             continue
-        implementation = verb.load() if isinstance(verb, Verb) else import_module(verb.module)
-        add_arguments = getattr(implementation, "add_arguments", None)
-        if add_arguments is not None:
-            add_arguments(inner)
+        for argument in entry.arguments():
+            argument.add_to(inner)
 
 
-def add_print_script_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("shell", choices=SHELLS)
-    parser.epilog = (
-        "To install it, add 'eval \"$(arm completion bash)\"' to ~/.bashrc, the same with zsh to "
-        "~/.zshrc, or 'arm completion fish | source' to ~/.config/fish/config.fish."
-    )
-
-
+@verb(
+    Argument("shell", choices=SHELLS),
+    epilog="To install it, add 'eval \"$(arm completion bash)\"' to ~/.bashrc, the same with zsh "
+    "to ~/.zshrc, or 'arm completion fish | source' to ~/.config/fish/config.fish.",
+)
 def print_script(options: argparse.Namespace) -> None:
     """Print the script."""
     from argcomplete.shell_integration import shellcode
@@ -111,6 +96,3 @@ def print_script(options: argparse.Namespace) -> None:
     # argcomplete has one script for both bash and zsh.
     shell = "fish" if options.shell == "fish" else "bash"
     say_document(shellcode(["arm"], shell=shell))
-
-
-PRINT_SCRIPT = VerbFunctions(add_print_script_arguments, print_script)

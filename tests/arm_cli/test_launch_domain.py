@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from arm_cli.launch_domain import launch_domain
+from arm_cli.launch import launch_domain
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from arm_cli import launch_verb
-from arm_cli.launch_model import name_launch_file
+from arm_cli import launch
+from arm_cli.launch import name_launch_file
 from arm_cli.main import main
 from arm_node import environment
 
@@ -37,7 +37,7 @@ def test_without_arguments_it_launches_the_default_file(monkeypatch):
         taken.update(options, argv=argv)
         return 0
 
-    monkeypatch.setattr(launch_verb, "run_launch", run)
+    monkeypatch.setattr(launch, "run_launch", run)
     assert main(["launch", "world:=objects"]) == 0
     assert taken["short_names"][""] == ("arm_gazebo", "arm_gazebo.launch.py")
     assert taken["argv"] == ["world:=objects"]
@@ -45,7 +45,7 @@ def test_without_arguments_it_launches_the_default_file(monkeypatch):
 
 
 def test_every_short_name_leads_to_a_launch_file(capsys):
-    for word in launch_verb.SHORT_NAMES:
+    for word in launch.SHORT_NAMES:
         assert main(["launch", *word.split(), "--show-args"]) == 0
         assert capsys.readouterr().out.startswith("Arguments of ")
 
@@ -97,8 +97,8 @@ def test_another_user_in_the_domain_is_named(monkeypatch, capsys):
         before_start()
         return 0
 
-    monkeypatch.setattr(launch_verb, "run_launch", run)
-    monkeypatch.setattr(launch_verb, "other_users", lambda domain: ["anna"] if domain == 7 else [])
+    monkeypatch.setattr(launch, "run_launch", run)
+    monkeypatch.setattr(launch, "other_users", lambda domain: ["anna"] if domain == 7 else [])
     monkeypatch.setenv("ROS_DOMAIN_ID", "8")
     assert main(["launch"]) == 0
     assert capsys.readouterr().err == ""
@@ -113,7 +113,7 @@ def test_the_emergency_stop_starts_beside_modules_of_the_user(tmp_path):
     for name in ("argparse", "random", "types", "yaml"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit('the user's own')")
     done = subprocess.run(
-        [*launch_verb.STOP, "--help"],
+        [*launch.STOP, "--help"],
         cwd=tmp_path,
         capture_output=True,
         text=True,

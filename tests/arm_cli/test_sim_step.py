@@ -35,10 +35,10 @@ def ask(monkeypatch):
 
     def run(*words: str, now_s: float = 0.0, period_s: float = 0.01) -> list[tuple[str, int]]:
         simulation = Paused(now_s, period_s)
-        monkeypatch.setattr(step, "ask_simulation", lambda _options: simulation)
+        monkeypatch.setattr(step, "ask_simulation", lambda _namespace: simulation)
         parser = argparse.ArgumentParser()
-        step.add_arguments(parser)
-        step.run(parser.parse_args(words))
+        step.run.add_arguments(parser)
+        step.run.run(parser.parse_args(words))
         return simulation.asked
 
     return run

@@ -8,16 +8,12 @@ VERB = '''\
 import argparse
 from pathlib import Path
 
+from arm_cli.arguments import JSON, Argument, verb
 from arm_cli.errors import NoSuchNameError
-from arm_cli.output import add_json_argument, print_json, say
+from arm_cli.output import print_json, say
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("bag", type=Path, help="folder of the bag")
-    add_json_argument(parser)
-
-
+@verb(Argument("bag", type=Path, help="folder of the bag"), JSON)
 def run(options: argparse.Namespace) -> None:
     """Print the size.
 
@@ -33,8 +29,8 @@ def run(options: argparse.Namespace) -> None:
     else:
         say(f"{size} bytes")
 '''
-LAST_ROW = 'Verb("list", "list the supported bag formats", "arm_cli.bag.info:LIST"),'
-ROW = 'Verb("size", "show how large a bag is", "arm_cli.bag.size"),'
+LAST_ROW = 'Verb("list", "list the supported bag formats", "bag.info:list_plugins"),'
+ROW = 'Verb("size", "show how large a bag is", "bag.size"),'
 
 
 def test_a_verb_is_added_through_the_files_of_its_recipe(tmp_path):

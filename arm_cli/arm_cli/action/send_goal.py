@@ -5,13 +5,12 @@ import sys
 from contextlib import closing
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import Argument, Flag, positive_number, verb
 from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
 from arm_cli.output import complain, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 from arm_node.names import describe_known
 
 if TYPE_CHECKING:
@@ -19,24 +18,23 @@ if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("action_name", help="such as /gripper_action_controller/gripper_cmd"),
-        completers.actions,
-    )
-    parser.add_argument("action_type", help="such as control_msgs/action/GripperCommand")
-    parser.add_argument("goal", nargs="?", default="", help="fields of the goal as YAML")
-    parser.add_argument("--stdin", action="store_true", help="read the goal from stdin")
-    parser.add_argument("-f", "--feedback", action="store_true", help="also print the feedback")
-    parser.add_argument(
+@verb(
+    Argument(
+        "action_name",
+        help="such as /gripper_action_controller/gripper_cmd",
+        completer=completers.actions,
+    ),
+    Argument("action_type", help="such as control_msgs/action/GripperCommand"),
+    Argument("goal", nargs="?", default="", help="fields of the goal as YAML"),
+    Flag("--stdin", help="read the goal from stdin"),
+    Flag("-f", "--feedback", help="also print the feedback"),
+    Argument(
         "--timeout",
         type=positive_number,
         metavar="SECONDS",
         help="how long to wait for a server, and how long a goal may take before it is cancelled",
-    )
-
-
+    ),
+)
 def run(options: argparse.Namespace) -> None:
     """Send the goal and print its progress and result; Ctrl-C cancels it.
 

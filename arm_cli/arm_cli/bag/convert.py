@@ -8,10 +8,10 @@ from heapq import merge
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arm_cli.arguments import Argument, verb
 from arm_cli.bag.info import existing_path
 from arm_cli.errors import BagError
 from arm_cli.output import say
-from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
     from arm_cli.bag.bag_reader import BagReader
@@ -38,27 +38,6 @@ KEYS = (
 COMPRESSIONS = ("", "none", "lz4", "zstd")
 
 
-def add_convert_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "-i",
-        "--input",
-        nargs="+",
-        action="append",
-        required=True,
-        metavar=("BAG", "STORAGE"),
-        help="bag to read; repeat it to merge several bags in the order of time",
-    )
-    parser.add_argument(
-        "-o",
-        "--output-options",
-        required=True,
-        metavar="FILE",
-        help="YAML with output_bags: a list of bags, each with uri, all_topics or topics, "
-        "compression_format, max_bagfile_size, ... as for ros2 bag convert",
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class Output:
     """A bag to write."""
@@ -68,6 +47,25 @@ class Output:
     selection: "TopicSelection"
 
 
+@verb(
+    Argument(
+        "-i",
+        "--input",
+        nargs="+",
+        action="append",
+        required=True,
+        metavar=("BAG", "STORAGE"),
+        help="bag to read; repeat it to merge several bags in the order of time",
+    ),
+    Argument(
+        "-o",
+        "--output-options",
+        required=True,
+        metavar="FILE",
+        help="YAML with output_bags: a list of bags, each with uri, all_topics or topics, "
+        "compression_format, max_bagfile_size, ... as for ros2 bag convert",
+    ),
+)
 def convert(options: argparse.Namespace) -> None:
     """Write the bags.
 
@@ -220,14 +218,12 @@ def _messages(readers: list["BagReader"], topics: Mapping[str, object]) -> Itera
     return merge(*sources, key=lambda message: message.log_time_ns)
 
 
-def add_reindex_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("bag_path", type=existing_path, help="folder of a bag")
+@verb(
+    Argument("bag_path", type=existing_path, help="folder of a bag"),
     # Accepted because command lines for ros2 use them. The files themselves tell their format.
-    parser.add_argument("-s", "--storage", choices=("mcap",), help=argparse.SUPPRESS)
-    parser.add_argument("storage_id", nargs="?", choices=("mcap",), help=argparse.SUPPRESS)
-
-
+    Argument("-s", "--storage", choices=("mcap",), help=argparse.SUPPRESS),
+    Argument("storage_id", nargs="?", choices=("mcap",), help=argparse.SUPPRESS),
+)
 def reindex(options: argparse.Namespace) -> None:
     """Write metadata.yaml.
 
@@ -241,7 +237,3 @@ def reindex(options: argparse.Namespace) -> None:
         warn_if_unfinished(reader, "arm bag reindex")
         path = write_metadata(options.bag_path, reader.metadata)
     say(f"wrote {path}: {reader.metadata.message_count} messages")
-
-
-CONVERT = VerbFunctions(add_convert_arguments, convert)
-REINDEX = VerbFunctions(add_reindex_arguments, reindex)

@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.output import add_json_argument, print_json, say, say_document
-from arm_cli.verb import VerbFunctions
+from arm_cli.arguments import JSON, Argument, Flag, verb
+from arm_cli.output import print_json, say, say_document
 from arm_node.printable import printable
 
 if TYPE_CHECKING:
@@ -35,21 +35,15 @@ def existing_path(text: str) -> Path:
     return path
 
 
-def add_info_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("bag_path", type=existing_path, help="folder of a bag, or an .mcap file")
-    parser.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
-    parser.add_argument(
-        "-t", "--topic-name", action="store_true", help="print only the names of topics"
-    )
-    parser.add_argument(
-        "--sort", choices=SORTINGS, default="name", help="order of the topics (default name)"
-    )
+@verb(
+    Argument("bag_path", type=existing_path, help="folder of a bag, or an .mcap file"),
+    Argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format"),
+    Flag("-t", "--topic-name", help="print only the names of topics"),
+    Argument("--sort", choices=SORTINGS, default="name", help="order of the topics (default name)"),
     # Accepted because command lines for ros2 use it. It lists services, which bags lack here.
-    parser.add_argument("-v", "--verbose", action="store_true", help=argparse.SUPPRESS)
-    add_json_argument(parser)
-
-
+    Flag("-v", "--verbose", help=argparse.SUPPRESS),
+    JSON,
+)
 def info(options: argparse.Namespace) -> None:
     """Print the contents of a bag.
 
@@ -161,15 +155,9 @@ def _point(time_ns: int) -> str:
     return f"{time.strftime('%b %e %Y', local)} {clock} ({_seconds(time_ns)})"
 
 
-def add_list_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("plugin_type", choices=tuple(PLUGINS), help="what to list")
-
-
+@verb(
+    Argument("plugin_type", choices=tuple(PLUGINS), help="what to list"),
+)
 def list_plugins(options: argparse.Namespace) -> None:
     """Print the names."""
     say(*PLUGINS[options.plugin_type])
-
-
-INFO = VerbFunctions(add_info_arguments, info)
-LIST = VerbFunctions(add_list_arguments, list_plugins)

@@ -5,8 +5,16 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import (
+    Argument,
+    Flag,
+    Group,
+    positive_number,
+    positive_number_or_zero,
+    positive_whole_number,
+    verb,
+)
 from arm_cli.bag.info import existing_path
-from arm_cli.command_parser import positive_number, positive_number_or_zero, positive_whole_number
 from arm_cli.errors import BagError, CommandUsageError, NoSuchNameError, StoppedError
 from arm_cli.names import absolute_name
 from arm_cli.output import complain
@@ -23,84 +31,81 @@ READ_AHEAD = 1000
 NODE_NAME = "rosbag2_player"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("bag_path", type=existing_path, help="folder of a bag, or an .mcap file")
-    parser.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
-    _add_topics(parser)
-    parser.add_argument(
-        "-r", "--rate", type=positive_number, default=1.0, help="speed of playing (default 1.0)"
-    )
-    parser.add_argument("-l", "--loop", action="store_true", help="start again at the end")
-    parser.add_argument(
-        "--start-offset",
-        type=positive_number_or_zero,
-        default=0.0,
-        metavar="SECONDS",
-        help="skip this much of the beginning",
-    )
-    parser.add_argument(
-        "--playback-duration",
-        type=_duration,
-        default=float("inf"),
-        metavar="SECONDS",
-        help="play only this much of the bag; a negative number means all",
-    )
-    parser.add_argument(
-        "--clock",
-        type=positive_number,
-        nargs="?",
-        const=CLOCK_HZ,
-        metavar="HZ",
-        help=f"publish the bag's time on /clock (without a rate {CLOCK_HZ:g} Hz)",
-    )
-    parser.add_argument(
-        "-d",
-        "--delay",
-        type=positive_number_or_zero,
-        default=0.0,
-        metavar="SECONDS",
-        help="wait this long before playing, each time with --loop",
-    )
-    parser.add_argument(
-        "--read-ahead-queue-size",
-        type=positive_whole_number,
-        default=READ_AHEAD,
-        metavar="N",
-        help=f"number of messages to read before they are due (default {READ_AHEAD})",
-    )
-    parser.add_argument(
-        "--qos-profile-overrides-path",
-        type=Path,
-        metavar="FILE",
-        help="YAML with the quality of service of publishers, by topic",
-    )
-    # Accepted because command lines for ros2 use it. There are no keyboard controls here.
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
-
-
-def _add_topics(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("topics", "By default: all.")
-    group.add_argument("--topics", nargs="+", metavar="TOPIC", help="play only these")
-    group.add_argument("-e", "--regex", metavar="REGEX", help="play topics that match")
-    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these")
-    group.add_argument("-x", "--exclude-regex", metavar="REGEX", help="leave out topics that match")
-    group.add_argument(
-        "-m",
-        "--remap",
-        nargs="+",
-        default=[],
-        metavar="OLD:=NEW",
-        help="publish topics under other names",
-    )
-
-
 def _duration(text: str) -> float:
     # rosbag2's own default is -1.
     duration_s = positive_number(text.removeprefix("-"))
     return float("inf") if text.startswith("-") else duration_s
 
 
+@verb(
+    Argument("bag_path", type=existing_path, help="folder of a bag, or an .mcap file"),
+    Argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format"),
+    Group(
+        "topics",
+        Argument("--topics", nargs="+", metavar="TOPIC", help="play only these"),
+        Argument("-e", "--regex", metavar="REGEX", help="play topics that match"),
+        Argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these"),
+        Argument("-x", "--exclude-regex", metavar="REGEX", help="leave out topics that match"),
+        Argument(
+            "-m",
+            "--remap",
+            nargs="+",
+            default=[],
+            metavar="OLD:=NEW",
+            help="publish topics under other names",
+        ),
+        description="By default: all.",
+    ),
+    Argument(
+        "-r", "--rate", type=positive_number, default=1.0, help="speed of playing (default 1.0)"
+    ),
+    Flag("-l", "--loop", help="start again at the end"),
+    Argument(
+        "--start-offset",
+        type=positive_number_or_zero,
+        default=0.0,
+        metavar="SECONDS",
+        help="skip this much of the beginning",
+    ),
+    Argument(
+        "--playback-duration",
+        type=_duration,
+        default=float("inf"),
+        metavar="SECONDS",
+        help="play only this much of the bag; a negative number means all",
+    ),
+    Argument(
+        "--clock",
+        type=positive_number,
+        nargs="?",
+        const=CLOCK_HZ,
+        metavar="HZ",
+        help=f"publish the bag's time on /clock (without a rate {CLOCK_HZ:g} Hz)",
+    ),
+    Argument(
+        "-d",
+        "--delay",
+        type=positive_number_or_zero,
+        default=0.0,
+        metavar="SECONDS",
+        help="wait this long before playing, each time with --loop",
+    ),
+    Argument(
+        "--read-ahead-queue-size",
+        type=positive_whole_number,
+        default=READ_AHEAD,
+        metavar="N",
+        help=f"number of messages to read before they are due (default {READ_AHEAD})",
+    ),
+    Argument(
+        "--qos-profile-overrides-path",
+        type=Path,
+        metavar="FILE",
+        help="YAML with the quality of service of publishers, by topic",
+    ),
+    # Accepted because command lines for ros2 use it. There are no keyboard controls here.
+    Flag("--disable-keyboard-controls", help=argparse.SUPPRESS),
+)
 def run(options: argparse.Namespace) -> None:
     """Play until the end or until a signal arrives.
 

@@ -6,17 +6,20 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import (
+from arm_cli.arguments import (
+    Argument,
+    Flag,
+    Group,
     node_name,
     positive_number,
     positive_whole_number,
+    verb,
     whole_number,
 )
 from arm_cli.errors import BagError, CommandUsageError, StoppedError
 from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -33,118 +36,107 @@ _PRESETS = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_smal
 """rosbag2's presets for MCAP, with the compression of each."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    _add_selection(parser)
-    _add_output(parser)
-    parser.add_argument(
-        "--no-discovery", action="store_true", help="record only topics that exist at the start"
-    )
-    parser.add_argument(
+@verb(
+    Group(
+        "topics",
+        Argument(
+            "names",
+            nargs="*",
+            metavar="TOPIC",
+            help="topics to record",
+            completer=completers.topics,
+        ),
+        Argument("--topics", nargs="+", metavar="TOPIC", help="more topics to record"),
+        Flag(
+            "-a",
+            "--all",
+            "--all-topics",
+            help="record all topics except hidden ones, including topics that appear later",
+        ),
+        Argument("-e", "--regex", metavar="REGEX", help="record topics that match"),
+        Argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these"),
+        Argument("--exclude-regex", metavar="REGEX", help="leave out topics that match"),
+        Flag("--include-hidden-topics", help="let --all and --regex include hidden topics"),
+    ),
+    Group(
+        "bag",
+        Argument(
+            "-o", "--output", metavar="DIR", help="folder to create (default rosbag2_<date>-<time>)"
+        ),
+        Argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format"),
+        Argument(
+            "-b",
+            "--max-bag-size",
+            "--max-size",
+            type=whole_number,
+            default=0,
+            metavar="BYTES",
+            help="start a new file at this size (default 0: never)",
+        ),
+        Argument(
+            "-d",
+            "--max-bag-duration",
+            "--max-duration",
+            type=positive_number,
+            metavar="SECONDS",
+            help="start a new file after this time, and go on until Ctrl-C",
+        ),
+        # No option of ros2 bag record either: the error says what ends a recording.
+        Argument("--duration", help=argparse.SUPPRESS),
+        Argument(
+            "--compression",
+            "--compression-format",
+            choices=("none", "lz4", "zstd"),
+            help="compression of the files' chunks (default none); every MCAP reader supports it",
+        ),
+        Argument(
+            "--compression-mode",
+            choices=("none", "file", "message"),
+            default="none",
+            help="accepted as in rosbag2; chunks are always compressed, so that files stay "
+            "readable",
+        ),
+        Argument(
+            "--storage-preset-profile",
+            choices=tuple(_PRESETS),
+            default="none",
+            help="compression by the name of rosbag2's preset",
+        ),
+    ),
+    Flag("--no-discovery", help="record only topics that exist at the start"),
+    Argument(
         "-p",
         "--polling-interval",
         type=positive_whole_number,
         default=POLL_MS,
         metavar="MS",
         help=f"how often to look for new topics (default {POLL_MS} ms)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--max-cache-size",
         type=whole_number,
         default=CACHE_BYTES,
         metavar="BYTES",
         help="size of the cache for messages that wait for the disk; further messages are dropped "
         f"and counted (default {CACHE_BYTES}); 0 writes each message at once",
-    )
-    parser.add_argument(
-        "--use-sim-time", action="store_true", help="stamp messages with the time of /clock"
-    )
-    parser.add_argument(
+    ),
+    Flag("--use-sim-time", help="stamp messages with the time of /clock"),
+    Argument(
         "--qos-profile-overrides-path",
         type=Path,
         metavar="FILE",
         help="YAML with the quality of service of subscriptions, by topic",
-    )
+    ),
     # Accepted because command lines for ros2 use it. There are no keyboard controls here.
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help=argparse.SUPPRESS)
-    parser.add_argument(
+    Flag("--disable-keyboard-controls", help=argparse.SUPPRESS),
+    Argument(
         "--node-name",
         type=node_name,
         default=NODE_NAME,
         metavar="NAME",
         help=f"name of the recording node (default {NODE_NAME})",
-    )
-
-
-def _add_selection(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("topics")
-    complete_with(
-        group.add_argument("names", nargs="*", metavar="TOPIC", help="topics to record"),
-        completers.topics,
-    )
-    group.add_argument("--topics", nargs="+", metavar="TOPIC", help="more topics to record")
-    group.add_argument(
-        "-a",
-        "--all",
-        "--all-topics",
-        action="store_true",
-        help="record all topics except hidden ones, including topics that appear later",
-    )
-    group.add_argument("-e", "--regex", metavar="REGEX", help="record topics that match")
-    group.add_argument("--exclude-topics", nargs="+", metavar="TOPIC", help="leave out these")
-    group.add_argument("--exclude-regex", metavar="REGEX", help="leave out topics that match")
-    group.add_argument(
-        "--include-hidden-topics",
-        action="store_true",
-        help="let --all and --regex include hidden topics",
-    )
-
-
-def _add_output(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("bag")
-    group.add_argument(
-        "-o", "--output", metavar="DIR", help="folder to create (default rosbag2_<date>-<time>)"
-    )
-    group.add_argument("-s", "--storage", choices=("mcap",), default="mcap", help="its format")
-    group.add_argument(
-        "-b",
-        "--max-bag-size",
-        "--max-size",
-        type=whole_number,
-        default=0,
-        metavar="BYTES",
-        help="start a new file at this size (default 0: never)",
-    )
-    group.add_argument(
-        "-d",
-        "--max-bag-duration",
-        "--max-duration",
-        type=positive_number,
-        metavar="SECONDS",
-        help="start a new file after this time, and go on until Ctrl-C",
-    )
-    # No option of ros2 bag record either: the error says what ends a recording.
-    group.add_argument("--duration", help=argparse.SUPPRESS)
-    group.add_argument(
-        "--compression",
-        "--compression-format",
-        choices=("none", "lz4", "zstd"),
-        help="compression of the files' chunks (default none); every MCAP reader supports it",
-    )
-    group.add_argument(
-        "--compression-mode",
-        choices=("none", "file", "message"),
-        default="none",
-        help="accepted as in rosbag2; chunks are always compressed, so that files stay readable",
-    )
-    group.add_argument(
-        "--storage-preset-profile",
-        choices=tuple(_PRESETS),
-        default="none",
-        help="compression by the name of rosbag2's preset",
-    )
-
-
+    ),
+)
 def run(options: argparse.Namespace) -> None:
     """Record until a signal arrives.
 

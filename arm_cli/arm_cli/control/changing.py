@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import Argument, Exclusive, Flag, positive_number, verb
 from arm_cli.control.manager import (
-    add_controller_argument,
-    add_manager_arguments,
+    CONTROLLER,
+    MANAGER,
     ask_manager,
     hardware_components,
     loadable_controllers,
@@ -17,8 +17,6 @@ from arm_cli.control.manager import (
 )
 from arm_cli.names import absolute_name
 from arm_cli.output import complain, say, say_document
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
     from arm_node.controller_manager import ControllerManagerClient
@@ -32,21 +30,16 @@ _FAILING = {  # The words of ros2 control, which calls every step to inactive "s
 }
 
 
-def add_load_controller_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("controller_name", help="a controller in the manager's parameters"),
-        loadable_controllers,
-    )
-    parser.add_argument(
-        "param_file", nargs="?", help="YAML file with the controller's parameters and type"
-    )
-    parser.add_argument(
-        "--set-state", choices=("inactive", "active"), help="also bring it to this state"
-    )
-    add_manager_arguments(parser)
-
-
+@verb(
+    Argument(
+        "controller_name",
+        help="a controller in the manager's parameters",
+        completer=loadable_controllers,
+    ),
+    Argument("param_file", nargs="?", help="YAML file with the controller's parameters and type"),
+    Argument("--set-state", choices=("inactive", "active"), help="also bring it to this state"),
+    *MANAGER,
+)
 def load_controller(options: argparse.Namespace) -> int:
     """Load the controller; the exit code is 1 if a step fails.
 
@@ -93,12 +86,10 @@ def _give_parameters(manager: "ControllerManagerClient", options: argparse.Names
     return manager.set_parameters(parameters) if parameters else ""
 
 
-def add_unload_controller_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_controller_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    CONTROLLER,
+    *MANAGER,
+)
 def unload_controller(options: argparse.Namespace) -> int:
     """Unload the controller; the exit code is 1 if that fails.
 
@@ -114,12 +105,10 @@ def unload_controller(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_cleanup_controller_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_controller_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    CONTROLLER,
+    *MANAGER,
+)
 def cleanup_controller(options: argparse.Namespace) -> int:
     """Clean up the controller; the exit code is 1 if that fails.
 
@@ -137,13 +126,11 @@ def cleanup_controller(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_set_controller_state_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_controller_argument(parser)
-    parser.add_argument("state", choices=("unconfigured", "inactive", "active"))
-    add_manager_arguments(parser)
-
-
+@verb(
+    CONTROLLER,
+    Argument("state", choices=("unconfigured", "inactive", "active")),
+    *MANAGER,
+)
 def set_controller_state(options: argparse.Namespace) -> int:
     """Bring the controller to the state; the exit code is 1 if that fails.
 
@@ -184,23 +171,19 @@ def _impossible(name: str, current: str, wanted: str) -> str:
     return f"cannot {action} from its current state {current}"
 
 
-def add_switch_controllers_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    for option in ("--deactivate", "--activate"):
-        complete_with(
-            parser.add_argument(option, nargs="*", default=[], metavar="CONTROLLER"),
-            loaded_controllers,
-        )
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument("--strict", action="store_true", help="all or nothing")
-    group.add_argument("--best-effort", action="store_true", help="as many as possible")
-    parser.add_argument(
-        "--activate-asap", action="store_true", help="passed on to the controller manager"
-    )
-    parser.add_argument("--switch-timeout", type=positive_number, default=5.0, metavar="SECONDS")
-    add_manager_arguments(parser)
-
-
+@verb(
+    *(
+        Argument(option, nargs="*", default=[], metavar="CONTROLLER", completer=loaded_controllers)
+        for option in ("--deactivate", "--activate")
+    ),
+    Exclusive(
+        Flag("--strict", help="all or nothing"),
+        Flag("--best-effort", help="as many as possible"),
+    ),
+    Flag("--activate-asap", help="passed on to the controller manager"),
+    Argument("--switch-timeout", type=positive_number, default=5.0, metavar="SECONDS"),
+    *MANAGER,
+)
 def switch_controllers(options: argparse.Namespace) -> int:
     """Switch controllers; the exit code is 1 if the manager refuses.
 
@@ -226,14 +209,10 @@ def switch_controllers(options: argparse.Namespace) -> int:
     return 0 if response.ok else 1
 
 
-def add_reload_controller_libraries_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "--force-kill", action="store_true", help="deactivate and unload controllers first"
-    )
-    add_manager_arguments(parser)
-
-
+@verb(
+    Flag("--force-kill", help="deactivate and unload controllers first"),
+    *MANAGER,
+)
 def reload_controller_libraries(options: argparse.Namespace) -> int:
     """Reload the controllers' code; the exit code is 1 if that fails.
 
@@ -247,16 +226,15 @@ def reload_controller_libraries(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_set_hardware_component_state_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("hardware_component_name", help="as list_hardware_components lists it"),
-        hardware_components,
-    )
-    parser.add_argument("state", choices=tuple(_FAILING))
-    add_manager_arguments(parser)
-
-
+@verb(
+    Argument(
+        "hardware_component_name",
+        help="as list_hardware_components lists it",
+        completer=hardware_components,
+    ),
+    Argument("state", choices=tuple(_FAILING)),
+    *MANAGER,
+)
 def set_hardware_component_state(options: argparse.Namespace) -> int:
     """Set the component's state; the exit code is 1 if that fails.
 
@@ -273,16 +251,3 @@ def set_hardware_component_state(options: argparse.Namespace) -> int:
             )
     say(f"Successfully set {name} to state {response.state}")
     return 0
-
-
-LOAD_CONTROLLER = VerbFunctions(add_load_controller_arguments, load_controller)
-UNLOAD_CONTROLLER = VerbFunctions(add_unload_controller_arguments, unload_controller)
-CLEANUP_CONTROLLER = VerbFunctions(add_cleanup_controller_arguments, cleanup_controller)
-SET_CONTROLLER_STATE = VerbFunctions(add_set_controller_state_arguments, set_controller_state)
-SWITCH_CONTROLLERS = VerbFunctions(add_switch_controllers_arguments, switch_controllers)
-RELOAD_CONTROLLER_LIBRARIES = VerbFunctions(
-    add_reload_controller_libraries_arguments, reload_controller_libraries
-)
-SET_HARDWARE_COMPONENT_STATE = VerbFunctions(
-    add_set_hardware_component_state_arguments, set_hardware_component_state
-)

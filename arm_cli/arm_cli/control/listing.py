@@ -4,17 +4,17 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from arm_cli.arguments import JSON, Flag, verb
 from arm_cli.control.manager import (
     ACTIVE,
+    MANAGER,
     OTHER,
     UNCONFIGURED,
-    add_manager_arguments,
     ask_manager,
     plain,
     state_colour,
 )
-from arm_cli.output import add_json_argument, colour, print_json, say, say_coloured
-from arm_cli.verb import VerbFunctions
+from arm_cli.output import colour, print_json, say, say_coloured
 from arm_node.printable import printable
 
 _PARTS: dict[str, tuple[str, Callable[[Any], Iterable[str]]]] = {
@@ -42,15 +42,12 @@ GOOD = 94
 _COLOURS = {"active": ACTIVE, "inactive": INACTIVE, "unconfigured": UNCONFIGURED}
 
 
-def add_list_controllers_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("-v", "--verbose", action="store_true", help="show all of the following")
-    for option, (title, _) in _PARTS.items():
-        parser.add_argument(f"--{option.replace('_', '-')}", action="store_true", help=title)
-    add_json_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    Flag("-v", "--verbose", help="show all of the following"),
+    *(Flag(f"--{option.replace('_', '-')}", help=title) for option, (title, _) in _PARTS.items()),
+    JSON,
+    *MANAGER,
+)
 def list_controllers(options: argparse.Namespace) -> None:
     """Print the controllers, newest first.
 
@@ -93,12 +90,10 @@ def _is_wanted(part: str, options: argparse.Namespace) -> bool:
     return options.verbose or with_references or getattr(options, part)
 
 
-def add_list_controller_types_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    JSON,
+    *MANAGER,
+)
 def list_controller_types(options: argparse.Namespace) -> None:
     """Print the types and their base classes.
 
@@ -114,15 +109,11 @@ def list_controller_types(options: argparse.Namespace) -> None:
         say(f"{name:<{TYPE_WIDTH}} {base}")
 
 
-def add_list_hardware_components_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "-v", "--verbose", action="store_true", help="also show state interfaces and data types"
-    )
-    add_json_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    Flag("-v", "--verbose", help="also show state interfaces and data types"),
+    JSON,
+    *MANAGER,
+)
 def list_hardware_components(options: argparse.Namespace) -> None:
     """Print the components.
 
@@ -174,12 +165,10 @@ def claimed(interface: Any) -> str:
     return colour(GOOD, "[claimed]") if interface.is_claimed else "[unclaimed]"
 
 
-def add_list_hardware_interfaces_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
-    add_manager_arguments(parser)
-
-
+@verb(
+    JSON,
+    *MANAGER,
+)
 def list_hardware_interfaces(options: argparse.Namespace) -> None:
     """Print the interfaces, sorted.
 
@@ -199,13 +188,3 @@ def list_hardware_interfaces(options: argparse.Namespace) -> None:
     say("state interfaces")
     for interface in sorted(interfaces.state_interfaces, key=lambda i: i.name):
         say(f"\t{interface.name}")
-
-
-LIST_CONTROLLERS = VerbFunctions(add_list_controllers_arguments, list_controllers)
-LIST_CONTROLLER_TYPES = VerbFunctions(add_list_controller_types_arguments, list_controller_types)
-LIST_HARDWARE_COMPONENTS = VerbFunctions(
-    add_list_hardware_components_arguments, list_hardware_components
-)
-LIST_HARDWARE_INTERFACES = VerbFunctions(
-    add_list_hardware_interfaces_arguments, list_hardware_interfaces
-)

@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from arm_cli.arguments import Argument, Flag
 from arm_cli.names import absolute_name
 from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 from arm_node.names import describe_known
 
 if TYPE_CHECKING:
@@ -19,22 +19,6 @@ DEFAULT_MANAGER = "/controller_manager"
 
 ACTIVE, INACTIVE, UNCONFIGURED, OTHER = 92, 96, 93, 91
 """Terminal colours of states."""
-
-
-def add_manager_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the option that selects the manager."""
-    complete_with(
-        parser.add_argument(
-            "-c",
-            "--controller-manager",
-            default=DEFAULT_MANAGER,
-            metavar="NODE",
-            help=f"name of the manager's node (default {DEFAULT_MANAGER}, or the only one)",
-        ),
-        completers.nodes,
-    )
-    # Accepted because command lines for ros2 use it. A named node may always be hidden here.
-    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
 
 
 @contextmanager
@@ -72,14 +56,6 @@ def plain(messages: list[Any]) -> list[Any]:
     return [to_plain(message) for message in messages]
 
 
-def add_controller_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the controller's name."""
-    complete_with(
-        parser.add_argument("controller_name", help="such as position_controller"),
-        loaded_controllers,
-    )
-
-
 def loaded_controllers(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
     """Return the names of the loaded controllers, for the Tab key."""
     return _ask(parsed_args, lambda manager: list(manager.states()))
@@ -101,3 +77,21 @@ def _ask(
     manager = getattr(parsed_args, "controller_manager", None) or DEFAULT_MANAGER
     with ask_manager(argparse.Namespace(controller_manager=manager)) as client:
         return ask(client)
+
+
+CONTROLLER = Argument(
+    "controller_name", completer=loaded_controllers, help="such as position_controller"
+)
+MANAGER = (
+    Argument(
+        "-c",
+        "--controller-manager",
+        default=DEFAULT_MANAGER,
+        metavar="NODE",
+        completer=completers.nodes,
+        help=f"name of the manager's node (default {DEFAULT_MANAGER}, or the only one)",
+    ),
+    # Accepted because command lines for ros2 use it. A named node may always be hidden here.
+    Flag("--include-hidden-nodes", help=argparse.SUPPRESS),
+)
+"""The option that selects the manager."""

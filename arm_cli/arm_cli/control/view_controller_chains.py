@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from arm_cli.control.manager import add_manager_arguments, ask_manager
+from arm_cli.arguments import Flag, verb
+from arm_cli.control.manager import MANAGER, ask_manager
 from arm_cli.graph_files import write_picture
 from arm_cli.output import say
 from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
@@ -13,12 +14,10 @@ STEM = "controller_diagram"
 STATES, COMMANDS = "state interfaces", "command interfaces"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("--save", action="store_true", help="accepted; the picture is always saved")
-    add_manager_arguments(parser)
-
-
+@verb(
+    Flag("--save", help="accepted; the picture is always saved"),
+    *MANAGER,
+)
 def run(options: argparse.Namespace) -> None:
     """Write the picture and its graphviz source.
 

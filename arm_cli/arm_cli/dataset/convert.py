@@ -6,41 +6,35 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import Argument, verb
 from arm_cli.bag.info import existing_path
-from arm_cli.dataset.selection import (
-    DatasetOptions,
-    add_selection_arguments,
-    choose_topics,
-    dataset_options,
-)
+from arm_cli.dataset.selection import TOPICS, DatasetOptions, choose_topics, dataset_options
 from arm_cli.errors import ArmCliError, BagError
 from arm_cli.output import say
-from arm_cli.verb import VerbFunctions
 
 if TYPE_CHECKING:
     from arm_sim.dataset import DatasetWriter
 
 
-def add_dataset_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of all verbs that write datasets."""
-    parser.add_argument(
+DATASET = (
+    Argument(
         "--task", required=True, metavar="TEXT", help="what the demonstrations show, in words"
-    )
-    parser.add_argument("--robot", default="arm", metavar="NAME", help="name of the robot (arm)")
-    add_selection_arguments(parser)
+    ),
+    Argument("--robot", default="arm", metavar="NAME", help="name of the robot (arm)"),
+    TOPICS,
+)
+"""The arguments of all verbs that write datasets."""
 
 
-def _add_convert_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+@verb(
+    Argument(
         "bags", nargs="+", type=existing_path, metavar="BAG", help="a bag; each is one episode"
-    )
-    parser.add_argument(
-        "-o", "--output", required=True, type=Path, metavar="DIR", help="folder to create"
-    )
-    add_dataset_arguments(parser)
-
-
-def _convert(options: argparse.Namespace) -> None:
+    ),
+    Argument("-o", "--output", required=True, type=Path, metavar="DIR", help="folder to create"),
+    *DATASET,
+)
+def convert(options: argparse.Namespace) -> None:
+    """Write the dataset; errors as `write_dataset`."""
     write_dataset(
         options.bags, options.output, options.task, options.robot, dataset_options(options)
     )
@@ -93,11 +87,15 @@ def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: DatasetOptio
     return rows.fps
 
 
-def _add_check_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, metavar="DIR", help="a dataset in LeRobot's format")
+@verb(
+    Argument("folder", type=Path, metavar="DIR", help="a dataset in LeRobot's format"),
+)
+def check(options: argparse.Namespace) -> int:
+    """Print the faults of a dataset; return 1 if it has any.
 
-
-def _check(options: argparse.Namespace) -> int:
+    Raises:
+        BagError: the dataset cannot be read, or the extra is not installed.
+    """
     from arm_sim.errors import ArmSimError
 
     try:
@@ -108,7 +106,3 @@ def _check(options: argparse.Namespace) -> int:
         raise BagError(str(error)) from error
     say(*(faults or [f"{options.folder} is valid in LeRobot's format v3.0"]))
     return 1 if faults else 0
-
-
-CONVERT = VerbFunctions(_add_convert_arguments, _convert)
-CHECK = VerbFunctions(_add_check_arguments, _check)

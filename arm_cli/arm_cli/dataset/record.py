@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from arm_cli.command_parser import positive_number, positive_whole_number
-from arm_cli.dataset.convert import add_dataset_arguments, write_dataset
+from arm_cli.arguments import Argument, positive_number, positive_whole_number, verb
+from arm_cli.dataset.convert import DATASET, write_dataset
 from arm_cli.dataset.selection import dataset_options
 from arm_cli.errors import ArmCliError, StoppedError
 from arm_cli.output import complain
@@ -18,27 +18,25 @@ POLL_S = 0.1
 NODE_NAME = "dataset_recorder"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("output", type=Path, metavar="DIR", help="folder to create")
-    parser.add_argument(
+@verb(
+    Argument("output", type=Path, metavar="DIR", help="folder to create"),
+    Argument(
         "-d",
         "--duration",
         type=positive_number,
         metavar="SECONDS",
         help="length of each episode (default: until Ctrl-C, which ends the last one)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "-n",
         "--episodes",
         type=positive_whole_number,
         default=1,
         metavar="N",
         help="episodes, one after the other (default 1); more need --duration",
-    )
-    add_dataset_arguments(parser)
-
-
+    ),
+    *DATASET,
+)
 def run(options: argparse.Namespace) -> None:
     """Record a bag for each episode beside the dataset, then write the dataset.
 

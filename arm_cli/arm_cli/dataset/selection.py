@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import positive_whole_number
+from arm_cli.arguments import Argument, Group, positive_whole_number
 from arm_cli.errors import BagError
 
 if TYPE_CHECKING:
@@ -48,35 +48,36 @@ class ChosenTopics:
     cameras: "Mapping[str, BagTopic]"
 
 
-def add_selection_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say which topics become what."""
-    group = parser.add_argument_group("topics")
-    group.add_argument("--state", metavar="TOPIC", help=f"joint states (default {STATES})")
-    group.add_argument(
+TOPICS = Group(
+    "topics",
+    Argument("--state", metavar="TOPIC", help=f"joint states (default {STATES})"),
+    Argument(
         "--state-fields",
         nargs="+",
         choices=STATE_FIELDS,
         default=[STATE_FIELDS[0]],
         help="fields of the joints that form the state (default position)",
-    )
-    group.add_argument(
+    ),
+    Argument(
         "--action",
         metavar="TOPIC",
         help="commands: Float64MultiArray, JointState, or a trajectory controller's state, whose "
         "reference positions count (default: the only such topic with messages)",
-    )
-    group.add_argument(
+    ),
+    Argument(
         "--cameras",
         nargs="*",
         metavar="TOPIC",
         help="topics with colour images (default: all that are not compressed)",
-    )
-    group.add_argument(
+    ),
+    Argument(
         "--fps",
         type=positive_whole_number,
         metavar="N",
         help="rows per second (default: the rate of the first camera, or else of the states)",
-    )
+    ),
+)
+"""The options that say which topics become what."""
 
 
 def dataset_options(options: argparse.Namespace) -> DatasetOptions:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from functools import partial
 
+from arm_cli.arguments import JSON, verb
 from arm_cli.doctor.controllers import (
     check_claims,
     check_commands,
@@ -39,7 +40,7 @@ from arm_cli.doctor.simulation import (
 )
 from arm_cli.errors import ArmCliError, CommandUsageError
 from arm_cli.names import this_domain
-from arm_cli.output import add_json_argument, colour, print_json, say, say_coloured
+from arm_cli.output import colour, print_json, say, say_coloured
 from arm_cli.ros.connection import connect
 from arm_node.printable import printable
 
@@ -62,11 +63,7 @@ COLOURS = {Severity.OK: 92, Severity.WARNING: 93, Severity.ERROR: 91}
 SEVERITY_WIDTH = max(map(len, Severity))
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
-
-
+@verb(JSON)
 def run(options: argparse.Namespace) -> int:
     """Print each finding as soon as it is available; return 1 if there is an error."""
     findings: list[Diagnosis] = []

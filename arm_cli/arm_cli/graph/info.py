@@ -3,23 +3,19 @@
 import argparse
 from typing import Any
 
-from arm_cli.graph.listing import ACTIONS, SERVICES, TOPICS, add_name_argument
+from arm_cli.arguments import JSON, Flag, verb
+from arm_cli.graph.listing import ACTIONS, SERVICES, TOPICS, name_argument
 from arm_cli.names import absolute_name
-from arm_cli.output import add_json_argument, print_json, say, say_document
+from arm_cli.output import print_json, say, say_document
 from arm_cli.ros.connection import connect
-from arm_cli.verb import VerbFunctions
 from arm_node.printable import printable
 
 
-def add_topic_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `arm topic info`."""
-    add_name_argument(TOPICS, parser)
-    parser.add_argument(
-        "-v", "--verbose", action="store_true", help="show every endpoint with its QoS"
-    )
-    add_json_argument(parser)
-
-
+@verb(
+    name_argument(TOPICS),
+    Flag("-v", "--verbose", help="show every endpoint with its QoS"),
+    JSON,
+)
 def topic_info(options: argparse.Namespace) -> None:
     """Print the topic's type and the numbers of its publishers and subscriptions.
 
@@ -51,12 +47,10 @@ def topic_info(options: argparse.Namespace) -> None:
             say_document(f"{_with_safe_names(info)}\n")
 
 
-def add_service_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `arm service info`."""
-    add_name_argument(SERVICES, parser)
-    add_json_argument(parser)
-
-
+@verb(
+    name_argument(SERVICES),
+    JSON,
+)
 def service_info(options: argparse.Namespace) -> None:
     """Print the service's type and its numbers of clients and servers.
 
@@ -79,14 +73,12 @@ def service_info(options: argparse.Namespace) -> None:
     say(f"Services count: {servers}")
 
 
-def add_action_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `arm action info`."""
-    add_name_argument(ACTIONS, parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="also show their types")
-    parser.add_argument("-c", "--count", action="store_true", help="show only their numbers")
-    add_json_argument(parser)
-
-
+@verb(
+    name_argument(ACTIONS),
+    Flag("-t", "--show-types", help="also show their types"),
+    Flag("-c", "--count", help="show only their numbers"),
+    JSON,
+)
 def action_info(options: argparse.Namespace) -> None:
     """Print the action's clients and servers.
 
@@ -133,8 +125,3 @@ def _plain(info: Any) -> dict[str, Any]:
         "durability": profile.durability.name.lower(),
         "liveliness": profile.liveliness.name.lower(),
     }
-
-
-TOPIC_INFO = VerbFunctions(add_topic_arguments, topic_info)
-SERVICE_INFO = VerbFunctions(add_service_arguments, service_info)
-ACTION_INFO = VerbFunctions(add_action_arguments, action_info)

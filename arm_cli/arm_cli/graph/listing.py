@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import JSON, Argument, Completer, Flag, VerbFunction, verb
 from arm_cli.interfaces.index import InterfaceIndex
-from arm_cli.output import add_json_argument, print_json, say
+from arm_cli.output import print_json, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import Completer, complete_with, message_names
+from arm_cli.word_completion import message_names
 
 if TYPE_CHECKING:
     from arm_cli.ros.graph import Graph
@@ -77,20 +77,9 @@ ACTIONS = EntityKind(
 )
 
 
-def add_name_argument(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
-    """Add the argument for a name."""
-    complete_with(
-        parser.add_argument(f"{kind.noun}_name", help=f"such as {kind.example}"), kind.complete
-    )
-
-
-def add_list_arguments(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `list`."""
-    parser.add_argument("-t", "--show-types", action="store_true", help="also show their types")
-    _add_count_argument(kind, parser)
-    add_json_argument(parser)
-    if kind.can_be_hidden:
-        _add_hidden_argument(kind, parser, "--all")
+def name_argument(kind: EntityKind) -> Argument:
+    """Return the argument for a name."""
+    return Argument(f"{kind.noun}_name", completer=kind.complete, help=f"such as {kind.example}")
 
 
 def list_entities(kind: EntityKind, options: argparse.Namespace) -> None:
@@ -111,24 +100,6 @@ def list_entities(kind: EntityKind, options: argparse.Namespace) -> None:
     else:
         for name, types in found.items():
             say(f"{name} [{', '.join(types)}]" if options.show_types else name)
-
-
-def add_topic_list_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `arm topic list`."""
-    add_list_arguments(TOPICS, parser)
-    parser.add_argument(
-        "-v", "--verbose", action="store_true", help="show numbers of publishers and subscribers"
-    )
-
-
-def add_find_arguments(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of `find`."""
-    wanted = parser.add_argument(f"{kind.noun}_type", help=f"such as {kind.example_type}")
-    if kind.complete_type is not None:
-        complete_with(wanted, kind.complete_type)
-    _add_count_argument(kind, parser)
-    if kind.can_be_hidden:
-        _add_hidden_argument(kind, parser)
 
 
 def find_entities(kind: EntityKind, options: argparse.Namespace) -> None:
@@ -178,40 +149,37 @@ def _print_endpoints(graph: "Graph", topics: dict[str, list[str]]) -> None:
         say("")
 
 
-def _add_count_argument(kind: EntityKind, parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "-c",
-        f"--count-{kind.noun}s",
-        dest="count",
-        action="store_true",
-        help="print only their number",
-    )
+def _count(kind: EntityKind) -> Argument:
+    flag = f"--count-{kind.noun}s"
+    return Flag("-c", flag, dest="count", help="print only their number")
 
 
-def _add_hidden_argument(kind: EntityKind, parser: argparse.ArgumentParser, *flags: str) -> None:
-    parser.add_argument(
-        "-a",
-        *flags,
-        f"--include-hidden-{kind.noun}s",
-        dest="hidden",
-        action="store_true",
-        help=f"include hidden {kind.noun}s",
-    )
+def _hidden(kind: EntityKind, *flags: str) -> list[Argument]:
+    if not kind.can_be_hidden:
+        return []
+    every = f"include hidden {kind.noun}s"
+    return [Flag("-a", *flags, f"--include-hidden-{kind.noun}s", dest="hidden", help=every)]
 
 
-def _list(kind: EntityKind) -> VerbFunctions:
-    return VerbFunctions(partial(add_list_arguments, kind), partial(list_entities, kind))
+def _list(kind: EntityKind, *more: Argument) -> VerbFunction:
+    types = Flag("-t", "--show-types", help="also show their types")
+    declare = verb(types, _count(kind), JSON, *_hidden(kind, "--all"), *more)
+    return declare(partial(list_entities, kind))
 
 
-def _find(kind: EntityKind) -> VerbFunctions:
-    return VerbFunctions(partial(add_find_arguments, kind), partial(find_entities, kind))
+def _find(kind: EntityKind) -> VerbFunction:
+    name, example = f"{kind.noun}_type", f"such as {kind.example_type}"
+    wanted = Argument(name, completer=kind.complete_type, help=example)
+    return verb(wanted, _count(kind), *_hidden(kind))(partial(find_entities, kind))
 
 
-def _type(kind: EntityKind) -> VerbFunctions:
-    return VerbFunctions(partial(add_name_argument, kind), partial(print_type, kind))
+def _type(kind: EntityKind) -> VerbFunction:
+    return verb(name_argument(kind))(partial(print_type, kind))
 
 
-TOPIC_LIST = VerbFunctions(add_topic_list_arguments, partial(list_entities, TOPICS))
-SERVICE_LIST, ACTION_LIST = _list(SERVICES), _list(ACTIONS)
-TOPIC_FIND, SERVICE_FIND, ACTION_FIND = _find(TOPICS), _find(SERVICES), _find(ACTIONS)
-TOPIC_TYPE, SERVICE_TYPE, ACTION_TYPE = _type(TOPICS), _type(SERVICES), _type(ACTIONS)
+topic_list = _list(
+    TOPICS, Flag("-v", "--verbose", help="show numbers of publishers and subscribers")
+)
+service_list, action_list = _list(SERVICES), _list(ACTIONS)
+topic_find, service_find, action_find = _find(TOPICS), _find(SERVICES), _find(ACTIONS)
+topic_type, service_type, action_type = _type(TOPICS), _type(SERVICES), _type(ACTIONS)

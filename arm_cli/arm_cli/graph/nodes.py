@@ -2,23 +2,18 @@
 
 import argparse
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.names import is_hidden
-from arm_cli.output import add_json_argument, complain, print_json, say
+from arm_cli.output import complain, print_json, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 
 
-def add_list_nodes_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "-a", "--all", dest="hidden", action="store_true", help="include hidden nodes"
-    )
-    parser.add_argument("-c", "--count-nodes", action="store_true", help="print only their number")
-    add_json_argument(parser)
-
-
+@verb(
+    Flag("-a", "--all", dest="hidden", help="include hidden nodes"),
+    Flag("-c", "--count-nodes", help="print only their number"),
+    JSON,
+)
 def list_nodes(options: argparse.Namespace) -> None:
     """Print the nodes' names."""
     with connect() as session:
@@ -37,17 +32,11 @@ def list_nodes(options: argparse.Namespace) -> None:
         say(*names)
 
 
-def add_node_info_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("node_name", help="such as /controller_manager"), completers.nodes
-    )
-    parser.add_argument(
-        "--include-hidden", dest="hidden", action="store_true", help="include hidden topics"
-    )
-    add_json_argument(parser)
-
-
+@verb(
+    Argument("node_name", help="such as /controller_manager", completer=completers.nodes),
+    Flag("--include-hidden", dest="hidden", help="include hidden topics"),
+    JSON,
+)
 def node_info(options: argparse.Namespace) -> None:
     """Print the node's topics, services and actions.
 
@@ -82,7 +71,3 @@ def node_info(options: argparse.Namespace) -> None:
         say(f"  {title}:")
         lines = [f"    {name}: {', '.join(types)}" for name, types in part.items()]
         say(*(lines or [""]))
-
-
-LIST_NODES = VerbFunctions(add_list_nodes_arguments, list_nodes)
-NODE_INFO = VerbFunctions(add_node_info_arguments, node_info)

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError
 from arm_cli.graph_files import to_dot, to_mermaid, write_text
 from arm_cli.output import say_document
@@ -18,23 +19,16 @@ WRITERS = {"svg": to_svg, "mermaid": to_mermaid, "dot": to_dot}
 SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".md": "mermaid", ".dot": "dot", ".gv": "dot"}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
+@verb(
+    Argument(
         "-f",
         "--format",
         choices=tuple(WRITERS),
         help="default: from the file's suffix (.svg, .mmd, .dot), or mermaid without a file",
-    )
-    parser.add_argument("-o", "--output", metavar="FILE", help="default: print it")
-    parser.add_argument(
-        "-a",
-        "--all",
-        action="store_true",
-        help="include hidden nodes and topics, /rosout and /parameter_events",
-    )
-
-
+    ),
+    Argument("-o", "--output", metavar="FILE", help="default: print it"),
+    Flag("-a", "--all", help="include hidden nodes and topics, /rosout and /parameter_events"),
+)
 def run(options: argparse.Namespace) -> None:
     """Print or write the graph.
 

@@ -3,11 +3,11 @@
 import argparse
 from typing import Any
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.gz.topic import world_name
 from arm_cli.output import say
 from arm_cli.sim.simulation import ask_simulation
-from arm_cli.verb import VerbFunctions
 from arm_node.names import describe_known
 from arm_node.rigid_transform import RigidTransform
 
@@ -21,14 +21,11 @@ SERVICES = {
 """Gazebo's services below /world/NAME, and what to use instead here."""
 
 
-def add_model_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments, named as in gz."""
-    parser.add_argument("--list", action="store_true", help="list the models")
-    parser.add_argument("-m", "--model", metavar="NAME", help="the model to show")
-    parser.add_argument("-p", "--pose", action="store_true", help="show its pose (always on)")
-    parser.set_defaults(namespace="/")
-
-
+@verb(
+    Flag("--list", help="list the models"),
+    Argument("-m", "--model", metavar="NAME", help="the model to show"),
+    Flag("-p", "--pose", help="show its pose (always on)"),
+)
 def model(options: argparse.Namespace) -> None:
     """List the models, or print the pose of one.
 
@@ -39,7 +36,7 @@ def model(options: argparse.Namespace) -> None:
     """
     if not (options.list or options.model):
         raise CommandUsageError("give --list, or -m NAME")
-    with ask_simulation(options) as simulation:
+    with ask_simulation() as simulation:
         world = world_name(simulation)
         found = simulation.ask("GetEntitiesStates", "get_entities_states")
     say(f"Requesting state for world [{world}]...", "")
@@ -66,16 +63,15 @@ def pose_lines(name: str, number: int, pose: Any) -> list[str]:
     ]
 
 
-def add_service_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments, named as in gz."""
-    parser.add_argument("-l", "--list", action="store_true", help="list all services")
-    parser.add_argument("-i", "--info", action="store_true", help="show what to use instead here")
-    parser.add_argument("-s", "--service", metavar="NAME", help="the service")
-    for name in ("--reqtype", "--reptype", "--timeout", "--req"):
-        parser.add_argument(name, metavar="TEXT", help="accepted; services cannot be called here")
-    parser.set_defaults(namespace="/")
-
-
+@verb(
+    Flag("-l", "--list", help="list all services"),
+    Flag("-i", "--info", help="show what to use instead here"),
+    Argument("-s", "--service", metavar="NAME", help="the service"),
+    *(
+        Argument(name, metavar="TEXT", help="accepted; services cannot be called here")
+        for name in ("--reqtype", "--reptype", "--timeout", "--req")
+    ),
+)
 def service(options: argparse.Namespace) -> None:
     """List the services, or print what to use instead of one.
 
@@ -86,7 +82,7 @@ def service(options: argparse.Namespace) -> None:
     """
     if not (options.list or options.service):
         raise CommandUsageError("give -l, or -s NAME")
-    with ask_simulation(options) as simulation:
+    with ask_simulation() as simulation:
         place = f"/world/{world_name(simulation)}"
     known = {f"{place}/{name}": instead for name, instead in SERVICES.items()}
     if options.list:
@@ -99,7 +95,3 @@ def service(options: argparse.Namespace) -> None:
     if not options.info:
         raise CommandUsageError(sentence)
     say(sentence)
-
-
-MODEL = VerbFunctions(add_model_arguments, model)
-SERVICE = VerbFunctions(add_service_arguments, service)

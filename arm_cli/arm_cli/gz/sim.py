@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Sequence
 
-from arm_cli.launch_verb import run as launch
+from arm_cli.launch import run as launch
 
 SERVER = "-s"
 HELP = """usage: arm gz sim [-r] [-s] [-v LEVEL] [FILE]

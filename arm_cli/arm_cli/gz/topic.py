@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import ArmCliError, CommandUsageError, NoSuchNameError, StoppedError
 from arm_cli.gz.protobuf_text import Fields, pose_of, text_of, time_of
 from arm_cli.output import say, say_document
@@ -31,17 +32,14 @@ SENSORS = {
 """Gazebo's message types of sensors, by the type in ROS."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments, named as in gz."""
-    parser.add_argument("-l", "--list", action="store_true", help="list all topics")
-    parser.add_argument("-i", "--info", action="store_true", help="show a topic's publishers")
-    parser.add_argument("-e", "--echo", action="store_true", help="print a topic's messages")
-    parser.add_argument("-t", "--topic", metavar="NAME", help="the topic for -i and -e")
-    parser.add_argument("-n", "--num", type=int, metavar="N", help="end after N messages")
-    parser.add_argument("-d", "--duration", type=float, metavar="S", help="end after that time")
-    parser.set_defaults(namespace="/")
-
-
+@verb(
+    Flag("-l", "--list", help="list all topics"),
+    Flag("-i", "--info", help="show a topic's publishers"),
+    Flag("-e", "--echo", help="print a topic's messages"),
+    Argument("-t", "--topic", metavar="NAME", help="the topic for -i and -e"),
+    Argument("-n", "--num", type=int, metavar="N", help="end after N messages"),
+    Argument("-d", "--duration", type=float, metavar="S", help="end after that time"),
+)
 def run(options: argparse.Namespace) -> None:
     """List topics, show a topic's publishers, or print its messages.
 
@@ -54,7 +52,7 @@ def run(options: argparse.Namespace) -> None:
         raise CommandUsageError("give -l, -i -t NAME or -e -t NAME")
     if not options.list and not options.topic:
         raise CommandUsageError("which topic? Give -t NAME")
-    with ask_simulation(options) as simulation:
+    with ask_simulation() as simulation:
         topics = known_topics(simulation)
         if options.list:
             say(*sorted(topics))

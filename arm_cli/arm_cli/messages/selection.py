@@ -1,6 +1,5 @@
 """Selects the messages that a verb shows, and a part of each: `--filter` and `--field`."""
 
-import argparse
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,6 +7,7 @@ from typing import Any
 
 from rosidl_parser.definition import AbstractNestedType, NamespacedType
 
+from arm_cli.arguments import Argument
 from arm_cli.errors import CommandUsageError, MessageError
 from arm_cli.messages.field_types import message_class, slots, type_name
 
@@ -17,11 +17,9 @@ _RAISED = (ArithmeticError, AttributeError, LookupError, NameError, TypeError, V
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 
 
-def add_filter_argument(parser: argparse.ArgumentParser) -> None:
-    """Add `--filter`."""
-    parser.add_argument(
-        "--filter", metavar="EXPRESSION", help="only messages m for which this Python holds"
-    )
+FILTER = Argument(
+    "--filter", metavar="EXPRESSION", help="only messages m for which this Python holds"
+)
 
 
 def message_filter(expression: str) -> Callable[[Any], bool]:

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import UnansweredError
-from arm_cli.output import add_json_argument, complain, print_json, say, say_document
+from arm_cli.output import complain, print_json, say, say_document
 from arm_cli.parameter_values import LABELS, NOT_SET, TYPE_NAMES, content_of, read_value
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import SetParametersResult
@@ -20,20 +19,17 @@ if TYPE_CHECKING:
     from arm_cli.ros.parameters import NodeParameters
 
 
-def add_node_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the node's name."""
-    complete_with(
-        parser.add_argument("node_name", help="such as /arm_controller_node"), completers.nodes
-    )
+NODE = (
+    Argument("node_name", completer=completers.nodes, help="such as /arm_controller_node"),
     # Accepted because command lines for ros2 use it. A named node may always be hidden here.
-    parser.add_argument("--include-hidden-nodes", action="store_true", help=argparse.SUPPRESS)
+    Flag("--include-hidden-nodes", help=argparse.SUPPRESS),
+)
+"""The name of one node."""
 
 
-def add_parameter_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the parameter's name."""
-    complete_with(
-        parser.add_argument("parameter_name", help="such as desired_param"), completers.parameters
-    )
+PARAMETER = Argument(
+    "parameter_name", completer=completers.parameters, help="such as desired_param"
+)
 
 
 @contextmanager
@@ -50,29 +46,6 @@ def open_parameters(node_name: str) -> Iterator["NodeParameters"]:
         yield NodeParameters(session, Graph(session).find_node(node_name))
 
 
-def add_list_parameters_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("node_name", nargs="?", help="default: every node"),
-        completers.nodes,
-    )
-    parser.add_argument(
-        "--include-hidden-nodes", dest="hidden", action="store_true", help="include hidden nodes"
-    )
-    parser.add_argument(
-        "--param-prefixes", nargs="+", default=[], help="only parameters with these prefixes"
-    )
-    parser.add_argument(
-        "--filter",
-        type=_pattern,
-        default=".*",
-        metavar="REGEX",
-        help="only parameters whose names it matches at their start",
-    )
-    parser.add_argument("--param-type", action="store_true", help="also print their types")
-    add_json_argument(parser)
-
-
 def _pattern(text: str) -> re.Pattern[str]:
     try:
         return re.compile(text)
@@ -82,6 +55,20 @@ def _pattern(text: str) -> re.Pattern[str]:
         ) from error
 
 
+@verb(
+    Argument("node_name", nargs="?", help="default: every node", completer=completers.nodes),
+    Flag("--include-hidden-nodes", dest="hidden", help="include hidden nodes"),
+    Argument("--param-prefixes", nargs="+", default=[], help="only parameters with these prefixes"),
+    Argument(
+        "--filter",
+        type=_pattern,
+        default=".*",
+        metavar="REGEX",
+        help="only parameters whose names it matches at their start",
+    ),
+    Flag("--param-type", help="also print their types"),
+    JSON,
+)
 def list_parameters(options: argparse.Namespace) -> None:
     """Print the names of the parameters.
 
@@ -126,14 +113,12 @@ def list_parameters(options: argparse.Namespace) -> None:
             say(f"  {name} (type: {type_})" if options.param_type else f"  {name}")
 
 
-def add_get_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    add_parameter_argument(parser)
-    parser.add_argument("--hide-type", action="store_true", help="print only the value")
-    add_json_argument(parser)
-
-
+@verb(
+    *NODE,
+    PARAMETER,
+    Flag("--hide-type", help="print only the value"),
+    JSON,
+)
 def get(options: argparse.Namespace) -> None:
     """Print the value.
 
@@ -161,15 +146,12 @@ def get(options: argparse.Namespace) -> None:
         )
 
 
-def add_describe_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    complete_with(
-        parser.add_argument("parameter_names", nargs="+", help="such as desired_param"),
-        completers.parameters,
-    )
-
-
+@verb(
+    *NODE,
+    Argument(
+        "parameter_names", nargs="+", help="such as desired_param", completer=completers.parameters
+    ),
+)
 def describe(options: argparse.Namespace) -> None:
     """Print the descriptions of parameters.
 
@@ -201,16 +183,15 @@ def _print(descriptor: Any) -> None:
         say(f"    Additional constraints: {descriptor.additional_constraints}")
 
 
-def add_set_parameter_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    add_parameter_argument(parser)
-    complete_with(
-        parser.add_argument("value", help="as YAML, such as '[1.0, 0.5, 0.1, 0.5]'"),
-        completers.parameter_values,
-    )
-
-
+@verb(
+    *NODE,
+    PARAMETER,
+    Argument(
+        "value",
+        help="as YAML, such as '[1.0, 0.5, 0.1, 0.5]'",
+        completer=completers.parameter_values,
+    ),
+)
 def set_parameter(options: argparse.Namespace) -> int:
     """Set the value; the exit code is 1 if the node refuses it.
 
@@ -229,12 +210,10 @@ def set_parameter(options: argparse.Namespace) -> int:
     return _report(result, "Set parameter successful", "Setting parameter failed")
 
 
-def add_delete_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    add_parameter_argument(parser)
-
-
+@verb(
+    *NODE,
+    PARAMETER,
+)
 def delete(options: argparse.Namespace) -> int:
     """Remove the parameter; the exit code is 1 if the node refuses.
 
@@ -264,10 +243,3 @@ def _report(result: "SetParametersResult", success: str, failure: str) -> int:
         return 0
     complain(f"{failure}{reason}")
     return 1
-
-
-LIST_PARAMETERS = VerbFunctions(add_list_parameters_arguments, list_parameters)
-GET = VerbFunctions(add_get_arguments, get)
-DESCRIBE = VerbFunctions(add_describe_arguments, describe)
-SET_PARAMETER = VerbFunctions(add_set_parameter_arguments, set_parameter)
-DELETE = VerbFunctions(add_delete_arguments, delete)

@@ -4,12 +4,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError
 from arm_cli.names import absolute_name
-from arm_cli.output import add_json_argument, complain, print_json, say, say_document
-from arm_cli.param.access import add_node_argument, open_parameters
+from arm_cli.output import complain, print_json, say, say_document
+from arm_cli.param.access import NODE, open_parameters
 from arm_cli.parameter_values import read_value
-from arm_cli.verb import VerbFunctions
 from arm_node.limited_yaml import YamlError
 from arm_node.parameter_file import (
     PARAMETERS,
@@ -21,19 +21,17 @@ from arm_node.parameter_file import read_parameters as read_file_parameters
 from arm_node.user_file import read_text
 
 
-def add_dump_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
+@verb(
+    *NODE,
     # Accepted because command lines for older ROS use it.
-    parser.add_argument("--print", action="store_true", help=argparse.SUPPRESS)
-    parser.add_argument(
+    Flag("--print", help=argparse.SUPPRESS),
+    Argument(
         "--output-dir",
         metavar="DIR",
         help="write them to a file in this folder, named after the node",
-    )
-    add_json_argument(parser)
-
-
+    ),
+    JSON,
+)
 def dump(options: argparse.Namespace) -> None:
     """Print the parameters in the form that `arm param load` and launch files read.
 
@@ -69,15 +67,11 @@ def _save(text: str, folder: Path, node: str) -> None:
     say(f"Saving to:  {path}")
 
 
-def add_load_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_node_argument(parser)
-    parser.add_argument("parameter_file", help="file in the form of `arm param dump`")
-    parser.add_argument(
-        "--no-use-wildcard", action="store_true", help="ignore the file's section '/**'"
-    )
-
-
+@verb(
+    *NODE,
+    Argument("parameter_file", help="file in the form of `arm param dump`"),
+    Flag("--no-use-wildcard", help="ignore the file's section '/**'"),
+)
 def load(options: argparse.Namespace) -> int:
     """Set the parameters one by one; the exit code is 1 if the node refuses one.
 
@@ -133,7 +127,3 @@ def read_parameters(path: Path, sections: list[str]) -> dict[str, Any]:
             raise MessageError(f"{path}: no '{PARAMETERS}:' below the node's name")
         values |= dict(flat_parameters(entry[PARAMETERS]))
     return values
-
-
-DUMP = VerbFunctions(add_dump_arguments, dump)
-LOAD = VerbFunctions(add_load_arguments, load)

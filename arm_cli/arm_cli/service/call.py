@@ -5,42 +5,40 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import JSON, Argument, Flag, positive_number, verb
 from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.output import add_json_argument, complain, print_json, say_document
+from arm_cli.output import complain, print_json, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 from arm_node.names import describe_known
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("service_name", help="such as /controller_manager/list_controllers"),
-        completers.services,
-    )
-    parser.add_argument("service_type", help="such as std_srvs/srv/Trigger")
-    parser.add_argument(
+@verb(
+    Argument(
+        "service_name",
+        help="such as /controller_manager/list_controllers",
+        completer=completers.services,
+    ),
+    Argument("service_type", help="such as std_srvs/srv/Trigger"),
+    Argument(
         "values", nargs="?", default="", help="fields of the request as YAML, such as '{a: 1}'"
-    )
-    parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
-    parser.add_argument(
+    ),
+    Flag("--stdin", help="read the values from stdin"),
+    Argument(
         "-r", "--rate", type=positive_number, metavar="HZ", help="call repeatedly at this rate"
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--timeout",
         type=positive_number,
         metavar="SECONDS",
         help="how long to wait for the service, and then for its answer",
-    )
-    add_json_argument(parser)
-
-
+    ),
+    JSON,
+)
 def run(options: argparse.Namespace) -> None:
     """Call the service and print its answer.
 

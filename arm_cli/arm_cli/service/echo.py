@@ -2,35 +2,29 @@
 
 import argparse
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import JSON, Argument, positive_number, verb
 from arm_cli.errors import UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.output import add_json_argument, print_json, say_document
+from arm_cli.output import print_json, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with
 
 EVENTS = "_service_event"
 QUEUE = 100
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("service_name", help="such as /controller_manager/list_controllers"),
-        completers.services,
-    )
-    parser.add_argument("service_type", nargs="?", help="default: the service's own type")
-    parser.add_argument(
-        "--timeout", type=positive_number, metavar="SECONDS", help="end after this time"
-    )
-    add_json_argument(parser)
-    parser.epilog = (
-        "A node publishes its requests and responses only if service introspection is enabled, for "
-        "example with rclpy's configure_introspection()."
-    )
-
-
+@verb(
+    Argument(
+        "service_name",
+        help="such as /controller_manager/list_controllers",
+        completer=completers.services,
+    ),
+    Argument("service_type", nargs="?", help="default: the service's own type"),
+    Argument("--timeout", type=positive_number, metavar="SECONDS", help="end after this time"),
+    JSON,
+    epilog="A node publishes its requests and responses only if service introspection is enabled, "
+    "for example with rclpy's configure_introspection().",
+)
 def run(options: argparse.Namespace) -> None:
     """Print the events of the service until a signal or the timeout.
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError
 from arm_cli.output import say
-from arm_cli.sim.simulation import PAUSED, PLAYING, add_namespace_argument, ask_simulation
-from arm_cli.verb import VerbFunctions
+from arm_cli.sim.simulation import NAMESPACE, PAUSED, PLAYING, ask_simulation
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import Pose
@@ -16,33 +16,29 @@ if TYPE_CHECKING:
 SCOPE_TIME, SCOPE_STATE, SCOPE_SPAWNED, SCOPE_ALL = 1, 2, 4, 255
 
 
-def add_spawn_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "file", help="URDF, xacro, SDF or MJCF: a path or a URI such as model://can"
-    )
-    parser.add_argument("--name", default="", help="name of the entity; default: its body's name")
-    parser.add_argument(
+@verb(
+    Argument("file", help="URDF, xacro, SDF or MJCF: a path or a URI such as model://can"),
+    Argument("--name", default="", help="name of the entity; default: its body's name"),
+    Argument(
         "--pose",
         nargs=6,
         type=float,
         default=[0.0] * 6,
         metavar=("X", "Y", "Z", "ROLL", "PITCH", "YAW"),
         help="pose in m and rad (default: the origin)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--frame", default="", help="frame of the pose: an entity or a link (default: the world)"
-    )
-    add_namespace_argument(parser)
-
-
+    ),
+    NAMESPACE,
+)
 def spawn(options: argparse.Namespace) -> None:
     """Spawn the entity and print its name.
 
     Raises:
         SimulationRefusedError: the entity cannot be spawned.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         from geometry_msgs.msg import PoseStamped
         from simulation_interfaces.msg import Resource
 
@@ -62,40 +58,33 @@ def spawn(options: argparse.Namespace) -> None:
     say(answer.entity_name)
 
 
-def add_delete_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "entities", nargs="+", metavar="ENTITY", help="names, as listed by arm sim info"
-    )
-    add_namespace_argument(parser)
-
-
+@verb(
+    Argument("entities", nargs="+", metavar="ENTITY", help="names, as listed by arm sim info"),
+    NAMESPACE,
+)
 def delete(options: argparse.Namespace) -> None:
     """Delete the entities, one after another.
 
     Raises:
         SimulationRefusedError: there is no such entity, or it cannot be deleted.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         for entity in options.entities:
             simulation.ask("DeleteEntity", "delete_entity", entity=entity)
 
 
-def add_move_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("entity", metavar="ENTITY", help="name, as listed by arm sim info")
-    for axis in "xyz":
-        parser.add_argument(axis, metavar=axis.upper(), type=float, help="in m")
-    parser.add_argument(
+@verb(
+    Argument("entity", metavar="ENTITY", help="name, as listed by arm sim info"),
+    *(Argument(axis, metavar=axis.upper(), type=float, help="in m") for axis in "xyz"),
+    Argument(
         "rpy",
         nargs="*",
         type=float,
         metavar="ROLL PITCH YAW",
         help="in rad (default: as it is turned now)",
-    )
-    add_namespace_argument(parser)
-
-
+    ),
+    NAMESPACE,
+)
 def move(options: argparse.Namespace) -> None:
     """Move an entity, which is at rest afterwards.
 
@@ -105,7 +94,7 @@ def move(options: argparse.Namespace) -> None:
     """
     if len(options.rpy) not in (0, 3):
         raise CommandUsageError("a pose is X Y Z, or X Y Z ROLL PITCH YAW")
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         found = simulation.ask("GetEntityState", "get_entity_state", entity=options.entity)
         pose = _pose(options.x, options.y, options.z, options.rpy or [0.0] * 3)
         if not options.rpy:
@@ -129,45 +118,37 @@ def _pose(x: float, y: float, z: float, rpy: Sequence[float]) -> "Pose":
     return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 
 
-def add_pause_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_namespace_argument(parser)
-
-
+@verb(
+    NAMESPACE,
+)
 def pause(options: argparse.Namespace) -> None:
     """Pause the simulation.
 
     Raises:
         SimulationRefusedError: it is already paused.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         simulation.set_state(PAUSED)
 
 
-def add_play_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_namespace_argument(parser)
-
-
+@verb(
+    NAMESPACE,
+)
 def play(options: argparse.Namespace) -> None:
     """Resume the simulation.
 
     Raises:
         SimulationRefusedError: it is already running, or there is no world.
     """
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         simulation.set_state(PLAYING)
 
 
-def add_reset_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "--keep-spawned", action="store_true", help="keep spawned entities, and deletions"
-    )
-    parser.add_argument("--keep-clock", action="store_true", help="keep the clock running")
-    add_namespace_argument(parser)
-
-
+@verb(
+    Flag("--keep-spawned", help="keep spawned entities, and deletions"),
+    Flag("--keep-clock", help="keep the clock running"),
+    NAMESPACE,
+)
 def reset(options: argparse.Namespace) -> None:
     """Return everything to its start, apart from what the options keep.
 
@@ -179,13 +160,5 @@ def reset(options: argparse.Namespace) -> None:
         scope = SCOPE_STATE
         scope |= 0 if options.keep_spawned else SCOPE_SPAWNED
         scope |= 0 if options.keep_clock else SCOPE_TIME
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         simulation.ask("ResetSimulation", "reset_simulation", scope=scope)
-
-
-SPAWN = VerbFunctions(add_spawn_arguments, spawn)
-DELETE = VerbFunctions(add_delete_arguments, delete)
-MOVE = VerbFunctions(add_move_arguments, move)
-PAUSE = VerbFunctions(add_pause_arguments, pause)
-PLAY = VerbFunctions(add_play_arguments, play)
-RESET = VerbFunctions(add_reset_arguments, reset)

@@ -3,13 +3,9 @@
 import argparse
 from typing import Any
 
-from arm_cli.output import add_json_argument, print_json, say
-from arm_cli.sim.simulation import (
-    STATE_NAMES,
-    SimulationClient,
-    add_namespace_argument,
-    ask_simulation,
-)
+from arm_cli.arguments import JSON, verb
+from arm_cli.output import print_json, say
+from arm_cli.sim.simulation import NAMESPACE, STATE_NAMES, SimulationClient, ask_simulation
 
 MEASURED_S = 1.0
 SENSOR_TYPES = (
@@ -21,19 +17,17 @@ SENSOR_TYPES = (
 CATEGORIES = {0: "object", 1: "robot", 2: "human", 4: "moving", 5: "static"}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
-    add_namespace_argument(parser)
-
-
+@verb(
+    JSON,
+    NAMESPACE,
+)
 def run(options: argparse.Namespace) -> None:
     """Print the simulation's state and contents.
 
     Raises:
         NoSuchNameError: no simulation runs.
     """
-    with ask_simulation(options, must_run=True) as simulation:
+    with ask_simulation(options.namespace, must_run=True) as simulation:
         report = _report(simulation)
     if options.json:
         print_json(report)

@@ -8,12 +8,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import Argument, Flag, positive_number, verb
 from arm_cli.errors import ArmCliError, StoppedError
 from arm_cli.output import complain, say
 from arm_cli.ros.connection import connect
-from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
-from arm_cli.verb import VerbFunctions
+from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 if TYPE_CHECKING:
     from arm_gazebo.recording.replay import Difference, Replay, ReplayResult
@@ -27,19 +26,17 @@ BLOBS = ("model", "saved")
 _REFUSED = " (refused)"
 
 
-def add_record_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("file", type=Path, help="the file to write; the simulation writes it")
-    parser.add_argument(
+@verb(
+    Argument("file", type=Path, help="the file to write; the simulation writes it"),
+    Argument(
         "--duration",
         metavar="S",
         type=positive_number,
         default=math.inf,
         help="end after this wall time in seconds (default: at Ctrl-C)",
-    )
-    add_namespace_argument(parser)
-
-
+    ),
+    NAMESPACE,
+)
 def record(options: argparse.Namespace) -> None:
     """Record the inputs and states of a running simulation until Ctrl-C.
 
@@ -49,7 +46,7 @@ def record(options: argparse.Namespace) -> None:
     """
     # A relative path is relative to this process, not to the simulation's working folder.
     path = options.file.absolute()
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         simulation.set_parameter(PARAMETER, str(path))
         say(f"recording to {path}; Ctrl-C ends it")
         try:
@@ -73,29 +70,25 @@ def _say_recorded(path: Path) -> None:
         say(f"the recording ended because {end.reason}")
 
 
-def add_replay_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("file", type=Path, help="a recording of arm sim record")
-    parser.add_argument(
+@verb(
+    Argument("file", type=Path, help="a recording of arm sim record"),
+    Argument(
         "--until",
         metavar="TIME",
         type=positive_number,
         help="stop at this simulation time in seconds, and print where the joints are",
-    )
-    parser.add_argument("--inputs", action="store_true", help="print each input and its time")
-    parser.add_argument(
-        "--publish",
-        action="store_true",
-        help="publish clock, joint states and transforms, the last ones until Ctrl-C",
-    )
-    parser.add_argument(
+    ),
+    Flag("--inputs", help="print each input and its time"),
+    Flag(
+        "--publish", help="publish clock, joint states and transforms, the last ones until Ctrl-C"
+    ),
+    Argument(
         "--speed",
         type=positive_number,
         default=1.0,
         help="simulated seconds per second, with --publish (default: 1)",
-    )
-
-
+    ),
+)
 def replay(options: argparse.Namespace) -> int:
     """Run a recording again; return 1 unless every control period is equal.
 
@@ -194,12 +187,10 @@ def _say_joints(run: "Replay") -> None:
         say(f"  {name}: position {position:.6f}, velocity {velocity:.6f}")
 
 
-def add_diff_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("first", type=Path, help="a recording of arm sim record")
-    parser.add_argument("second", type=Path, help="another one")
-
-
+@verb(
+    Argument("first", type=Path, help="a recording of arm sim record"),
+    Argument("second", type=Path, help="another one"),
+)
 def diff(options: argparse.Namespace) -> int:
     """Name the first difference of two recordings; return 1 if there is one.
 
@@ -232,8 +223,3 @@ def _sentences() -> Iterator[None]:
         yield
     except (GazeboError, ArmControlError, DescriptionError) as error:
         raise ArmCliError(str(error)) from error
-
-
-RECORD = VerbFunctions(add_record_arguments, record)
-REPLAY = VerbFunctions(add_replay_arguments, replay)
-DIFF = VerbFunctions(add_diff_arguments, diff)

@@ -1,10 +1,10 @@
 """A client of a simulation's simulation_interfaces services, for the verbs of `arm sim`."""
 
-import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from arm_cli.arguments import Argument
 from arm_cli.errors import NoSuchNameError, SimulationRefusedError
 from arm_cli.names import absolute_name, this_domain
 from arm_cli.ros.connection import connect
@@ -25,15 +25,13 @@ PLAYING, PAUSED = 1, 2
 STATE_NAMES = ("stopped", "playing", "paused", "quitting", "no world", "loading a world")
 
 
-def add_namespace_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the option that selects the simulation."""
-    parser.add_argument(
-        "-n",
-        "--namespace",
-        default="/",
-        metavar="NS",
-        help="namespace of the simulation's services",
-    )
+NAMESPACE = Argument(
+    "-n",
+    "--namespace",
+    default="/",
+    metavar="NS",
+    help="namespace of the simulation's services",
+)
 
 
 class SimulationClient:
@@ -129,13 +127,11 @@ class SimulationClient:
 
 
 @contextmanager
-def ask_simulation(
-    options: argparse.Namespace, *, must_run: bool = False
-) -> Iterator[SimulationClient]:
+def ask_simulation(namespace: str = "/", *, must_run: bool = False) -> Iterator[SimulationClient]:
     """Yield a client of the simulation's services.
 
     Args:
-        options: the verb's, with the namespace.
+        namespace: the namespace of its services.
         must_run: whether to give up as soon as discovery finds no simulation, instead of waiting
             for one that is starting.
 
@@ -144,8 +140,8 @@ def ask_simulation(
     """
     with connect() as session:
         if must_run:
-            _find_simulation(session, options.namespace)
-        yield SimulationClient(session, options.namespace)
+            _find_simulation(session, namespace)
+        yield SimulationClient(session, namespace)
 
 
 def _find_simulation(session: "CommandSession", namespace: str) -> None:

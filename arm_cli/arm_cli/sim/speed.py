@@ -3,21 +3,11 @@
 import argparse
 import math
 
+from arm_cli.arguments import Argument, verb
 from arm_cli.output import say
-from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
+from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 PARAMETER = "real_time_factor"
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument(
-        "factor",
-        nargs="?",
-        type=_factor,
-        help="simulated seconds per second; 0 is as fast as possible (default: print it)",
-    )
-    add_namespace_argument(parser)
 
 
 def _factor(text: str) -> float:
@@ -30,6 +20,15 @@ def _factor(text: str) -> float:
     return factor
 
 
+@verb(
+    Argument(
+        "factor",
+        nargs="?",
+        type=_factor,
+        help="simulated seconds per second; 0 is as fast as possible (default: print it)",
+    ),
+    NAMESPACE,
+)
 def run(options: argparse.Namespace) -> None:
     """Set the factor, or print it.
 
@@ -37,7 +36,7 @@ def run(options: argparse.Namespace) -> None:
         UnansweredError: no simulation answers.
         SimulationRefusedError: it refuses the factor.
     """
-    with ask_simulation(options, must_run=options.factor is None) as simulation:
+    with ask_simulation(options.namespace, must_run=options.factor is None) as simulation:
         if options.factor is None:
             from arm_cli.parameter_values import content_of
 

@@ -2,23 +2,22 @@
 
 import argparse
 
-from arm_cli.output import add_json_argument, print_json, say
-from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
+from arm_cli.arguments import JSON, verb
+from arm_cli.output import print_json, say
+from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_json_argument(parser)
-    add_namespace_argument(parser)
-
-
+@verb(
+    JSON,
+    NAMESPACE,
+)
 def run(options: argparse.Namespace) -> None:
     """Print the figures of the last second or two.
 
     Raises:
         NoSuchNameError: no simulation runs.
     """
-    with ask_simulation(options, must_run=True) as simulation:
+    with ask_simulation(options.namespace, must_run=True) as simulation:
         parts = simulation.statistics()
     if options.json:
         print_json(parts)

@@ -4,36 +4,14 @@ import argparse
 import math
 from typing import TYPE_CHECKING
 
-from arm_cli.sim.simulation import add_namespace_argument, ask_simulation
+from arm_cli.arguments import Argument, Exclusive, Flag, verb
+from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 if TYPE_CHECKING:
     from arm_cli.sim.simulation import SimulationClient
 
 ROUNDING = 1e-6
 """A time this close to the end of a control period, as a fraction of the period, is that end."""
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("count", nargs="?", type=int, help="number of control periods (default 1)")
-    amount = parser.add_mutually_exclusive_group()
-    amount.add_argument(
-        "--seconds",
-        type=_seconds,
-        help="advance by this much simulation time, rounded up to a whole control period",
-    )
-    amount.add_argument(
-        "--until",
-        type=_seconds,
-        metavar="TIME",
-        help="advance to the first control period that ends at or after this simulation time",
-    )
-    parser.add_argument(
-        "--with-sensors",
-        action="store_true",
-        help="take every picture that is due, and wait until all are published",
-    )
-    add_namespace_argument(parser)
 
 
 def _seconds(text: str) -> float:
@@ -46,6 +24,24 @@ def _seconds(text: str) -> float:
     return seconds
 
 
+@verb(
+    Argument("count", nargs="?", type=int, help="number of control periods (default 1)"),
+    Exclusive(
+        Argument(
+            "--seconds",
+            type=_seconds,
+            help="advance by this much simulation time, rounded up to a whole control period",
+        ),
+        Argument(
+            "--until",
+            type=_seconds,
+            metavar="TIME",
+            help="advance to the first control period that ends at or after this simulation time",
+        ),
+    ),
+    Flag("--with-sensors", help="take every picture that is due, and wait until all are published"),
+    NAMESPACE,
+)
 def run(options: argparse.Namespace) -> None:
     """Advance the simulation, and wait until the states of the last step have been published.
 
@@ -55,7 +51,7 @@ def run(options: argparse.Namespace) -> None:
     """
     _check(options)
     service = "step_simulation_with_sensors" if options.with_sensors else "step_simulation"
-    with ask_simulation(options) as simulation:
+    with ask_simulation(options.namespace) as simulation:
         steps = _steps(options, simulation)
         simulation.ask("StepSimulation", service, patiently=True, steps=steps)
 

@@ -4,30 +4,28 @@ import argparse
 import math
 from collections.abc import Iterable
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import JSON, Argument, Flag, positive_number, verb
 from arm_cli.errors import NoSuchNameError
-from arm_cli.output import add_json_argument, print_json, say_document
+from arm_cli.output import print_json, say_document
 from arm_cli.ros.connection import connect
 from arm_cli.tf.frame_log import Lookup
 
 SETTLE_S = 2.0
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("source_frame", help="such as base_link")
-    parser.add_argument("target_frame", help="frame whose pose in the source frame to print")
-    parser.add_argument(
+@verb(
+    Argument("source_frame", help="such as base_link"),
+    Argument("target_frame", help="frame whose pose in the source frame to print"),
+    Argument(
         "rate",
         nargs="?",
         type=positive_number,
         default=1.0,
         help="how often to print, in Hz (default 1)",
-    )
-    parser.add_argument("--once", action="store_true", help="print once and end")
-    add_json_argument(parser)
-
-
+    ),
+    Flag("--once", help="print once and end"),
+    JSON,
+)
 def run(options: argparse.Namespace) -> None:
     """Print the transform repeatedly.
 

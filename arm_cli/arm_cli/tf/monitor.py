@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Iterator
 
+from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError
 from arm_cli.output import say_document
 from arm_cli.ros.connection import connect
@@ -13,13 +14,11 @@ PERIOD_S = 1.0
 SETTLE_S = 2.0
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    parser.add_argument("source_frame", nargs="?", help="with a target: only the frames between")
-    parser.add_argument("target_frame", nargs="?", help="the other end")
-    parser.add_argument("--once", action="store_true", help="print once and end")
-
-
+@verb(
+    Argument("source_frame", nargs="?", help="with a target: only the frames between"),
+    Argument("target_frame", nargs="?", help="the other end"),
+    Flag("--once", help="print once and end"),
+)
 def run(options: argparse.Namespace) -> None:
     """Print the delays every second.
 

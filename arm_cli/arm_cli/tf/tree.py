@@ -4,12 +4,11 @@ import argparse
 import time
 from pathlib import Path
 
-from arm_cli.command_parser import positive_number
+from arm_cli.arguments import JSON, Argument, positive_number, verb
 from arm_cli.graph_files import has_graphviz, write_picture
-from arm_cli.output import add_json_argument, print_json, say
+from arm_cli.output import print_json, say
 from arm_cli.ros.connection import connect
 from arm_cli.tf.frame_log import FrameHistory, FrameLog
-from arm_cli.verb import VerbFunctions
 from arm_node.drawing.digraph import Digraph, Edge, Vertex
 
 TREE_LISTEN_S, VIEW_LISTEN_S = 1.0, 5.0
@@ -18,8 +17,8 @@ BROADCASTER = "default_authority"
 """The name that tf2 gives to every broadcaster on ROS 2."""
 
 
-def _add_wait_time_argument(parser: argparse.ArgumentParser, default_s: float) -> None:
-    parser.add_argument(
+def _wait_time(default_s: float) -> Argument:
+    return Argument(
         "-t",
         "--wait-time",
         type=positive_number,
@@ -29,12 +28,10 @@ def _add_wait_time_argument(parser: argparse.ArgumentParser, default_s: float) -
     )
 
 
-def add_print_tree_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    _add_wait_time_argument(parser, TREE_LISTEN_S)
-    add_json_argument(parser)
-
-
+@verb(
+    _wait_time(TREE_LISTEN_S),
+    JSON,
+)
 def print_tree(options: argparse.Namespace) -> None:
     """Print the tree.
 
@@ -56,14 +53,12 @@ def print_tree(options: argparse.Namespace) -> None:
         say(*log.draw_tree())
 
 
-def add_view_frames_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    _add_wait_time_argument(parser, VIEW_LISTEN_S)
-    parser.add_argument(
+@verb(
+    _wait_time(VIEW_LISTEN_S),
+    Argument(
         "-o", "--output", metavar="STEM", help="file name without suffix (default frames_DATE)"
-    )
-
-
+    ),
+)
 def view_frames(options: argparse.Namespace) -> None:
     """Write the picture and its graphviz source.
 
@@ -116,7 +111,3 @@ def _describe(history: FrameHistory) -> str:
             f"Oldest transform: {oldest:.6f}",
         ]
     )
-
-
-PRINT_TREE = VerbFunctions(add_print_tree_arguments, print_tree)
-VIEW_FRAMES = VerbFunctions(add_view_frames_arguments, view_frames)

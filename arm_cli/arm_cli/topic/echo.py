@@ -6,65 +6,60 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from arm_cli.command_parser import positive_number, positive_whole_number, whole_number
+from arm_cli.arguments import (
+    JSON,
+    Argument,
+    Flag,
+    positive_number,
+    positive_whole_number,
+    verb,
+    whole_number,
+)
 from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.messages.selection import add_filter_argument, message_filter
-from arm_cli.output import add_json_argument, print_json, say, say_document
-from arm_cli.qos_options import add_qos_arguments, qos_choice
+from arm_cli.messages.selection import FILTER, message_filter
+from arm_cli.output import print_json, say, say_document
+from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with, message_names
+from arm_cli.word_completion import message_names
 
 TRUNCATE_LENGTH = 128
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
-    )
-    complete_with(
-        parser.add_argument("message_type", nargs="?", help="default: the topic's own type"),
-        message_names,
-    )
-    parser.add_argument("--once", action="store_true", help="end after one message")
-    parser.add_argument(
-        "-n", "--times", type=positive_whole_number, metavar="N", help="end after N messages"
-    )
-    parser.add_argument(
-        "--timeout", type=positive_number, metavar="SECONDS", help="end after this time"
-    )
-    parser.add_argument("--field", metavar="PATH", help="print only a part, such as pose.position")
-    add_filter_argument(parser)
-    parser.add_argument(
-        "-i", "--include-message-info", action="store_true", help="also print its times and number"
-    )
+@verb(
+    Argument("topic_name", help="such as /joint_states", completer=completers.topics),
+    Argument(
+        "message_type", nargs="?", help="default: the topic's own type", completer=message_names
+    ),
+    Flag("--once", help="end after one message"),
+    Argument("-n", "--times", type=positive_whole_number, metavar="N", help="end after N messages"),
+    Argument("--timeout", type=positive_number, metavar="SECONDS", help="end after this time"),
+    Argument("--field", metavar="PATH", help="print only a part, such as pose.position"),
+    FILTER,
+    Flag("-i", "--include-message-info", help="also print its times and number"),
     # Accepted because command lines for ros2 use them. They are not needed here.
-    for options in (("-s", "--use-sim-time"), ("--no-lost-messages",)):
-        parser.add_argument(*options, action="store_true", help=argparse.SUPPRESS)
-    _add_format_arguments(parser)
-    add_qos_arguments(parser, "a profile that matches the topic's publishers")
-
-
-def _add_format_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--csv", action="store_true", help="print values separated by commas")
-    add_json_argument(parser)
-    parser.add_argument("--raw", action="store_true", help="print the serialized bytes")
-    parser.add_argument("--flow-style", action="store_true", help="print collections in one line")
-    parser.add_argument("--no-arr", action="store_true", help="print placeholders for arrays")
-    parser.add_argument("--no-str", action="store_true", help="print placeholders for strings")
-    parser.add_argument("-f", "--full-length", action="store_true", help="truncate nothing")
-    parser.add_argument(
+    *(
+        Flag(*names, help=argparse.SUPPRESS)
+        for names in (("-s", "--use-sim-time"), ("--no-lost-messages",))
+    ),
+    Flag("--csv", help="print values separated by commas"),
+    JSON,
+    Flag("--raw", help="print the serialized bytes"),
+    Flag("--flow-style", help="print collections in one line"),
+    Flag("--no-arr", help="print placeholders for arrays"),
+    Flag("--no-str", help="print placeholders for strings"),
+    Flag("-f", "--full-length", help="truncate nothing"),
+    Argument(
         "-l",
         "--truncate-length",
         type=whole_number,
         default=TRUNCATE_LENGTH,
         metavar="N",
         help=f"cut longer arrays and strings (default {TRUNCATE_LENGTH})",
-    )
-
-
+    ),
+    qos_arguments("a profile that matches the topic's publishers"),
+)
 def run(options: argparse.Namespace) -> None:
     """Print the messages.
 

@@ -5,15 +5,13 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.command_parser import positive_whole_number
+from arm_cli.arguments import Argument, Flag, positive_whole_number, verb
 from arm_cli.errors import MessageError
-from arm_cli.messages.selection import add_filter_argument, message_filter
+from arm_cli.messages.selection import FILTER, message_filter
 from arm_cli.output import complain, say, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.topic.windows import BandwidthWindow, DelayWindow, RateWindow
-from arm_cli.verb import VerbFunctions
-from arm_cli.word_completion import complete_with
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
@@ -29,21 +27,19 @@ SIMULATED = (
 )
 
 
-def add_measuring_arguments(parser: argparse.ArgumentParser, window: int) -> None:
-    """Add the arguments for the topic, the window and the clock."""
-    complete_with(
-        parser.add_argument("topic_name", help="such as /joint_states"), completers.topics
-    )
-    parser.add_argument(
-        "-w",
-        "--window",
-        type=positive_whole_number,
-        default=window,
-        metavar="N",
-        help=f"number of messages to look back at (default {window})",
-    )
-    parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="use /clock instead of the wall clock"
+def _measured(window: int) -> tuple[Argument, ...]:
+    """Return the arguments for the topic, the window and the clock."""
+    return (
+        Argument("topic_name", completer=completers.topics, help="such as /joint_states"),
+        Argument(
+            "-w",
+            "--window",
+            type=positive_whole_number,
+            default=window,
+            metavar="N",
+            help=f"number of messages to look back at (default {window})",
+        ),
+        Flag("-s", "--use-sim-time", help="use /clock instead of the wall clock"),
     )
 
 
@@ -73,18 +69,16 @@ def report_every_second(
             reported = count
 
 
-def add_hz_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_measuring_arguments(parser, MANY_MESSAGES)
-    parser.add_argument(
+@verb(
+    *_measured(MANY_MESSAGES),
+    Argument(
         "--wall-time",
         dest="use_sim_time",
         action="store_false",
         help="use the wall clock (default)",
-    )
-    add_filter_argument(parser)
-
-
+    ),
+    FILTER,
+)
 def hz(options: argparse.Namespace) -> None:
     """Print the rate every second.
 
@@ -109,11 +103,9 @@ def hz(options: argparse.Namespace) -> None:
         report_every_second(session, window.describe, listener.silence, lambda: window.taken)
 
 
-def add_bw_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_measuring_arguments(parser, FEW_MESSAGES)
-
-
+@verb(
+    *_measured(FEW_MESSAGES),
+)
 def bw(options: argparse.Namespace) -> None:
     """Print the bandwidth every second.
 
@@ -135,11 +127,9 @@ def bw(options: argparse.Namespace) -> None:
         report_every_second(session, lambda: window.describe(clock()), listener.silence)
 
 
-def add_delay_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    add_measuring_arguments(parser, MANY_MESSAGES)
-
-
+@verb(
+    *_measured(MANY_MESSAGES),
+)
 def delay(options: argparse.Namespace) -> None:
     """Print the age of the stamps on arrival, every second.
 
@@ -165,8 +155,3 @@ def delay(options: argparse.Namespace) -> None:
 
         listener.subscribe(message_class, take)
         report_every_second(session, window.describe, listener.silence, lambda: window.taken)
-
-
-HZ = VerbFunctions(add_hz_arguments, hz)
-BW = VerbFunctions(add_bw_arguments, bw)
-DELAY = VerbFunctions(add_delay_arguments, delay)

@@ -7,20 +7,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.command_parser import (
+from arm_cli.arguments import (
+    Argument,
+    Exclusive,
+    Flag,
     node_name,
     positive_number,
     positive_number_or_zero,
     positive_whole_number,
+    verb,
     whole_number,
 )
 from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError, UnansweredError
 from arm_cli.interfaces.index import InterfaceIndex, InterfaceType, load_class
 from arm_cli.output import complain, say, say_document
-from arm_cli.qos_options import add_qos_arguments, qos_choice
+from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.word_completion import complete_with, message_names
+from arm_cli.word_completion import message_names
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
 
@@ -33,75 +37,61 @@ AFTER_MATCH_S = 0.4
 """How long to wait after a match, because messages sent at that very moment may be lost."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the verb's arguments."""
-    complete_with(
-        parser.add_argument("topic_name", help="such as /position_controller/commands"),
-        completers.topics,
-    )
-    complete_with(
-        parser.add_argument("message_type", help="such as std_msgs/msg/Float64MultiArray"),
-        message_names,
-    )
-    parser.add_argument(
-        "values", nargs="?", default="", help="fields as YAML, such as 'data: [0.0, 0.5]'"
-    )
-    parser.add_argument("--stdin", action="store_true", help="read the values from stdin")
-    parser.add_argument(
+@verb(
+    Argument(
+        "topic_name", help="such as /position_controller/commands", completer=completers.topics
+    ),
+    Argument(
+        "message_type", help="such as std_msgs/msg/Float64MultiArray", completer=message_names
+    ),
+    Argument("values", nargs="?", default="", help="fields as YAML, such as 'data: [0.0, 0.5]'"),
+    Flag("--stdin", help="read the values from stdin"),
+    Argument(
         "--yaml-file",
         metavar="FILE",
         help="publish the messages in a file, one after another, in the form of `arm topic echo`",
-    )
-    _add_pace_arguments(parser)
-    parser.add_argument(
-        "-n", "--node-name", type=node_name, metavar="NAME", help="name of the publishing node"
-    )
-    parser.add_argument(
-        "-s", "--use-sim-time", action="store_true", help="let 'auto' and 'now' use /clock"
-    )
-    add_qos_arguments(parser, "reliable, volatile, the last 10")
-
-
-def _add_pace_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say when and how often to publish, and what to wait for."""
-    parser.add_argument(
-        "-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"
-    )
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument("-1", "--once", action="store_true", help="publish once and end")
-    group.add_argument(
-        "-t", "--times", type=positive_whole_number, metavar="N", help="publish N times and end"
-    )
-    parser.add_argument(
+    ),
+    Argument("-r", "--rate", type=positive_number, default=1.0, metavar="HZ", help="default 1 Hz"),
+    Exclusive(
+        Flag("-1", "--once", help="publish once and end"),
+        Argument(
+            "-t", "--times", type=positive_whole_number, metavar="N", help="publish N times and end"
+        ),
+    ),
+    Argument(
         "-w",
         "--wait-matching-subscriptions",
         type=whole_number,
         metavar="N",
         help="wait for N matching subscriptions (default 1 with --once or --times, else 0)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--max-wait-time-secs",
         type=positive_number,
         metavar="SECONDS",
         help="how long to wait for them (default: forever)",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "-p",
         "--print",
         type=whole_number,
         default=1,
         metavar="N",
         help="print only every Nth message; 0 prints none",
-    )
-    parser.add_argument(
+    ),
+    Argument(
         "--keep-alive",
         type=positive_number_or_zero,
         default=KEEP_ALIVE_S,
         metavar="SECONDS",
         help=f"how long to stay after the last message has arrived (default {KEEP_ALIVE_S})",
-    )
-
-
+    ),
+    Argument(
+        "-n", "--node-name", type=node_name, metavar="NAME", help="name of the publishing node"
+    ),
+    Flag("-s", "--use-sim-time", help="let 'auto' and 'now' use /clock"),
+    qos_arguments("reliable, volatile, the last 10"),
+)
 def run(options: argparse.Namespace) -> None:
     """Publish the messages.
 

@@ -46,9 +46,9 @@ class Manager:
 
 def printed(capsys, monkeypatch, controllers, *words):
     parser = argparse.ArgumentParser()
-    listing.LIST_CONTROLLERS.add_arguments(parser)
+    listing.list_controllers.add_arguments(parser)
     monkeypatch.setattr(listing, "ask_manager", lambda _: Manager(controllers))
-    listing.LIST_CONTROLLERS.run(parser.parse_args(words))
+    listing.list_controllers.run(parser.parse_args(words))
     return capsys.readouterr().out
 
 

@@ -69,7 +69,7 @@ def test_now_in_a_request_is_the_time_of_each_call(monkeypatch):
     monkeypatch.setattr(call, "_wait_for_server", lambda *_: None)
     words = ["/x", "control_msgs/srv/QueryTrajectoryState", "time: now", "-r", "9"]
     with pytest.raises(Stop):
-        call.run(parsed(call, *words))
+        call.run.run(parsed(call.run, *words))
     assert session.sent == [Time(sec=7), Time(sec=8)]
 
 
@@ -96,7 +96,7 @@ def two_nodes(monkeypatch):
 
 @pytest.mark.usefixtures("two_nodes")
 def test_a_silent_node_does_not_hide_the_other_nodes_states(capsys):
-    lifecycle_verbs.GET_STATE.run(parsed(lifecycle_verbs.GET_STATE))
+    lifecycle_verbs.get_state.run(parsed(lifecycle_verbs.get_state))
     printed = capsys.readouterr()
     assert printed.out == "/well: active [3]\n"
     assert printed.err == "arm lifecycle get: no answer from /stuck/get_state\n"
@@ -105,4 +105,4 @@ def test_a_silent_node_does_not_hide_the_other_nodes_states(capsys):
 @pytest.mark.usefixtures("two_nodes")
 def test_a_named_node_must_answer():
     with pytest.raises(UnansweredError, match="no answer from /stuck/get_state"):
-        lifecycle_verbs.GET_STATE.run(parsed(lifecycle_verbs.GET_STATE, "stuck"))
+        lifecycle_verbs.get_state.run(parsed(lifecycle_verbs.get_state, "stuck"))

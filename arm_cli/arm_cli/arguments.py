@@ -1,9 +1,17 @@
-"""The argument parser of every verb: errors are one sentence and suggest similar names."""
+"""The arguments of verbs: how a verb declares them, their parser, and types of their values.
+
+    @verb(Argument("topic_name", completer=completers.topics, help="such as /joint_states"), JSON)
+    def info(options: argparse.Namespace) -> None:
+        ...
+
+The parser's errors are one sentence and suggest similar names.
+"""
 
 import argparse
 import re
-from collections.abc import Sequence
-from typing import Any, NoReturn
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn, Protocol
 
 from arm_node.printable import printable
 
@@ -15,6 +23,107 @@ LARGEST_WHOLE_NUMBER = 2**63 - 1
 
 _OF_ANY_LENGTH = (argparse.ZERO_OR_MORE, argparse.REMAINDER)
 """Positional arguments that argparse names as required, although it accepts none."""
+
+
+Completer = Callable[..., Iterable[str]]
+"""Returns the possible words of an argument, for the Tab key; see `arm_cli.word_completion`."""
+
+
+class _Container(Protocol):
+    """A parser, or a group of its arguments."""
+
+    def add_argument(self, *names: str, **settings: Any) -> argparse.Action: ...
+
+
+class Declaration(Protocol):
+    """What a verb declares: an argument, or a group of them."""
+
+    def add_to(self, parser: argparse.ArgumentParser) -> None:
+        """Add it to the verb's parser."""
+        ...
+
+
+class Argument:
+    """An argument of a verb.
+
+    Args:
+        names: as for `argparse.ArgumentParser.add_argument`.
+        completer: completes its value; None completes nothing.
+        settings: as for `add_argument`.
+    """
+
+    def __init__(self, *names: str, completer: Completer | None = None, **settings: Any) -> None:
+        self._names, self._completer, self._settings = names, completer, settings
+
+    def add_to(self, parser: _Container) -> None:
+        """Add it to a parser or to a group."""
+        action = parser.add_argument(*self._names, **self._settings)
+        if self._completer is not None:
+            action.completer = self._completer  # pyright: ignore[reportAttributeAccessIssue]
+
+
+class Flag(Argument):
+    """An option without a value: true if it is given."""
+
+    def __init__(self, *names: str, **settings: Any) -> None:
+        super().__init__(*names, action="store_true", **settings)
+
+
+class Group:
+    """Arguments below a heading of their own in the help."""
+
+    def __init__(self, title: str, *arguments: Argument, description: str | None = None) -> None:
+        self._title, self._description, self._arguments = title, description, arguments
+
+    def add_to(self, parser: argparse.ArgumentParser) -> None:
+        """Add the group."""
+        group = parser.add_argument_group(self._title, self._description)
+        for argument in self._arguments:
+            argument.add_to(group)
+
+
+class Exclusive:
+    """Arguments that exclude each other."""
+
+    def __init__(self, *arguments: Argument) -> None:
+        self._arguments = arguments
+
+    def add_to(self, parser: argparse.ArgumentParser) -> None:
+        """Add the arguments."""
+        group = parser.add_mutually_exclusive_group()
+        for argument in self._arguments:
+            argument.add_to(group)
+
+
+JSON = Flag("--json", help="print JSON, for scripts")
+
+Run = Callable[[argparse.Namespace], int | None]
+"""Runs a verb; its result is the exit code, None for 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class VerbFunction:
+    """The function that runs a verb, with the verb's arguments."""
+
+    run: Run
+    arguments: Sequence[Declaration]
+    epilog: str | None
+
+    def add_arguments(self, parser: argparse.ArgumentParser) -> None:
+        """Add the arguments to a parser."""
+        for argument in self.arguments:
+            argument.add_to(parser)
+        parser.epilog = self.epilog
+
+
+def verb(*arguments: Declaration, epilog: str | None = None) -> Callable[[Run], VerbFunction]:
+    """Declare a verb: decorates the function that runs it.
+
+    Args:
+        arguments: its arguments, in the order of the help.
+        epilog: the text at the end of the help.
+    """
+    return lambda run: VerbFunction(run, arguments, epilog)
 
 
 class CommandParser(argparse.ArgumentParser):
