@@ -118,8 +118,8 @@ def cost(name: str, message: object, count: int, compression: str) -> harness.Ro
     """Measure the writer's processor time for a message of a kind."""
     from rclpy.serialization import serialize_message
 
-    from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
-    from arm_cli.bag.bag_writer import BagSettings, BagWriter
+    from arm_cli.bag_format.topic import BagMessage, BagTopic, TypeDefinition
+    from arm_cli.bag_format.writer import BagSettings, BagWriter
 
     data = serialize_message(message)
     with tempfile.TemporaryDirectory() as folder:

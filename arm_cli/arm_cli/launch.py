@@ -50,7 +50,7 @@ WORLD = "world"
 """The argument that takes the name of a shipped world, or the path of a file."""
 
 
-def run(argv: Sequence[str]) -> int:
+def launch(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
     # Imported only here, because Tab completion does not need it.
     from launch_py.supervision.terminal_key import KeyCommand

@@ -49,8 +49,8 @@ class Verb:
     Attributes:
         name: the word on the command line.
         help: one line of help.
-        where: the function that `arm_cli.arguments.verb` decorates: "MODULE:FUNCTION", or "MODULE"
-            for its function `run`, with the module's name within arm_cli.
+        where: the module within arm_cli whose function of the verb's name runs it; for another
+            name "MODULE:FUNCTION". `arm_cli.arguments.verb` decorates the function.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Verb:
     def load(self) -> "VerbFunction":
         """Import the verb's module; return its function."""
         module, _, name = self.where.partition(":")
-        return getattr(import_module(f"arm_cli.{module}"), name or "run")
+        return getattr(import_module(f"arm_cli.{module}"), name or self.name)
 
     def arguments(self) -> "Sequence[Declaration]":
         """Return the verb's arguments."""
@@ -85,7 +85,8 @@ class Verb:
 class PlainVerb:
     """A verb that parses its words itself.
 
-    Its module within arm_cli defines `run(words) -> int`, and `ARGUMENTS` for the Tab key.
+    Its module within arm_cli has a function of the verb's name, `(words) -> int`, and maybe
+    `ARGUMENTS`, for the Tab key.
     """
 
     name: str
@@ -98,7 +99,8 @@ class PlainVerb:
 
     def run(self, program: str, words: Sequence[str]) -> int:
         """Run it with the words after the verb; return the exit code."""
-        run = cast("Callable[[Sequence[str]], int]", import_module(f"arm_cli.{self.module}").run)
+        module = import_module(f"arm_cli.{self.module}")
+        run = cast("Callable[[Sequence[str]], int]", getattr(module, self.name))
         return run_reporting_errors(program, lambda: run(words))
 
 

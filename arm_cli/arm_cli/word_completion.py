@@ -28,21 +28,21 @@ def complete_words() -> None:
 
 def interface_names(**_: Any) -> list[str]:
     """Return the installed types."""
-    from arm_cli.interfaces.index import InterfaceIndex
+    from arm_cli.interface_types import InterfaceIndex
 
     return [type_.full_name for type_ in InterfaceIndex().types()]
 
 
 def message_names(**_: Any) -> list[str]:
     """Return the installed message types."""
-    from arm_cli.interfaces.index import InterfaceIndex
+    from arm_cli.interface_types import InterfaceIndex
 
     return [type_.full_name for type_ in InterfaceIndex().types(("msg",))]
 
 
 def interface_packages(**_: Any) -> list[str]:
     """Return the packages that define types."""
-    from arm_cli.interfaces.index import InterfaceIndex
+    from arm_cli.interface_types import InterfaceIndex
 
     return InterfaceIndex().packages()
 
@@ -89,7 +89,7 @@ def _add_verbs(parser: argparse.ArgumentParser, verbs: Iterable[Any], typed: Seq
     epilog="To install it, add 'eval \"$(arm completion bash)\"' to ~/.bashrc, the same with zsh "
     "to ~/.zshrc, or 'arm completion fish | source' to ~/.config/fish/config.fish.",
 )
-def print_script(options: argparse.Namespace) -> None:
+def completion(options: argparse.Namespace) -> None:
     """Print the script."""
     from argcomplete.shell_integration import shellcode
 

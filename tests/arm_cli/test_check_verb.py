@@ -203,7 +203,7 @@ def test_a_xacro_that_takes_all_memory_is_reported(tmp_path, capsys):
 
 
 def test_a_check_process_that_ends_early_is_reported(arm, capsys, monkeypatch):
-    monkeypatch.setattr("arm_cli.check_verb.MODULE", "arm_cli.no_such_module")
+    monkeypatch.setattr("arm_cli.check.MODULE", "arm_cli.no_such_module")
     assert main(["check", str(arm)]) == 1
     assert "the process of the check ended with exit code 1" in capsys.readouterr().err
 

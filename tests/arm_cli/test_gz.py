@@ -5,9 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from arm_cli.gz import sim
-from arm_cli.gz.model import pose_lines
-from arm_cli.gz.protobuf_text import pose_of, text_of, time_of
+from arm_cli.gz import pose_lines, pose_of, text_of, time_of
 from arm_cli.main import main
 from arm_cli.verbs import GZ
 
@@ -51,7 +49,7 @@ def test_a_model_s_pose_is_printed_as_gz_does():
 )
 def test_sim_launches_a_world_with_the_page(monkeypatch, words, launched):
     lines: list[list[str]] = []
-    monkeypatch.setattr(sim, "launch", lambda line: lines.append(list(line)) or 0)
+    monkeypatch.setattr("arm_cli.launch.launch", lambda line: lines.append(list(line)) or 0)
     assert main(["gz", "sim", *words]) == 0
     assert lines == [["ros_gz_sim", "gz_sim.launch.py", *launched]]
 

@@ -7,11 +7,11 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
 
-from arm_cli.bag.bag_topic import BagTopic, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.bag_format.topic import BagTopic, find_definition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
-from arm_cli.messages.selection import FieldPath
+from arm_cli.messages.fields import FieldPath
 from arm_cli.messages.text import COMPLETE
 from arm_cli.output import colour, complain, print_json, say, say_document
 from arm_cli.topic.echo import MessagePrinter

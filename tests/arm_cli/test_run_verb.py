@@ -8,7 +8,7 @@ import pytest
 
 from arm_cli.errors import NoSuchNameError
 from arm_cli.main import main
-from arm_cli.run_verb import find_command
+from arm_cli.run import find_command
 
 
 def test_run_replaces_the_process_by_the_executable(monkeypatch):

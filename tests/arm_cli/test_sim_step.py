@@ -5,7 +5,7 @@ import argparse
 import pytest
 
 from arm_cli.errors import CommandUsageError, SimulationRefusedError
-from arm_cli.sim import step
+from arm_cli.sim import changing
 
 
 class Paused:
@@ -35,10 +35,10 @@ def ask(monkeypatch):
 
     def run(*words: str, now_s: float = 0.0, period_s: float = 0.01) -> list[tuple[str, int]]:
         simulation = Paused(now_s, period_s)
-        monkeypatch.setattr(step, "ask_simulation", lambda _namespace: simulation)
+        monkeypatch.setattr(changing, "ask_simulation", lambda _namespace: simulation)
         parser = argparse.ArgumentParser()
-        step.run.add_arguments(parser)
-        step.run.run(parser.parse_args(words))
+        changing.step.add_arguments(parser)
+        changing.step.run(parser.parse_args(words))
         return simulation.asked
 
     return run

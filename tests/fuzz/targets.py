@@ -127,7 +127,7 @@ def _read_yaml(folder: Path, name: str, data: bytes) -> bool:
 
 
 def _read_bag(folder: Path, name: str, data: bytes) -> bool:
-    from arm_cli.bag.bag_reader import BagReader
+    from arm_cli.bag_format.reader import BagReader
 
     with BagReader(seeds.write(folder, name, data)) as bag:
         for _ in bag.messages([topic.name for topic in bag.topics]):

@@ -14,7 +14,7 @@ from arm_cli.output import print_json, say
 
 
 @verb(Argument("bag", type=Path, help="folder of the bag"), JSON)
-def run(options: argparse.Namespace) -> None:
+def size(options: argparse.Namespace) -> None:
     """Print the size.
 
     Raises:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from arm_cli.doctor.diagnosis import Severity
-from arm_cli.doctor.listening import check_listening, find_listeners
+from arm_cli.doctor.network import check_listening, find_listeners
 from launch_py.system.child_environment import PROFILE, dds_profile
 
 pytestmark = pytest.mark.ros

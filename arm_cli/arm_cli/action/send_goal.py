@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Flag, positive_number, verb
 from arm_cli.errors import CommandUsageError, UnansweredError
-from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.interface_types import InterfaceIndex, load_class
 from arm_cli.output import complain, say
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
         help="how long to wait for a server, and how long a goal may take before it is cancelled",
     ),
 )
-def run(options: argparse.Namespace) -> None:
+def send_goal(options: argparse.Namespace) -> None:
     """Send the goal and print its progress and result; Ctrl-C cancels it.
 
     Raises:

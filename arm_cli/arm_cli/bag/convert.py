@@ -14,10 +14,10 @@ from arm_cli.errors import BagError
 from arm_cli.output import say
 
 if TYPE_CHECKING:
-    from arm_cli.bag.bag_reader import BagReader
-    from arm_cli.bag.bag_topic import BagMessage, BagTopic, RecordedTopic
-    from arm_cli.bag.bag_writer import BagSettings
     from arm_cli.bag.topic_selection import TopicSelection
+    from arm_cli.bag_format.reader import BagReader
+    from arm_cli.bag_format.topic import BagMessage, BagTopic, RecordedTopic
+    from arm_cli.bag_format.writer import BagSettings
 
 KEYS = (
     "uri",
@@ -72,7 +72,7 @@ def convert(options: argparse.Namespace) -> None:
     Raises:
         BagError: a bag or the options file cannot be read, or a bag cannot be written.
     """
-    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
+    from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 
     outputs = read_outputs(Path(options.output_options))
     with ExitStack() as opened:
@@ -101,7 +101,7 @@ def read_outputs(path: Path) -> list[Output]:
     Raises:
         BagError: the file cannot be read, or holds an unknown option or value.
     """
-    from arm_cli.bag.yaml_text import load_yaml
+    from arm_cli.bag_format.yaml_text import load_yaml
     from arm_node.user_file import read_text
 
     try:
@@ -115,8 +115,8 @@ def read_outputs(path: Path) -> list[Output]:
 
 
 def _output(plain: Any, where: str) -> Output:
-    from arm_cli.bag.bag_writer import BagSettings
     from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
+    from arm_cli.bag_format.writer import BagSettings
     from arm_node.names import describe_known
 
     if not isinstance(plain, dict) or not isinstance(plain.get("uri"), str):
@@ -166,7 +166,7 @@ def _names(plain: Mapping[str, Any], key: str, where: str) -> list[str]:
 
 def _write(output: Output, readers: list["BagReader"]) -> int:
     """Write one bag; return the number of its messages."""
-    from arm_cli.bag.bag_writer import BagWriter
+    from arm_cli.bag_format.writer import BagWriter
 
     topics = _wanted(output, readers)
     for reader in readers:
@@ -230,8 +230,8 @@ def reindex(options: argparse.Namespace) -> None:
     Raises:
         BagError: there are no files, the files cannot be read, or metadata.yaml cannot be written.
     """
-    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
-    from arm_cli.bag.bag_writer import write_metadata
+    from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
+    from arm_cli.bag_format.writer import write_metadata
 
     with BagReader(options.bag_path, by_metadata=False) as reader:
         warn_if_unfinished(reader, "arm bag reindex")

@@ -11,8 +11,8 @@ from arm_cli.output import print_json, say, say_document
 from arm_node.printable import printable
 
 if TYPE_CHECKING:
-    from arm_cli.bag.bag_metadata import BagMetadata
-    from arm_cli.bag.bag_reader import BagReader
+    from arm_cli.bag_format.metadata import BagMetadata
+    from arm_cli.bag_format.reader import BagReader
 
 SORTINGS = ("name", "type", "count")
 
@@ -50,7 +50,7 @@ def info(options: argparse.Namespace) -> None:
     Raises:
         BagError: the bag cannot be read.
     """
-    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
+    from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 
     with BagReader(options.bag_path) as reader:
         warn_if_unfinished(reader, "arm bag info")
@@ -155,9 +155,7 @@ def _point(time_ns: int) -> str:
     return f"{time.strftime('%b %e %Y', local)} {clock} ({_seconds(time_ns)})"
 
 
-@verb(
-    Argument("plugin_type", choices=tuple(PLUGINS), help="what to list"),
-)
+@verb(Argument("plugin_type", choices=tuple(PLUGINS), help="what to list"))
 def list_plugins(options: argparse.Namespace) -> None:
     """Print the names."""
     say(*PLUGINS[options.plugin_type])

@@ -22,9 +22,9 @@ from arm_cli.ros.connection import connect
 from arm_node.names import describe_known
 
 if TYPE_CHECKING:
-    from arm_cli.bag.bag_reader import BagReader
-    from arm_cli.bag.bag_topic import RecordedTopic
     from arm_cli.bag.ros_player import BagPlayer
+    from arm_cli.bag_format.reader import BagReader
+    from arm_cli.bag_format.topic import RecordedTopic
 
 CLOCK_HZ = 40.0
 READ_AHEAD = 1000
@@ -106,7 +106,7 @@ def _duration(text: str) -> float:
     # Accepted because command lines for ros2 use it. There are no keyboard controls here.
     Flag("--disable-keyboard-controls", help=argparse.SUPPRESS),
 )
-def run(options: argparse.Namespace) -> None:
+def play(options: argparse.Namespace) -> None:
     """Play until the end or until a signal arrives.
 
     Raises:
@@ -114,8 +114,8 @@ def run(options: argparse.Namespace) -> None:
         BagError: the bag or the overrides cannot be read, or there is nothing to play.
         CommandUsageError: a remapping is not of the form OLD:=NEW.
     """
-    from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
-    from arm_cli.bag.offered_qos import read_qos_overrides
+    from arm_cli.bag_format.offered_qos import read_qos_overrides
+    from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 
     names = _remapped_names(options.remap)
     overrides = read_qos_overrides(options.qos_profile_overrides_path)
@@ -148,7 +148,7 @@ def _play_once(
     extent_ns: tuple[int, int],
     options: argparse.Namespace,
 ) -> None:
-    from arm_cli.bag.playback import PlaySchedule, ReadAhead
+    from arm_cli.bag.ros_player import PlaySchedule, ReadAhead
 
     start_ns, end_ns = extent_ns
     found = reader.messages(topics, start_ns)

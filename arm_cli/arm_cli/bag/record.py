@@ -24,9 +24,9 @@ from arm_cli.ros.connection import connect
 if TYPE_CHECKING:
     from collections import Counter
 
-    from arm_cli.bag.bag_metadata import BagMetadata
-    from arm_cli.bag.bag_writer import BagSettings
     from arm_cli.bag.topic_selection import TopicSelection
+    from arm_cli.bag_format.metadata import BagMetadata
+    from arm_cli.bag_format.writer import BagSettings
 
 CACHE_BYTES = 100 * 1024 * 1024
 POLL_MS = 100
@@ -137,7 +137,7 @@ _PRESETS = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_smal
         help=f"name of the recording node (default {NODE_NAME})",
     ),
 )
-def run(options: argparse.Namespace) -> None:
+def record(options: argparse.Namespace) -> None:
     """Record until a signal arrives.
 
     Raises:
@@ -150,14 +150,14 @@ def run(options: argparse.Namespace) -> None:
             f"with: timeout {options.duration} arm bag record ...; --max-bag-duration only begins "
             "a new file"
         )
-    from arm_cli.bag.offered_qos import read_qos_overrides
+    from arm_cli.bag_format.offered_qos import read_qos_overrides
 
     selection = _selection(options)
     overrides = read_qos_overrides(options.qos_profile_overrides_path)
     settings = _settings(options)
     folder = Path(options.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
-    from arm_cli.bag.bag_writer import BagWriter
-    from arm_cli.bag.recording import Recording
+    from arm_cli.bag.ros_recorder import Recording
+    from arm_cli.bag_format.writer import BagWriter
 
     with connect(options.node_name, options.use_sim_time) as session:
         from arm_cli.bag.ros_recorder import BagRecorder
@@ -206,7 +206,7 @@ def _selection(options: argparse.Namespace) -> "TopicSelection":
 
 
 def _settings(options: argparse.Namespace) -> "BagSettings":
-    from arm_cli.bag.bag_writer import BagSettings
+    from arm_cli.bag_format.writer import BagSettings
 
     if options.compression_mode != "none" and options.compression is None:
         raise BagError("--compression-mode needs a --compression-format: lz4 or zstd")

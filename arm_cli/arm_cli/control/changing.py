@@ -86,10 +86,7 @@ def _give_parameters(manager: "ControllerManagerClient", options: argparse.Names
     return manager.set_parameters(parameters) if parameters else ""
 
 
-@verb(
-    CONTROLLER,
-    *MANAGER,
-)
+@verb(CONTROLLER, *MANAGER)
 def unload_controller(options: argparse.Namespace) -> int:
     """Unload the controller; the exit code is 1 if that fails.
 
@@ -105,10 +102,7 @@ def unload_controller(options: argparse.Namespace) -> int:
     return 0
 
 
-@verb(
-    CONTROLLER,
-    *MANAGER,
-)
+@verb(CONTROLLER, *MANAGER)
 def cleanup_controller(options: argparse.Namespace) -> int:
     """Clean up the controller; the exit code is 1 if that fails.
 
@@ -126,11 +120,7 @@ def cleanup_controller(options: argparse.Namespace) -> int:
     return 0
 
 
-@verb(
-    CONTROLLER,
-    Argument("state", choices=("unconfigured", "inactive", "active")),
-    *MANAGER,
-)
+@verb(CONTROLLER, Argument("state", choices=("unconfigured", "inactive", "active")), *MANAGER)
 def set_controller_state(options: argparse.Namespace) -> int:
     """Bring the controller to the state; the exit code is 1 if that fails.
 
@@ -209,10 +199,7 @@ def switch_controllers(options: argparse.Namespace) -> int:
     return 0 if response.ok else 1
 
 
-@verb(
-    Flag("--force-kill", help="deactivate and unload controllers first"),
-    *MANAGER,
-)
+@verb(Flag("--force-kill", help="deactivate and unload controllers first"), *MANAGER)
 def reload_controller_libraries(options: argparse.Namespace) -> int:
     """Reload the controllers' code; the exit code is 1 if that fails.
 

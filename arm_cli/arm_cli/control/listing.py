@@ -1,7 +1,8 @@
-"""`arm control list_*`: controllers and hardware, with their types, states and interfaces."""
+"""`arm control list_*` and `view_controller_chains`: controllers and hardware, listed and drawn."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 from arm_cli.arguments import JSON, Flag, verb
@@ -14,7 +15,9 @@ from arm_cli.control.manager import (
     plain,
     state_colour,
 )
+from arm_cli.graph_files import write_picture
 from arm_cli.output import colour, print_json, say, say_coloured
+from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
 from arm_node.printable import printable
 
 _PARTS: dict[str, tuple[str, Callable[[Any], Iterable[str]]]] = {
@@ -90,10 +93,7 @@ def _is_wanted(part: str, options: argparse.Namespace) -> bool:
     return options.verbose or with_references or getattr(options, part)
 
 
-@verb(
-    JSON,
-    *MANAGER,
-)
+@verb(JSON, *MANAGER)
 def list_controller_types(options: argparse.Namespace) -> None:
     """Print the types and their base classes.
 
@@ -109,11 +109,7 @@ def list_controller_types(options: argparse.Namespace) -> None:
         say(f"{name:<{TYPE_WIDTH}} {base}")
 
 
-@verb(
-    Flag("-v", "--verbose", help="also show state interfaces and data types"),
-    JSON,
-    *MANAGER,
-)
+@verb(Flag("-v", "--verbose", help="also show state interfaces and data types"), JSON, *MANAGER)
 def list_hardware_components(options: argparse.Namespace) -> None:
     """Print the components.
 
@@ -165,10 +161,7 @@ def claimed(interface: Any) -> str:
     return colour(GOOD, "[claimed]") if interface.is_claimed else "[unclaimed]"
 
 
-@verb(
-    JSON,
-    *MANAGER,
-)
+@verb(JSON, *MANAGER)
 def list_hardware_interfaces(options: argparse.Namespace) -> None:
     """Print the interfaces, sorted.
 
@@ -188,3 +181,52 @@ def list_hardware_interfaces(options: argparse.Namespace) -> None:
     say("state interfaces")
     for interface in sorted(interfaces.state_interfaces, key=lambda i: i.name):
         say(f"\t{interface.name}")
+
+
+STEM = "controller_diagram"
+STATES, COMMANDS = "state interfaces", "command interfaces"
+
+
+@verb(Flag("--save", help="accepted; the picture is always saved"), *MANAGER)
+def view_controller_chains(options: argparse.Namespace) -> None:
+    """Write the picture and its graphviz source.
+
+    Raises:
+        UnansweredError: the manager does not answer.
+        CommandUsageError: the file cannot be written.
+    """
+    with ask_manager(options) as manager:
+        controllers = manager.controllers()
+    path = write_picture(controller_graph(controllers), Path(STEM))
+    say(f"Saved controller diagram to {path.absolute()}")
+
+
+def controller_graph(controllers: list[Any]) -> Digraph:
+    """Return the graph: hardware states, controllers, hardware commands, from left to right.
+
+    An interface that another controller exports links the two controllers.
+    """
+    exporters = {
+        f"{controller.name}/{interface}": controller.name
+        for controller in controllers
+        for interface in (*controller.reference_interfaces, *controller.exported_state_interfaces)
+    }
+    vertices = [Vertex(STATES, f"hw {STATES}", Shape.BOX)]
+    edges = []
+    for controller in controllers:
+        vertices.append(Vertex(controller.name, f"{controller.name}\n{controller.state}"))
+        for source, names in _grouped(controller.required_state_interfaces, exporters, STATES):
+            edges.append(Edge(source, controller.name, "\n".join(names)))
+        for target, names in _grouped(controller.required_command_interfaces, exporters, COMMANDS):
+            edges.append(Edge(controller.name, target, "\n".join(names)))
+    vertices.append(Vertex(COMMANDS, f"hw {COMMANDS}", Shape.BOX))
+    return Digraph(tuple(vertices), tuple(edges))
+
+
+def _grouped(
+    interfaces: list[str], exporters: dict[str, str], hardware: str
+) -> list[tuple[str, list[str]]]:
+    groups: dict[str, list[str]] = {}
+    for interface in sorted(interfaces):
+        groups.setdefault(exporters.get(interface, hardware), []).append(interface)
+    return list(groups.items())

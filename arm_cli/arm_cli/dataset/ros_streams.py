@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
-from arm_cli.bag.bag_reader import BagReader
-from arm_cli.bag.bag_topic import BagTopic
+from arm_cli.bag_format.reader import BagReader
+from arm_cli.bag_format.topic import BagTopic
 from arm_cli.dataset.selection import (
     COMMANDS,
     COMPRESSED,
@@ -18,7 +18,7 @@ from arm_cli.dataset.selection import (
     DatasetOptions,
 )
 from arm_cli.errors import BagError
-from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.interface_types import InterfaceIndex, load_class
 from arm_sim.dataset import CameraStream, Samples
 
 Stamps = NDArray[np.int64]

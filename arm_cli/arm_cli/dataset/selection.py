@@ -9,7 +9,7 @@ from arm_cli.arguments import Argument, Group, positive_whole_number
 from arm_cli.errors import BagError
 
 if TYPE_CHECKING:
-    from arm_cli.bag.bag_topic import BagTopic
+    from arm_cli.bag_format.topic import BagTopic
 
 JOINT_STATE = "sensor_msgs/msg/JointState"
 COMMANDS = "std_msgs/msg/Float64MultiArray"

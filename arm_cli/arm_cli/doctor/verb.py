@@ -10,28 +10,26 @@ from dataclasses import asdict
 from functools import partial
 
 from arm_cli.arguments import JSON, verb
-from arm_cli.doctor.controllers import (
-    check_claims,
-    check_commands,
-    check_controllers,
-    check_hardware,
-)
 from arm_cli.doctor.diagnosis import Diagnosis, Severity
-from arm_cli.doctor.discovery import check_discovery, check_ports
 from arm_cli.doctor.installation import (
     check_compilers,
     check_interfaces,
+    check_page_port,
     check_python,
     check_rclpy,
     check_rendering,
+    check_shared_memory,
     check_wheels,
 )
-from arm_cli.doctor.listening import check_listening, check_users
+from arm_cli.doctor.network import check_discovery, check_listening, check_ports, check_users
 from arm_cli.doctor.observation import GraphObservation
-from arm_cli.doctor.resources import check_page_port, check_shared_memory
-from arm_cli.doctor.simulation import (
+from arm_cli.doctor.running import (
+    check_claims,
     check_clock,
+    check_commands,
+    check_controllers,
     check_description,
+    check_hardware,
     check_joint_states,
     check_node_names,
     check_publishers,
@@ -64,7 +62,7 @@ SEVERITY_WIDTH = max(map(len, Severity))
 
 
 @verb(JSON)
-def run(options: argparse.Namespace) -> int:
+def doctor(options: argparse.Namespace) -> int:
     """Print each finding as soon as it is available; return 1 if there is an error."""
     findings: list[Diagnosis] = []
     for finding in _examine():

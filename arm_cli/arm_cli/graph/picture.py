@@ -29,7 +29,7 @@ SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".md": "mermaid", ".dot": "dot", "
     Argument("-o", "--output", metavar="FILE", help="default: print it"),
     Flag("-a", "--all", help="include hidden nodes and topics, /rosout and /parameter_events"),
 )
-def run(options: argparse.Namespace) -> None:
+def graph(options: argparse.Namespace) -> None:
     """Print or write the graph.
 
     Raises:

@@ -18,7 +18,7 @@ from rosidl_parser.definition import (
 )
 
 from arm_cli.errors import MessageError
-from arm_cli.messages.field_types import FLOATS, INTEGER_RANGES, message_class, slots, type_name
+from arm_cli.messages.fields import FLOATS, INTEGER_RANGES, message_class, slots, type_name
 from arm_node.limited_yaml import YamlError, load_yaml, load_yaml_documents
 
 _TRUTH = {"true": True, "false": False, "1": True, "0": False}

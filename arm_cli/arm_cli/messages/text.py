@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from arm_cli.messages.field_types import abbreviation, slots
+from arm_cli.messages.fields import abbreviation, slots
 
 try:
     from yaml import CSafeDumper as _Dumper

@@ -54,7 +54,7 @@ def parameter_values(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
     """Return values of the typed parameter: true and false for a boolean, else its value."""
 
     def values(node: "NodeParameters") -> list[str]:
-        from arm_cli.parameter_values import read_value
+        from arm_cli.ros.parameters import read_value
 
         (value,) = node.values([parsed_args.parameter_name])
         content = read_value(value)

@@ -1,4 +1,4 @@
-"""`arm sim info`: shows a simulation's state, world, entities, sensors and real-time factor."""
+"""`arm sim info` and `stats`: what a simulation contains, and how fast it runs."""
 
 import argparse
 from typing import Any
@@ -17,11 +17,8 @@ SENSOR_TYPES = (
 CATEGORIES = {0: "object", 1: "robot", 2: "human", 4: "moving", 5: "static"}
 
 
-@verb(
-    JSON,
-    NAMESPACE,
-)
-def run(options: argparse.Namespace) -> None:
+@verb(JSON, NAMESPACE)
+def info(options: argparse.Namespace) -> None:
     """Print the simulation's state and contents.
 
     Raises:
@@ -48,8 +45,8 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _report(simulation: SimulationClient) -> dict[str, Any]:
-    from arm_cli.ros.clock_listener import ClockListener
     from arm_cli.ros.graph import Graph
+    from arm_cli.ros.listeners import ClockListener
 
     clock = ClockListener(simulation.session)
     state = simulation.ask("GetSimulationState", "get_simulation_state").state.state
@@ -98,3 +95,22 @@ def _entity(simulation: SimulationClient, name: str, state: Any) -> dict[str, An
         "position": [p.x, p.y, p.z],
         "orientation": [q.x, q.y, q.z, q.w],
     }
+
+
+@verb(JSON, NAMESPACE)
+def stats(options: argparse.Namespace) -> None:
+    """Print the figures of the last second or two.
+
+    Raises:
+        NoSuchNameError: no simulation runs.
+    """
+    with ask_simulation(options.namespace, must_run=True) as simulation:
+        parts = simulation.statistics()
+    if options.json:
+        print_json(parts)
+        return
+    width = max(len(name) for figures in parts.values() for name in figures)
+    for part, figures in parts.items():
+        say(f"{part}:")
+        for name, value in figures.items():
+            say(f"  {name:<{width}}  {value}")

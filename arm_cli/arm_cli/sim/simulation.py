@@ -26,11 +26,7 @@ STATE_NAMES = ("stopped", "playing", "paused", "quitting", "no world", "loading 
 
 
 NAMESPACE = Argument(
-    "-n",
-    "--namespace",
-    default="/",
-    metavar="NS",
-    help="namespace of the simulation's services",
+    "-n", "--namespace", default="/", metavar="NS", help="namespace of the simulation's services"
 )
 
 
@@ -110,7 +106,7 @@ class SimulationClient:
         """
         from rcl_interfaces.msg import ParameterValue
 
-        from arm_cli.parameter_values import set_value
+        from arm_cli.ros.parameters import set_value
 
         value = ParameterValue()
         set_value(value, content)

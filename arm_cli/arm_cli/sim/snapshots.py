@@ -19,10 +19,7 @@ def _snapshot(name: str) -> Argument:
     )
 
 
-@verb(
-    _snapshot("a name; a snapshot of that name is replaced"),
-    NAMESPACE,
-)
+@verb(_snapshot("a name; a snapshot of that name is replaced"), NAMESPACE)
 def save(options: argparse.Namespace) -> None:
     """Save the state of the run; print what was saved.
 
@@ -32,10 +29,7 @@ def save(options: argparse.Namespace) -> None:
     say(_ask(options, "save_snapshot").description)
 
 
-@verb(
-    _snapshot("a name"),
-    NAMESPACE,
-)
+@verb(_snapshot("a name"), NAMESPACE)
 def restore(options: argparse.Namespace) -> None:
     """Continue from a snapshot; print it.
 
@@ -48,10 +42,7 @@ def restore(options: argparse.Namespace) -> None:
         complain(remark)
 
 
-@verb(
-    JSON,
-    NAMESPACE,
-)
+@verb(JSON, NAMESPACE)
 def list_snapshots(options: argparse.Namespace) -> None:
     """Print the snapshots with names.
 
@@ -68,10 +59,7 @@ def list_snapshots(options: argparse.Namespace) -> None:
         say(f"{name}: {description}")
 
 
-@verb(
-    _snapshot("a name"),
-    NAMESPACE,
-)
+@verb(_snapshot("a name"), NAMESPACE)
 def remove(options: argparse.Namespace) -> None:
     """Forget a snapshot, or delete its file.
 

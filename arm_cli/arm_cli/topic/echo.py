@@ -16,8 +16,8 @@ from arm_cli.arguments import (
     whole_number,
 )
 from arm_cli.errors import CommandUsageError, UnansweredError
-from arm_cli.interfaces.index import InterfaceIndex, load_class
-from arm_cli.messages.selection import FILTER, message_filter
+from arm_cli.interface_types import InterfaceIndex, load_class
+from arm_cli.messages.fields import FILTER, message_filter
 from arm_cli.output import print_json, say, say_document
 from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
@@ -60,7 +60,7 @@ TRUNCATE_LENGTH = 128
     ),
     qos_arguments("a profile that matches the topic's publishers"),
 )
-def run(options: argparse.Namespace) -> None:
+def echo(options: argparse.Namespace) -> None:
     """Print the messages.
 
     Raises:
@@ -74,8 +74,8 @@ def run(options: argparse.Namespace) -> None:
         class_ = load_class(InterfaceIndex().find(options.message_type, ("msg",)))
         printer.check(class_)
     with connect() as session:
+        from arm_cli.ros.listeners import TopicListener
         from arm_cli.ros.qos import qos_profile
-        from arm_cli.ros.topic_listener import TopicListener
 
         listener = TopicListener(session, options.topic_name)
         if class_ is None:
@@ -95,7 +95,7 @@ def run(options: argparse.Namespace) -> None:
 
 
 def _printer(options: argparse.Namespace) -> "MessagePrinter":
-    from arm_cli.messages.selection import FieldPath
+    from arm_cli.messages.fields import FieldPath
     from arm_cli.messages.text import Abridgement
 
     if options.once and options.times is not None:

@@ -1,20 +1,127 @@
 """`arm topic hz`, `bw` and `delay`: measures a topic and reports every second."""
 
 import argparse
+import math
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import Argument, Flag, positive_whole_number, verb
 from arm_cli.errors import MessageError
-from arm_cli.messages.selection import FILTER, message_filter
+from arm_cli.messages.fields import FILTER, message_filter
 from arm_cli.output import complain, say, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.topic.windows import BandwidthWindow, DelayWindow, RateWindow
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
+
+
+class RateWindow:
+    """The intervals between the last messages.
+
+    Times are in ns of any clock. A jump back in time resets the window.
+
+    Attributes:
+        taken: the number of messages so far.
+    """
+
+    def __init__(self, size: int) -> None:
+        """Keep at most `size` intervals."""
+        self.taken = 0
+        self._intervals_ns: deque[int] = deque(maxlen=size)
+        self._last_ns: int | None = None
+
+    def add(self, now_ns: int) -> None:
+        """Add a message that arrived at a time."""
+        self.taken += 1
+        if self._last_ns is not None:
+            if now_ns < self._last_ns:
+                self._intervals_ns.clear()
+            else:
+                self._intervals_ns.append(now_ns - self._last_ns)
+        self._last_ns = now_ns
+
+    def describe(self) -> str | None:
+        """Return the two lines that ros2 prints, None before the second message."""
+        intervals = self._intervals_ns
+        if not intervals:
+            return None
+        mean = sum(intervals) / len(intervals)
+        rate = 1e9 / mean if mean > 0 else 0.0
+        return f"average rate: {rate:.3f}\n{_spread(intervals)}"
+
+
+class BandwidthWindow:
+    """The arrival times and sizes of the last messages."""
+
+    def __init__(self, size: int) -> None:
+        """Keep at most `size` messages."""
+        self._messages: deque[tuple[float, int]] = deque(maxlen=size)
+
+    def add(self, now_s: float, size: int) -> None:
+        """Add a message of `size` bytes that arrived at a time."""
+        self._messages.append((now_s, size))
+
+    def describe(self, now_s: float) -> str | None:
+        """Return the two lines that ros2 prints, None before the second message."""
+        if len(self._messages) < 2 or now_s <= self._messages[0][0]:
+            return None
+        sizes = [size for _, size in self._messages]
+        per_second = sum(sizes) / (now_s - self._messages[0][0])
+        divisor, digits, unit = _unit(per_second)
+        rate, mean, low, high = (
+            f"{value / divisor:.{digits}f} {unit}"
+            for value in (per_second, sum(sizes) / len(sizes), min(sizes), max(sizes))
+        )
+        return (
+            f"{rate}/s from {len(sizes)} messages\n"
+            f"\tMessage size mean: {mean} min: {low} max: {high}"
+        )
+
+
+def _unit(per_second: float) -> tuple[int, int, str]:
+    if per_second < 1000:
+        return 1, 0, "B"
+    return (1000, 2, "KB") if per_second < 1_000_000 else (1_000_000, 2, "MB")
+
+
+class DelayWindow:
+    """The ages of the last messages in ns.
+
+    Attributes:
+        taken: the number of messages so far.
+    """
+
+    def __init__(self, size: int) -> None:
+        """Keep at most `size` messages."""
+        self.taken = 0
+        self._delays_ns: deque[int] = deque(maxlen=size)
+
+    def add(self, delay_ns: int) -> None:
+        """Add a message of some age."""
+        self.taken += 1
+        self._delays_ns.append(delay_ns)
+
+    def describe(self) -> str | None:
+        """Return the two lines that ros2 prints, None before the first message."""
+        delays = self._delays_ns
+        if not delays:
+            return None
+        return f"average delay: {sum(delays) / len(delays) * 1e-9:.3f}\n{_spread(delays)}"
+
+
+def _spread(durations_ns: Collection[int]) -> str:
+    """Return the second line that ros2 prints for rates and delays."""
+    count = len(durations_ns)
+    mean = sum(durations_ns) / count
+    deviation = math.sqrt(sum((x - mean) ** 2 for x in durations_ns) / count)
+    return (
+        f"\tmin: {min(durations_ns) * 1e-9:.3f}s max: {max(durations_ns) * 1e-9:.3f}s "
+        f"std dev: {deviation * 1e-9:.5f}s window: {count}"
+    )
+
 
 REPORT_PERIOD_S = 1.0
 MANY_MESSAGES, FEW_MESSAGES = 10000, 100
@@ -90,7 +197,7 @@ def hz(options: argparse.Namespace) -> None:
     fits = message_filter(options.filter) if options.filter else None
     window = RateWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
-        from arm_cli.ros.topic_listener import TopicListener
+        from arm_cli.ros.listeners import TopicListener
 
         clock = session.clock_ns if options.use_sim_time else time.monotonic_ns
         listener = TopicListener(session, options.topic_name)
@@ -103,9 +210,7 @@ def hz(options: argparse.Namespace) -> None:
         report_every_second(session, window.describe, listener.silence, lambda: window.taken)
 
 
-@verb(
-    *_measured(FEW_MESSAGES),
-)
+@verb(*_measured(FEW_MESSAGES))
 def bw(options: argparse.Namespace) -> None:
     """Print the bandwidth every second.
 
@@ -114,7 +219,7 @@ def bw(options: argparse.Namespace) -> None:
     """
     window = BandwidthWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
-        from arm_cli.ros.topic_listener import TopicListener
+        from arm_cli.ros.listeners import TopicListener
 
         clock = session.clock_s if options.use_sim_time else time.monotonic
         listener = TopicListener(session, options.topic_name)
@@ -127,9 +232,7 @@ def bw(options: argparse.Namespace) -> None:
         report_every_second(session, lambda: window.describe(clock()), listener.silence)
 
 
-@verb(
-    *_measured(MANY_MESSAGES),
-)
+@verb(*_measured(MANY_MESSAGES))
 def delay(options: argparse.Namespace) -> None:
     """Print the age of the stamps on arrival, every second.
 
@@ -139,7 +242,7 @@ def delay(options: argparse.Namespace) -> None:
     """
     window = DelayWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
-        from arm_cli.ros.topic_listener import TopicListener
+        from arm_cli.ros.listeners import TopicListener
 
         listener = TopicListener(session, options.topic_name)
         message_class: Any = listener.wait_for_class()

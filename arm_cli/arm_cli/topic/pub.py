@@ -19,7 +19,7 @@ from arm_cli.arguments import (
     whole_number,
 )
 from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError, UnansweredError
-from arm_cli.interfaces.index import InterfaceIndex, InterfaceType, load_class
+from arm_cli.interface_types import InterfaceIndex, InterfaceType, load_class
 from arm_cli.output import complain, say, say_document
 from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
@@ -92,7 +92,7 @@ AFTER_MATCH_S = 0.4
     Flag("-s", "--use-sim-time", help="let 'auto' and 'now' use /clock"),
     qos_arguments("reliable, volatile, the last 10"),
 )
-def run(options: argparse.Namespace) -> None:
+def pub(options: argparse.Namespace) -> None:
     """Publish the messages.
 
     Raises:

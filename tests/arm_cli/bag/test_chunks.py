@@ -12,8 +12,7 @@ import pytest
 import zstandard
 from mcap.writer import CompressionType, Writer
 
-from arm_cli.bag.bag_reader import BagReader
-from arm_cli.bag.message_compression import decompressed
+from arm_cli.bag_format.reader import BagReader, decompressed
 from arm_cli.errors import BagError
 
 LIMIT = 2000
@@ -28,8 +27,8 @@ def zeros():
 
 @pytest.fixture(autouse=True)
 def low_limit(monkeypatch):
-    for module in ("chunk_sizes", "mcap_index", "message_compression"):
-        monkeypatch.setattr(f"arm_cli.bag.{module}.MAX_CHUNK_BYTES", LIMIT)
+    for module in ("chunk_sizes", "mcap_file", "reader"):
+        monkeypatch.setattr(f"arm_cli.bag_format.{module}.MAX_CHUNK_BYTES", LIMIT)
 
 
 def write(path: Path, chunks: int = 1, finished: bool = True) -> bytes:
@@ -93,7 +92,7 @@ def test_overlapping_chunks_are_counted_together(tmp_path, monkeypatch):
     write(tmp_path / "a.mcap", chunks=20)
     with BagReader(tmp_path / "a.mcap") as bag:
         assert len(list(bag.messages(["/x"]))) == 20
-    monkeypatch.setattr("arm_cli.bag.chunk_sizes.MAX_OVERLAP_BYTES", 3000)
+    monkeypatch.setattr("arm_cli.bag_format.chunk_sizes.MAX_OVERLAP_BYTES", 3000)
     assert "chunks of the same time decompress to" in refusal(tmp_path / "a.mcap", monkeypatch)
 
 

@@ -10,8 +10,8 @@ from mcap.writer import Writer
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.typesys import Stores, get_typestore
 
-from arm_cli.bag.bag_topic import TypeDefinition, find_definition
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.bag_format.topic import TypeDefinition, find_definition
+from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
 
 STORE = get_typestore(Stores.ROS2_JAZZY)

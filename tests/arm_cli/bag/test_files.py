@@ -12,13 +12,12 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
-from arm_cli.bag.bag_reader import BagReader, warn_if_unfinished
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.mcap_file_writer import CHUNK_BYTES
-from arm_cli.bag.offered_qos import OfferedQos
+from arm_cli.bag_format.offered_qos import OfferedQos
+from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
+from arm_cli.bag_format.topic import BagMessage, BagTopic, TypeDefinition, find_definition
+from arm_cli.bag_format.writer import CHUNK_BYTES, BagSettings, BagWriter
 from arm_cli.errors import BagError
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.interface_types import InterfaceIndex
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 POINT = "geometry_msgs/msg/PointStamped"

@@ -10,14 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 
-from arm_cli.bag.bag_reader import BagReader
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.offered_qos import OfferedQos
-from arm_cli.bag.playback import ReadAhead
-from arm_cli.bag.recording import LossCounter, Recording
-from arm_cli.bag.ros_qos import RECORDING_DEPTH, playing_profile, recording_profile
+from arm_cli.bag.ros_player import ReadAhead
+from arm_cli.bag.ros_recorder import LossCounter, Recording
+from arm_cli.bag_format.offered_qos import OfferedQos
+from arm_cli.bag_format.reader import BagReader
+from arm_cli.bag_format.topic import BagMessage, BagTopic, TypeDefinition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.errors import BagError
+from arm_cli.ros.qos import RECORDING_DEPTH, playing_profile, recording_profile
 
 TYPE = "std_msgs/msg/Empty"
 TOPIC = BagTopic("/x", TYPE)
@@ -130,10 +130,10 @@ def test_a_file_that_cannot_grow_keeps_its_messages_and_is_reported(tmp_path):
     code = """
 import resource, sys
 from pathlib import Path
-from arm_cli.bag.bag_topic import BagMessage, BagTopic
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.recording import Recording
-from arm_cli.bag.bag_topic import TypeDefinition
+from arm_cli.bag_format.topic import BagMessage, BagTopic
+from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_cli.bag.ros_recorder import Recording
+from arm_cli.bag_format.topic import TypeDefinition
 from arm_cli.errors import BagError
 resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
 recording = Recording(BagWriter(Path("bag"), BagSettings()), 10**8)

@@ -6,10 +6,10 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from arm_cli.bag.bag_metadata import FILE_NAME
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.bag_format.metadata import FILE_NAME
+from arm_cli.bag_format.topic import BagMessage, BagTopic, find_definition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -119,7 +119,7 @@ def test_metadata_stay_until_the_new_ones_are_read_back(tmp_path, capsys, monkey
     bag = write(tmp_path / "a", ("/x", 10, "one"))
     right = (bag / FILE_NAME).read_text()
     half = "".join(right.splitlines(keepends=True)[:-1])
-    monkeypatch.setattr("arm_cli.bag.bag_metadata.BagMetadata.to_yaml", lambda _: half)
+    monkeypatch.setattr("arm_cli.bag_format.metadata.BagMetadata.to_yaml", lambda _: half)
     assert main(["bag", "reindex", str(bag)]) == 1
     assert "is left as it was" in capsys.readouterr().err
     assert (bag / FILE_NAME).read_text() == right

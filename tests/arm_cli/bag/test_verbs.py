@@ -5,20 +5,20 @@ import time
 
 import pytest
 
-from arm_cli.bag.bag_metadata import BagMetadata, TimeSpan, read_metadata
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, TypeDefinition, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.offered_qos import (
+from arm_cli.bag.ros_player import PlaySchedule
+from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
+from arm_cli.bag_format.metadata import BagMetadata, TimeSpan, read_metadata
+from arm_cli.bag_format.offered_qos import (
     OfferedQos,
     QosDuration,
     offers_to_text,
     read_offers,
     read_qos_overrides,
 )
-from arm_cli.bag.playback import PlaySchedule
-from arm_cli.bag.topic_selection import TopicSelection, absolute_names, compile_pattern
+from arm_cli.bag_format.topic import BagMessage, BagTopic, TypeDefinition, find_definition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.errors import BagError
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
 
 START_NS = 1_700_000_000_123_456_789

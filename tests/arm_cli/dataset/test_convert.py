@@ -12,9 +12,9 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Float64MultiArray
 
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.bag_format.topic import BagMessage, BagTopic, find_definition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
 
 MS = 1_000_000

@@ -16,10 +16,10 @@ from arm_cli.doctor.installation import (
     check_python,
     check_rclpy,
     check_rendering,
+    check_shared_memory,
     check_wheels,
     try_python,
 )
-from arm_cli.doctor.resources import check_shared_memory
 
 LONG_AGO_S = 1.0e9
 

@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 from arm_cli.doctor.diagnosis import Severity
-from arm_cli.doctor.discovery import check_discovery, check_ports
-from arm_cli.doctor.listening import check_listening, check_users
-from arm_cli.doctor.resources import OWNER_HEADER, check_page_port
+from arm_cli.doctor.installation import OWNER_HEADER, check_page_port
+from arm_cli.doctor.network import check_discovery, check_listening, check_ports, check_users
 from arm_viewer.page_server import page_server
 from launch_py.fast_dds.participants import LAST_DOMAIN
 

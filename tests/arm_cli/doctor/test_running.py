@@ -4,12 +4,6 @@ from dataclasses import replace
 
 import pytest
 
-from arm_cli.doctor.controllers import (
-    check_claims,
-    check_commands,
-    check_controllers,
-    check_hardware,
-)
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.observation import (
     ClockReading,
@@ -21,9 +15,13 @@ from arm_cli.doctor.observation import (
     SetpointTopic,
     StateTopic,
 )
-from arm_cli.doctor.simulation import (
+from arm_cli.doctor.running import (
+    check_claims,
     check_clock,
+    check_commands,
+    check_controllers,
     check_description,
+    check_hardware,
     check_joint_states,
     check_node_names,
     check_publishers,

@@ -5,8 +5,7 @@ import json
 import pytest
 
 from arm_cli.errors import NoSuchNameError
-from arm_cli.interfaces.definition import nested_type, without_comment
-from arm_cli.interfaces.index import InterfaceIndex, load_class
+from arm_cli.interface_types import InterfaceIndex, load_class, nested_type, without_comment
 from arm_cli.main import main
 
 

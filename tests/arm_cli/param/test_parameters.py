@@ -6,8 +6,8 @@ import pytest
 from rcl_interfaces.msg import ParameterType, ParameterValue
 
 from arm_cli.errors import MessageError, NoSuchNameError
-from arm_cli.param.files import read_parameters
-from arm_cli.parameter_values import LABELS, TYPE_NAMES, read_value, write_value
+from arm_cli.param import read_parameters
+from arm_cli.ros.parameters import LABELS, TYPE_NAMES, read_value, write_value
 from arm_node.parameter_file import nested_parameters, parameters_text
 
 

@@ -9,11 +9,10 @@ from builtin_interfaces.msg import Time
 from lifecycle_msgs.msg import State
 from lifecycle_msgs.srv import GetState
 
-from arm_cli import lifecycle_verbs
+from arm_cli import lifecycle, service
 from arm_cli.errors import UnansweredError
 from arm_cli.ros import graph, service_call
 from arm_cli.ros.graph import NodeName
-from arm_cli.service import call
 
 
 def parsed(verb, *words):
@@ -65,11 +64,11 @@ def test_now_in_a_request_is_the_time_of_each_call(monkeypatch):
     def connect():
         yield session
 
-    monkeypatch.setattr(call, "connect", connect)
-    monkeypatch.setattr(call, "_wait_for_server", lambda *_: None)
+    monkeypatch.setattr(service, "connect", connect)
+    monkeypatch.setattr(service, "_wait_for_server", lambda *_: None)
     words = ["/x", "control_msgs/srv/QueryTrajectoryState", "time: now", "-r", "9"]
     with pytest.raises(Stop):
-        call.run.run(parsed(call.run, *words))
+        service.call.run(parsed(service.call, *words))
     assert session.sent == [Time(sec=7), Time(sec=8)]
 
 
@@ -87,16 +86,16 @@ def two_nodes(monkeypatch):
         return GetState.Response(current_state=State(id=3, label="active"))
 
     nodes = [NodeName("/", "stuck"), NodeName("/", "well")]
-    monkeypatch.setattr(lifecycle_verbs, "connect", connect)
-    monkeypatch.setattr(lifecycle_verbs, "managed_node", lambda _graph, name: NodeName("/", name))
-    monkeypatch.setattr(lifecycle_verbs, "managed_nodes", lambda _graph, _hidden: nodes)
+    monkeypatch.setattr(lifecycle, "connect", connect)
+    monkeypatch.setattr(lifecycle, "managed_node", lambda _graph, name: NodeName("/", name))
+    monkeypatch.setattr(lifecycle, "managed_nodes", lambda _graph, _hidden: nodes)
     monkeypatch.setattr(graph, "Graph", lambda session: session)
     monkeypatch.setattr(service_call, "call_service", answer)
 
 
 @pytest.mark.usefixtures("two_nodes")
 def test_a_silent_node_does_not_hide_the_other_nodes_states(capsys):
-    lifecycle_verbs.get_state.run(parsed(lifecycle_verbs.get_state))
+    lifecycle.get.run(parsed(lifecycle.get))
     printed = capsys.readouterr()
     assert printed.out == "/well: active [3]\n"
     assert printed.err == "arm lifecycle get: no answer from /stuck/get_state\n"
@@ -105,4 +104,4 @@ def test_a_silent_node_does_not_hide_the_other_nodes_states(capsys):
 @pytest.mark.usefixtures("two_nodes")
 def test_a_named_node_must_answer():
     with pytest.raises(UnansweredError, match="no answer from /stuck/get_state"):
-        lifecycle_verbs.get_state.run(parsed(lifecycle_verbs.get_state, "stuck"))
+        lifecycle.get.run(parsed(lifecycle.get, "stuck"))

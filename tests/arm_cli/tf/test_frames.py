@@ -5,10 +5,8 @@ import math
 import pytest
 
 from arm_cli.errors import NoSuchNameError
-from arm_cli.tf.echo import describe_lookup
 from arm_cli.tf.frame_log import FrameLog
-from arm_cli.tf.monitor import describe_delays
-from arm_cli.tf.tree import export, frame_graph
+from arm_cli.tf.showing import describe_delays, describe_lookup, export, frame_graph
 from arm_node.rigid_transform import RigidTransform
 
 HALF = math.sqrt(0.5)

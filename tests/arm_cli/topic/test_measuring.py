@@ -3,8 +3,7 @@
 import pytest
 
 from arm_cli.errors import StoppedError
-from arm_cli.topic.measuring import report_every_second
-from arm_cli.topic.windows import BandwidthWindow, DelayWindow, RateWindow
+from arm_cli.topic.measuring import BandwidthWindow, DelayWindow, RateWindow, report_every_second
 
 MS = 1_000_000
 

@@ -66,7 +66,7 @@ def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> Non
 
 
 def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeypatch: Any) -> None:
-    monkeypatch.setattr("arm_cli.ros.topic_listener.other_users", lambda domain: ["anna"])
+    monkeypatch.setattr("arm_cli.ros.listeners.other_users", lambda domain: ["anna"])
     publisher = client.node.create_publisher(JointState, "/states", 10)
     try:
         said = arm("topic", "echo", "/states", "--once", "--timeout", "2", code=1)

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from arm_cli.bag.bag_reader import BagReader
+from arm_cli.bag_format.reader import BagReader
 from arm_cli.errors import BagError
 
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]

@@ -8,10 +8,10 @@ from mcap.writer import IndexType, Writer
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
-from arm_cli.bag.bag_topic import BagMessage, BagTopic, find_definition
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.offered_qos import OfferedQos
-from arm_cli.interfaces.index import InterfaceIndex
+from arm_cli.bag_format.offered_qos import OfferedQos
+from arm_cli.bag_format.topic import BagMessage, BagTopic, find_definition
+from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_cli.interface_types import InterfaceIndex
 
 pytestmark = pytest.mark.ros
 

@@ -8,13 +8,12 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import String
 
-from arm_cli.bag.bag_topic import BagMessage
-from arm_cli.bag.bag_writer import BagSettings, BagWriter
-from arm_cli.bag.recording import Recording
-from arm_cli.bag.ros_qos import RECORDING_DEPTH
-from arm_cli.bag.ros_recorder import BagRecorder
+from arm_cli.bag.ros_recorder import BagRecorder, Recording
 from arm_cli.bag.topic_selection import TopicSelection
+from arm_cli.bag_format.topic import BagMessage
+from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.errors import BagError
+from arm_cli.ros.qos import RECORDING_DEPTH
 from arm_cli.ros.session import open_session
 
 pytestmark = pytest.mark.ros

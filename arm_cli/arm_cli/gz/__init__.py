@@ -1,1 +1,0 @@
-"""`arm gz`: Gazebo's commands for this simulation, with the output format of Gazebo."""

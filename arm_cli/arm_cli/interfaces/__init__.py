@@ -1,1 +1,0 @@
-"""The installed message, service and action types, and their definitions."""

@@ -1,0 +1,1 @@
+"""The verbs of `arm pkg`, which list and create packages."""

@@ -1,1 +1,0 @@
-"""`arm service call` and `arm service echo`."""
