@@ -13,7 +13,6 @@ from arm_cli.names import absolute_name
 from arm_cli.output import complain, print_json, say, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_cli.ros.parameters import LABELS, NOT_SET, TYPE_NAMES, content_of, read_value
 from arm_node.limited_yaml import YamlError
 from arm_node.parameter_file import (
     PARAMETERS,
@@ -89,7 +88,7 @@ def list_parameters(options: argparse.Namespace) -> None:
     found: dict[str, dict[str, str]] = {}
     with connect() as session:
         from arm_cli.ros.graph import Graph
-        from arm_cli.ros.parameters import NodeParameters
+        from arm_cli.ros.parameters import TYPE_NAMES, NodeParameters
 
         graph = Graph(session)
         if options.node_name:
@@ -132,6 +131,8 @@ def get(options: argparse.Namespace) -> None:
         UnansweredError: the node does not answer.
     """
     with open_parameters(options.node_name) as parameters:
+        from arm_cli.ros.parameters import LABELS, NOT_SET, content_of, read_value
+
         value = parameters.value(options.parameter_name)
         unset = value.type == NOT_SET
         described = parameters.descriptors([options.parameter_name]) if unset else []
@@ -172,6 +173,8 @@ def describe(options: argparse.Namespace) -> None:
 
 
 def _print(descriptor: Any) -> None:
+    from arm_cli.ros.parameters import TYPE_NAMES
+
     say(f"Parameter name: {descriptor.name}")
     say(f"  Type: {TYPE_NAMES[descriptor.type]}")
     if descriptor.description:
@@ -267,6 +270,8 @@ def dump(options: argparse.Namespace) -> None:
         CommandUsageError: the file cannot be written.
     """
     with open_parameters(options.node_name) as parameters:
+        from arm_cli.ros.parameters import read_value
+
         names = parameters.names()
         values = [read_value(value) for value in parameters.values(names)] if names else []
     content = {
