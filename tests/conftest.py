@@ -48,9 +48,25 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
+    # pytest-xdist would give the files with the fewest tests last, and those are the longest.
+    config.option.loadscopereorder = False
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     if sys.prefix not in prefixes:
         os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([sys.prefix, *filter(None, prefixes)])
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Let workers begin with the files that start processes: in the end each has small ones left.
+
+    One worker would else be idle while the other one does the last long file.
+    """
+    if hasattr(config, "workerinput"):
+        long = {
+            item.path
+            for item in items
+            if item.get_closest_marker("ros") or item.get_closest_marker("slow")
+        }
+        items.sort(key=lambda item: item.path not in long)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,5 +1,6 @@
 """Walks through the pages of the originals: types their lines, and looks at what comes."""
 
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +10,10 @@ from shell import TIMEOUT_S, Running, comparable, pattern
 
 ROWS = tuple(row for part in read_parts() for row in part.rows)
 ARRIVAL = "all(abs(dict(zip(m.name, m.position))[n] - q) < {within} for n, q in {wanted})"
+OF_FILES = re.compile(
+    r"arm (?:pkg (?!create)|interface )|ls |arm launch .* --(?:show-args|print)\b"
+)
+"""Lines that only look at what is installed: whatever runs, the same comes of them."""
 WITHIN = 0.02
 """How near each joint must come, in rad or m."""
 
@@ -48,6 +53,7 @@ class Walk:
         self._folder = folder
         self._kept: dict[str, Running] = {}
         self._looked: dict[str, tuple[int, str]] = {}
+        self._read: dict[str, tuple[int, str]] = {}
 
     def assert_row(self, page: str, row: Row) -> None:
         """Do a row's lines, beside what the rows before it left running.
@@ -79,14 +85,15 @@ class Walk:
         """Read until it shows what it should: what starts up may be discovered late."""
         line = typed_line(step, page)
         deadline = time.monotonic() + TIMEOUT_S
+        looked = self._read if OF_FILES.match(line) else self._looked
         while True:
-            if line not in self._looked:
-                self._looked[line] = self._ended(line)
-            code, output = self._looked[line]
+            if line not in looked:
+                looked[line] = self._ended(line)
+            code, output = looked[line]
             missing = not_shown(step, output)
             if code == step.code and not missing:
                 return
-            del self._looked[line]
+            del looked[line]
             what = f"{line}: exit code {code}, {missing!r} is missing"
             assert time.monotonic() < deadline, f"{what}:\n{output}"
 
