@@ -95,6 +95,11 @@ class Setting:
     adapt: Callable[[Any], Any]
 
     @property
+    def parameter(self) -> tuple[str, Any, Reader[Any], str]:
+        """What a source of values takes: see `Parameters`."""
+        return self.name, self.default, self.read, self.about
+
+    @property
     def launch_argument(self) -> dict[str, Any]:
         """What DeclareLaunchArgument takes beside the name."""
         return {

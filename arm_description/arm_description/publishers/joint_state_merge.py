@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from arm_description.errors import JointStateError, SettingsError, UrdfError
-from arm_description.publishers.joint_publisher_settings import JointPublisherSettings
+from arm_description.publishers.settings import JointPublisherSettings
 from arm_description.urdf.mimic import Mimic, resolve_leader
 from arm_description.urdf.robot import Joint
 from arm_node.names import listing

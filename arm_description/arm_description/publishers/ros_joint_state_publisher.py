@@ -16,19 +16,12 @@ from arm_description.errors import (
     SettingsError,
 )
 from arm_description.publishers.joint_document import read_joints
-from arm_description.publishers.joint_publisher_settings import (
-    PARAMETERS,
-    JointPublisherSettings,
-    named_after_joints,
-)
 from arm_description.publishers.joint_state_merge import JointStateMerge
+from arm_description.publishers.settings import JointPublisherSettings
 from arm_node.parameters import declare, given_parameters
 from arm_node.printable import printable, printable_message
 
 LOG_INTERVAL_S = 5.0
-CHANGEABLE = ("rate", "delta")
-"""Parameters that take effect at once; the others are read at the start."""
-
 _QUEUE = 10
 _LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -53,10 +46,10 @@ class JointStatePublisher(Node):
         super().__init__("joint_state_publisher")
         given = given_parameters(self)
         self._settings = JointPublisherSettings.from_parameters(given)
-        table = {**PARAMETERS, **named_after_joints(given)}
-        for name, (default, read, about) in table.items():
-            declare(self, name, default, read, about, read_only=name not in CHANGEABLE)
-        self._names = list(table)
+        declared = list(JointPublisherSettings.declarations(given))
+        for each in declared:
+            declare(self, *each.parameter, read_only=not each.changes)
+        self._names = [each.name for each in declared]
         self._fail = fail
         self._merge: JointStateMerge | None = None
         if description is not None:

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from arm_description.publishers.joint_publisher_settings import JointPublisherSettings
 from arm_description.publishers.joint_state_merge import JointStateMerge
+from arm_description.publishers.settings import JointPublisherSettings
 from arm_viewer.requests import MoveJoints
 from arm_viewer.snapshot import Description, Snapshot
 

@@ -6,8 +6,8 @@ import pytest
 
 from arm_description.errors import UrdfError, XmlError
 from arm_description.publishers.joint_document import read_joints
-from arm_description.publishers.joint_publisher_settings import JointPublisherSettings
 from arm_description.publishers.joint_state_merge import JointStateMerge
+from arm_description.publishers.settings import JointPublisherSettings
 
 TWO_ROOTS = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
   <joint name="j0" type="continuous"><parent link="a"/><child link="b"/></joint>

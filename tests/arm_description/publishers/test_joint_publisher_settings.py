@@ -3,7 +3,7 @@
 import pytest
 
 from arm_description import SettingsError
-from arm_description.publishers.joint_publisher_settings import JointPublisherSettings
+from arm_description.publishers.settings import JointPublisherSettings
 from arm_description.urdf.mimic import Mimic
 
 
@@ -39,7 +39,16 @@ def test_every_value_is_taken():
         use_smallest_joint_limits=False,
         delta=1,
     )
-    assert settings == JointPublisherSettings(50, ("a", "/b"), False, True, True, False, False, 1.0)
+    assert settings == JointPublisherSettings(
+        rate_hz=50,
+        source_list=("a", "/b"),
+        publish_default_positions=False,
+        publish_default_velocities=True,
+        publish_default_efforts=True,
+        use_mimic_tags=False,
+        use_smallest_joint_limits=False,
+        delta=1.0,
+    )
 
 
 def test_zeros_by_joint_a_name_may_hold_dots():
@@ -82,8 +91,16 @@ def test_an_empty_list_of_sources_may_come_as_nothing():
         ("delta", float("inf"), "delta must be a finite number, not inf"),
         ("zeros__j0", float("nan"), "zeros.j0 must be a finite number, not nan"),
         ("zeros__j0", True, "zeros.j0 must be a finite number, not True"),
-        ("dependent_joints__j1__factor", 2.0, "dependent_joints.j1.parent must name a joint"),
-        ("dependent_joints__j1__parent", 3, "dependent_joints.j1.parent must name a joint, not 3"),
+        (
+            "dependent_joints__j1__factor",
+            2.0,
+            "j1.parent must be the name of a joint",
+        ),
+        (
+            "dependent_joints__j1__parent",
+            3,
+            "j1.parent must be the name of a joint, not 3",
+        ),
         ("dependent_joints__j1__foo", 1, "a dependent joint has parent, factor and offset"),
         ("dependent_joints__parent", "j0", "a dependent joint has parent, factor and offset"),
     ],

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_description.publishers.state_throttle import StateThrottle
+from arm_description.publishers.ros_robot_state_publisher import StateThrottle
 
 MS = 1_000_000
 
