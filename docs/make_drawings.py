@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
-from arm_node.drawing.svg import to_svg
+from arm_node.drawing import Digraph, Edge, Shape, Vertex, to_svg
 
 IMAGES = Path(__file__).with_name("images")
 

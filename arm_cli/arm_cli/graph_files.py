@@ -5,8 +5,7 @@ import subprocess
 from pathlib import Path
 
 from arm_cli.errors import CommandUsageError
-from arm_node.drawing.digraph import Digraph, Shape
-from arm_node.drawing.svg import to_svg
+from arm_node.drawing import Digraph, Shape, to_svg
 
 
 def to_dot(graph: Digraph, downward: bool = False) -> str:

@@ -8,7 +8,7 @@ from collections.abc import MutableMapping, Sequence
 from pathlib import Path
 
 from arm_node.workarounds.lazy_messages import import_messages_lazily
-from arm_node.workarounds.torn_ports import remove_torn_ports
+from arm_node.workarounds.ports import remove_torn_ports
 
 INTERFACE_PACKAGES = (
     "tf2_msgs",

@@ -10,9 +10,11 @@ services still answer), executor, nodes, context. A supervisor is told when the 
 import gc
 import logging
 import os
+import select
 import signal
 import sys
 import warnings
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import pairwise
@@ -23,7 +25,6 @@ from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.notify import notify
 from arm_node.parameter_values import ParameterValueError
 from arm_node.printable import first_line, printable, printable_message
-from arm_node.stop_event import StopEvent
 from arm_node.user_file import MAX_TEXT_BYTES, check_file
 from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.local_profile import use_local_profile
@@ -42,9 +43,51 @@ SIGNAL_INTERVAL_S = 0.5
 FILE_ARGUMENTS = ("--params-file", "--log-config-file")
 """ROS arguments that a file follows."""
 
+MS_PER_S = 1000.0
+
 EXIT_OK = 0
 EXIT_FAILED = 1
 EXIT_USAGE = 2
+
+
+class StopEvent:
+    """Like `threading.Event`, but safe in signal handlers; once set, it stays set.
+
+    Python runs a handler in the main thread, between two steps of the code there. Within
+    `threading.Event.wait` that may be while it holds the event's lock, and `set` in the handler
+    would then wait for that lock for ever. Here a pipe replaces the lock: `set` writes to it, and
+    no thread reads from it, so it is readable for all waiting threads, now and later.
+
+    Every method may be called from any thread and from a signal handler.
+    """
+
+    def __init__(self) -> None:
+        """Open the pipe; it is closed with the last reference to this object."""
+        self._readable, self._writable = os.pipe()
+        os.set_blocking(self._writable, False)
+        self._is_set = False
+        weakref.finalize(self, _close, self._readable, self._writable)
+
+    def is_set(self) -> bool:
+        """Return whether `set` was called."""
+        return self._is_set
+
+    def set(self) -> None:
+        """Wake all waiting threads; a second call does nothing."""
+        if not self._is_set:
+            self._is_set = True
+            os.write(self._writable, b"\0")
+
+    def wait(self, timeout_s: float | None = None) -> bool:
+        """Block until `set` is called; return whether it was, within the timeout in s."""
+        poll = select.poll()
+        poll.register(self._readable, select.POLLIN)
+        return bool(poll.poll(None if timeout_s is None else timeout_s * MS_PER_S))
+
+
+def _close(*descriptors: int) -> None:
+    for descriptor in descriptors:
+        os.close(descriptor)
 
 
 class NodeProcess:
@@ -206,7 +249,7 @@ def _leave_hanging_callbacks(exit_code: int) -> None:
 def _run_initialised(
     application: Application, user_errors: tuple[type[Exception], ...], stop: StopEvent
 ) -> int:
-    from arm_node.log_bridge import bridge_logging
+    from arm_node.ros_logging import bridge_logging
     from arm_node.workarounds.parameter_types import refuse_unknown_parameter_types
 
     refuse_unknown_parameter_types()

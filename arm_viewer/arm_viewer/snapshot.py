@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.urdf.robot import Robot
-from arm_node.drawing.node_graph import NodeTopics
+from arm_node.drawing import NodeTopics
 from arm_node.rigid_transform import RigidTransform
 
 

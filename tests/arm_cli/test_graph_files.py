@@ -7,7 +7,7 @@ import pytest
 from arm_cli import graph_files
 from arm_cli.errors import CommandUsageError
 from arm_cli.graph_files import to_dot, to_mermaid
-from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
+from arm_node.drawing import Digraph, Edge, Shape, Vertex
 
 
 def graph_of(*pairs, label=""):

@@ -6,10 +6,7 @@ from xml.etree import ElementTree
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
-from arm_node.drawing.layered_layout import place
-from arm_node.drawing.node_graph import NodeTopics, node_graph
-from arm_node.drawing.svg import to_svg
+from arm_node.drawing import Digraph, Edge, NodeTopics, Shape, Vertex, node_graph, place, to_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 TALK = (

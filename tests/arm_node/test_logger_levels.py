@@ -43,7 +43,7 @@ def get_level(node: FakeNode, name: str) -> int:
 
 @pytest.fixture
 def node() -> FakeNode:
-    from arm_node.logger_levels import LoggerLevelServices
+    from arm_node.ros_logging import LoggerLevelServices
 
     node = FakeNode("levels_controller", "left.levels_controller")
     LoggerLevelServices(node)
@@ -54,7 +54,7 @@ def node() -> FakeNode:
 def test_what_a_node_logs_through_python_follows_its_level(
     node: FakeNode, name: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    from arm_node.log_bridge import bridge_logging
+    from arm_node.ros_logging import bridge_logging
 
     core = logging.getLogger("levels_controller")
     with bridge_logging():

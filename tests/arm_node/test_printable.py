@@ -6,9 +6,9 @@ import sys
 import pytest
 
 import launch_py.printable
-from arm_node import log_bridge
-from arm_node.log_bridge import RosLogHandler
+from arm_node import ros_logging
 from arm_node.printable import first_line, printable, printable_document, printable_message
+from arm_node.ros_logging import RosLogHandler
 
 CLEAR = "\x1b[2J"
 
@@ -61,7 +61,7 @@ def test_what_is_logged_is_one_message_and_a_traceback_stays_readable(monkeypatc
             calls.append((severity.name, name, function, file))
 
     calls = []
-    monkeypatch.setattr(log_bridge, "rclpy_implementation", Rcutils())
+    monkeypatch.setattr(ros_logging, "rclpy_implementation", Rcutils())
     logger = logging.Logger("core")
     logger.addHandler(RosLogHandler())
     logger.error("no controller %s", f"x\n[INFO] forged{CLEAR}")

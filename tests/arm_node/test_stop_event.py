@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from arm_node.stop_event import StopEvent
+from arm_node.process import StopEvent
 
 
 @pytest.fixture

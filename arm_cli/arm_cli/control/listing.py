@@ -17,7 +17,7 @@ from arm_cli.control.manager import (
 )
 from arm_cli.graph_files import write_picture
 from arm_cli.output import colour, print_json, say, say_coloured
-from arm_node.drawing.digraph import Digraph, Edge, Shape, Vertex
+from arm_node.drawing import Digraph, Edge, Shape, Vertex
 from arm_node.printable import printable
 
 _PARTS: dict[str, tuple[str, Callable[[Any], Iterable[str]]]] = {

@@ -9,8 +9,7 @@ from arm_cli.errors import CommandUsageError
 from arm_cli.graph_files import to_dot, to_mermaid, write_text
 from arm_cli.output import say_document
 from arm_cli.ros.connection import connect
-from arm_node.drawing.node_graph import NodeTopics, node_graph
-from arm_node.drawing.svg import to_svg
+from arm_node.drawing import NodeTopics, node_graph, to_svg
 
 if TYPE_CHECKING:
     from arm_cli.ros.graph import Graph

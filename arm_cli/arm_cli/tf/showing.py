@@ -12,7 +12,7 @@ from arm_cli.graph_files import has_graphviz, write_picture
 from arm_cli.output import print_json, say, say_document
 from arm_cli.ros.connection import connect
 from arm_cli.tf.frame_log import FrameHistory, FrameLog, Lookup
-from arm_node.drawing.digraph import Digraph, Edge, Vertex
+from arm_node.drawing import Digraph, Edge, Vertex
 
 TREE_LISTEN_S, VIEW_LISTEN_S = 1.0, 5.0
 

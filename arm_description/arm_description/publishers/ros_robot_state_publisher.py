@@ -30,6 +30,7 @@ from arm_node.parameters import declare_from, given_parameters
 from arm_node.printable import printable
 from arm_node.setting import settings_of
 from arm_node.user_file import read_text
+from arm_node.workarounds.clocks import StampClock
 from arm_node.workarounds.joint_state_encoding import (
     NANOSECONDS,
     EncodingError,
@@ -37,7 +38,6 @@ from arm_node.workarounds.joint_state_encoding import (
     read_joint_state,
 )
 from arm_node.workarounds.message_template import MessageTemplate
-from arm_node.workarounds.stamp_clock import StampClock
 
 
 class _TransformPublisher:

@@ -5,8 +5,8 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from arm_control.loop.outbox import Outbox
+from arm_node.workarounds.clocks import ProcessClock
 from arm_node.workarounds.message_template import MessageTemplate, raw_sender
-from arm_node.workarounds.process_clock import ProcessClock
 
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 """Reliable, so that both default and best-effort subscribers match."""

@@ -12,7 +12,7 @@ from arm_control.manager.ros.controller_manager_server import ControllerManagerS
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.run.robot import AssembledRobot
 from arm_gazebo.run.robot_settings import RobotSettings
-from arm_node.workarounds.process_clock import ProcessClock
+from arm_node.workarounds.clocks import ProcessClock
 
 logger = logging.getLogger("controller_manager")
 

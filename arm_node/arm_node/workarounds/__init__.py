@@ -2,7 +2,8 @@
 
 Each is made for one version of a library. With any other version it is off, and the process logs
 that in one line. `ARM_WITHOUT=name,name` switches workarounds off by hand, `ARM_WITHOUT=all` all of
-them; see `switch`.
+them; see `switch`. torn_ports, lost_ports and signs_of_life are in the module `ports`, stamp_clock
+and process_clock in `clocks`, and the others in modules of their names.
 
 | name                 | works around                                | made for         | upstream |
 | -------------------- | ------------------------------------------- | ---------------- | -------- |

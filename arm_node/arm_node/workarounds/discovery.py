@@ -14,9 +14,8 @@ from operator import methodcaller
 from pathlib import Path
 from typing import Any, TypeVar
 
-from arm_node.workarounds.lost_ports import lost_ports
+from arm_node.workarounds.ports import lost_ports, shorten_liveness_pause
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
-from arm_node.workarounds.signs_of_life import shorten_liveness_pause
 from arm_node.workarounds.switch import is_on
 
 ATTEMPTS = 5
@@ -64,7 +63,7 @@ def prompt_discovery() -> Iterator[None]:
     SCHED_RR, if the process may use it, also keeps other processes off the processor; SCHED_BATCH
     needs no privilege. SCHED_FIFO would not work: one of Fast DDS's threads may wait for this one
     in a busy loop and would never yield the processor. Afterwards all threads are scheduled as
-    before, and the process's liveness flag is refreshed often; see `signs_of_life`.
+    before, and the process's liveness flag is refreshed often; see `ports`.
 
     Only this user can read what Fast DDS creates in shared memory; see `private_files`.
     """

@@ -13,8 +13,8 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
+from arm_node.workarounds.ports import OWN_PROCESS, mapped_files, open_files
 from arm_node.workarounds.switch import is_on
-from arm_node.workarounds.used_files import OWN_PROCESS, mapped_files, open_files
 
 UMASK = 0o077
 OWNER_ONLY = 0o600

@@ -5,8 +5,7 @@ from html import escape
 
 from viser import GuiApi
 
-from arm_node.drawing.node_graph import NodeTopics, node_graph
-from arm_node.drawing.svg import to_svg
+from arm_node.drawing import NodeTopics, node_graph, to_svg
 from arm_viewer.requests import MeasureRates, Send
 from arm_viewer.snapshot import Snapshot, Topic
 

@@ -9,7 +9,7 @@ from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
-from arm_node.drawing.node_graph import NodeTopics
+from arm_node.drawing import NodeTopics
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.ros.observer import TopicTypes, used_types
 from arm_viewer.snapshot import Topic

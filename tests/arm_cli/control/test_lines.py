@@ -7,7 +7,7 @@ from controller_manager_msgs.msg import ChainConnection, ControllerState
 from arm_cli.control import listing
 from arm_cli.control.changing import _impossible
 from arm_cli.control.listing import controller_graph
-from arm_node.drawing.digraph import Edge
+from arm_node.drawing import Edge
 
 UPPER = ControllerState(
     name="upper",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from arm_node.workarounds.lost_ports import lost_ports
+from arm_node.workarounds.ports import lost_ports
 
 pytestmark = pytest.mark.workaround("lost_ports")
 
@@ -72,8 +72,8 @@ def test_an_unreadable_process_has_lost_nothing(tmp_path):
 OWN_PORTS = """
 import rclpy
 from arm_node.workarounds.discovery import first_node
-from arm_node.workarounds.lost_ports import lost_ports
-from arm_node.workarounds.used_files import mapped_files, read_ports
+from arm_node.workarounds.ports import lost_ports
+from arm_node.workarounds.ports import mapped_files, read_ports
 rclpy.init()
 node = first_node(lambda: rclpy.create_node("listener"))
 ports = read_ports()

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from arm_node.workarounds.process_clock import ProcessClock
+from arm_node.workarounds.clocks import ProcessClock
 
 pytestmark = [pytest.mark.ros, pytest.mark.workaround("process_clock")]
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from arm_node.workarounds.signs_of_life import PAUSE_MS, shorten_liveness_pause
+from arm_node.workarounds.ports import PAUSE_MS, shorten_liveness_pause
 
 pytestmark = pytest.mark.workaround("signs_of_life")
 
@@ -93,7 +93,7 @@ from arm_node.workarounds.local_profile import use_local_profile
 use_local_profile(os.environ)
 import rclpy
 from arm_node.workarounds.discovery import prompt_discovery
-from arm_node.workarounds.used_files import read_ports
+from arm_node.workarounds.ports import read_ports
 rclpy.init()
 with prompt_discovery():
     node = rclpy.create_node("alive")

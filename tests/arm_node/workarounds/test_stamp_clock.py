@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_node.workarounds.stamp_clock import MAX_GROUPS, StampClock
+from arm_node.workarounds.clocks import MAX_GROUPS, StampClock
 
 pytestmark = [pytest.mark.ros, pytest.mark.workaround("stamp_clock")]
 

@@ -85,7 +85,7 @@ def test_with_another_middleware_those_of_fast_dds_are_off():
 
 TORN = """
 import os, sys, time
-from arm_node.workarounds.torn_ports import remove_torn_ports
+from arm_node.workarounds.ports import remove_torn_ports
 path = os.path.join(sys.argv[1], "fastrtps_port7411")
 open(path, "wb").close()
 os.utime(path, (0, 0))

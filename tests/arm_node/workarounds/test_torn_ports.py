@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from arm_node.workarounds.torn_ports import LEAST_AGE_S, remove_torn_ports
+from arm_node.workarounds.ports import LEAST_AGE_S, remove_torn_ports
 
 pytestmark = pytest.mark.workaround("torn_ports")
 

@@ -22,8 +22,8 @@ from arm_control.manager.ros.parameter_node import TYPE_OF_CONTROLLER, Parameter
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
-from arm_node.logger_levels import LoggerLevelServices
-from arm_node.workarounds.process_clock import ProcessClock
+from arm_node.ros_logging import LoggerLevelServices
+from arm_node.workarounds.clocks import ProcessClock
 
 logger = logging.getLogger("controller_manager")
 

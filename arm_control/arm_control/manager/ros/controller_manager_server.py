@@ -50,8 +50,8 @@ from arm_control.manager.ros.messages import (
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_description.urdf.description import Description, text_of
 from arm_node.executor_thread import ExecutorThread
-from arm_node.logger_levels import LoggerLevelServices
 from arm_node.names import as_node_name
+from arm_node.ros_logging import LoggerLevelServices
 
 logger = logging.getLogger("controller_manager")
 

@@ -28,7 +28,7 @@ from arm_control.manager.ros.parameter_node import ParameterNode
 from arm_control.manager.settings import ManagerSettings
 from arm_control.parameters import specs_of
 from arm_node.executor_thread import ExecutorThread
-from arm_node.logger_levels import LoggerLevelServices
+from arm_node.ros_logging import LoggerLevelServices
 
 LONGEST_WAIT_S = 1.0
 """Without a timeout, spin_once of the event-driven executor polls the clock and holds the GIL."""

@@ -1,1 +1,0 @@
-"""Draws graphs: vertices and edges, a layered layout, and SVG."""
