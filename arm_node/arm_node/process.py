@@ -13,6 +13,7 @@ import os
 import select
 import signal
 import sys
+import traceback
 import warnings
 import weakref
 from collections.abc import Callable, Iterator, Sequence
@@ -269,14 +270,31 @@ def _run_initialised(
                 process.wait()
                 notify("STOPPING=1")
         except (ParameterValueError, *user_errors) as error:
-            logging.getLogger("arm_node").critical("%s", error)
+            _logger_of(error, process).critical("%s", error)
             process.stop(EXIT_FAILED)
         except _refusals() as error:
-            logging.getLogger("arm_node").critical("cannot create the node: %s", first_line(error))
+            _logger_of(error, process).critical("cannot create the node: %s", first_line(error))
             process.stop(EXIT_FAILED)
         finally:
             process.destroy_nodes()
     return process.exit_code
+
+
+def _logger_of(error: Exception, process: NodeProcess) -> logging.Logger:
+    """Return the logger of the node whose code raised, or else of the process's first node.
+
+    A node that could not be made has a name, too, which users look for in the log.
+    """
+    from rclpy.node import Node
+
+    frames = traceback.walk_tb(error.__traceback__)
+    raising = [frame.f_locals.get("self") for frame, _ in frames]
+    named = (
+        node.get_logger().name
+        for node in (*raising, *process.executor.get_nodes())
+        if isinstance(node, Node) and hasattr(node, "_logger")
+    )
+    return logging.getLogger(next(named, "arm_node"))
 
 
 def run_node(
