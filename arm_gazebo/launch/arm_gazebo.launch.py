@@ -32,6 +32,8 @@ OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=r
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
 OF_FILE = EqualsSubstitution(LaunchConfiguration("spawn"), "auto")
 IS_ALONE = EqualsSubstitution(LaunchConfiguration("copies"), "1")
+HAS_CAMERA = NotSubstitution(EqualsSubstitution(LaunchConfiguration("camera", default=""), "none"))
+"""The argument is declared in the included file, which has a camera by default."""
 
 
 def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
@@ -41,6 +43,7 @@ def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
 
 def panels() -> list[ReadyPanel]:
     """Return the panels shown to the user; sim.launch.py has that of copies."""
+    is_ros1 = AndSubstitution(IS_ALONE, IS_ROS1)
     is_ros2 = AndSubstitution(IS_ALONE, NotSubstitution(IS_ROS1))
     return [
         ReadyPanel(
@@ -54,21 +57,25 @@ def panels() -> list[ReadyPanel]:
         ),
         ReadyPanel(
             title="The arm is up",
-            topics=[
-                ("/joint_states", "sensor_msgs/msg/JointState"),
-                ("/videocamera", "sensor_msgs/msg/Image"),
-            ],
+            topics=[("/joint_states", "sensor_msgs/msg/JointState")],
             condition=IfCondition(is_ros2),
+        ),
+        ReadyPanel(
+            topics=[("/videocamera", "sensor_msgs/msg/Image")],
+            condition=IfCondition(AndSubstitution(is_ros2, HAS_CAMERA)),
         ),
         ReadyPanel(
             title="The arm is up, as in ROS 1",
             topics=[
                 ("/arm/j0p_controller/command", "std_msgs/msg/Float64; likewise j1p, j2p, j3p"),
                 ("/arm/joint_states", "sensor_msgs/msg/JointState, 50 Hz"),
-                ("/camera/image_raw", "sensor_msgs/msg/Image, 800x800"),
             ],
             commands=[("its own pose", OWN_POSE)],
-            condition=IfCondition(AndSubstitution(IS_ALONE, IS_ROS1)),
+            condition=IfCondition(is_ros1),
+        ),
+        ReadyPanel(
+            topics=[("/camera/image_raw", "sensor_msgs/msg/Image, 800x800")],
+            condition=IfCondition(AndSubstitution(is_ros1, HAS_CAMERA)),
         ),
     ]
 

@@ -38,8 +38,8 @@ PLACE = [each for each in settings_of(RobotSettings) if each.launches]
 SWITCH = ["true", "false"]
 
 
-def arguments() -> list[DeclareLaunchArgument]:
-    """Return the arguments beside `model`, those about folders, and what RViz shows."""
+def robot_arguments() -> list[DeclareLaunchArgument]:
+    """Return the arguments about one robot beside `model`, and about several."""
     return [
         DeclareLaunchArgument(
             "model_args",
@@ -80,7 +80,12 @@ def arguments() -> list[DeclareLaunchArgument]:
             default_value="1.0",
             description="distance of neighbours on that grid, in m; the first is at `pose`",
         ),
-        *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in SIMULATION),
+    ]
+
+
+def node_arguments() -> list[DeclareLaunchArgument]:
+    """Return the arguments about the nodes that are started."""
+    return [
         DeclareLaunchArgument(
             "log_level",
             default_value="info",
@@ -304,7 +309,9 @@ def generate_launch_description() -> LaunchDescription:
             AppendEnvironmentVariable(
                 MODEL_PATH, LaunchConfiguration("resource_path"), prepend=True
             ),
-            *arguments(),
+            *robot_arguments(),
+            *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in SIMULATION),
+            *node_arguments(),
             DeclareLaunchArgument(
                 "rviz_config_file",
                 default_value=PathJoinSubstitution(

@@ -189,3 +189,41 @@ def test_a_parameter_file_that_cannot_be_read_is_a_sentence(tmp_path, kind, prob
         check=False,
     )
     assert (run.returncode, run.stderr) == (2, f"cannot start ROS: cannot read {file}: {problem}\n")
+
+
+REFUSING = """
+import sys
+
+from arm_node.process import run_node
+
+def make(process):
+    from rclpy.node import Node
+
+    class Worker(Node):
+        def __init__(self):
+            super().__init__("worker")
+            raise ValueError("no such robot")
+
+    return Worker()
+
+sys.exit(run_node(make, ["program", *sys.argv[1:]], user_errors=(ValueError,)))
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [((), "worker"), (("--ros-args", "-r", "__node:=other", "-r", "__ns:=/left"), "left.other")],
+)
+def test_a_node_that_cannot_be_made_says_so_under_its_own_name(
+    arguments: tuple[str, ...], name: str
+):
+    run = subprocess.run(
+        [sys.executable, "-c", REFUSING, *arguments],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert run.returncode == 1
+    assert f"[{name}]: no such robot" in run.stderr
+    assert "Traceback" not in run.stderr

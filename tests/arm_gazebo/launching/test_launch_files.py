@@ -293,6 +293,14 @@ controller_manager:
 """
 
 
+@pytest.mark.parametrize("interface", ["ros2", "ros1"])
+@pytest.mark.parametrize("camera", ["front", "none"])
+def test_an_arm_without_a_camera_shows_no_topic_of_pictures(interface, camera):
+    plan = plan_of("arm_gazebo.launch.py", interface=interface, camera=camera)
+    shown = [topic for panel in plan.panels for topic, _ in panel.topics]
+    assert ("/videocamera" in shown or "/camera/image_raw" in shown) == (camera != "none")
+
+
 def test_a_file_of_controllers_starts_what_it_has(tmp_path):
     file = tmp_path / "mine.yaml"
     file.write_text(CONTROLLERS.format("ur_controllers"))
