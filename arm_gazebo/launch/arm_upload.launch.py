@@ -29,7 +29,7 @@ def numbers(text: str, name: str) -> Sequence[float]:
 def upload(context: LaunchContext) -> list[Action]:
     """Return the state publisher with the description, placed in the world if requested."""
     from arm_description.xacro.expansion import expand_xacro
-    from arm_gazebo.robot.placed_description import placed
+    from arm_gazebo.launching.edited_description import placed
 
     words = context.launch_configurations
     pose = [

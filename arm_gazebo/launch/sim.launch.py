@@ -204,7 +204,7 @@ def robots_of(words: Mapping[str, str]) -> "Mapping[str, PlacedRobot]":
 def simulate_several(robots: "Mapping[str, PlacedRobot]") -> list[Action]:
     """Return the nodes of robots in one world, by namespace."""
     from arm_gazebo.launching.controllers_file import controllers_in_namespace
-    from arm_gazebo.robot.placed_description import placed
+    from arm_gazebo.launching.edited_description import placed
 
     settings: dict[str, Any] = {"robots": list(robots)}
     controllers, remarks, descriptions = [], [], {}

@@ -1,9 +1,11 @@
 """Reads mesh files of every kind that a description may name.
 
-STL and OBJ files have their own readers. trimesh reads the others: .dae .glb .gltf .ply .off .3mf.
+STL and OBJ files have their own readers, without a mesh library, which takes long to import.
+trimesh reads the others: .dae .glb .gltf .ply .off .3mf.
 """
 
 import io
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -13,12 +15,11 @@ from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.collada import read_collada
-from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData
+from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData, merged
 from arm_description.mesh.gltf import read_gltf
 from arm_description.mesh.obj import read_obj
-from arm_description.mesh.packed import read_packed
+from arm_description.mesh.packed import read_packed, unpacked_bytes
 from arm_description.mesh.polygons import notched
-from arm_description.mesh.stl import read_stl
 from arm_node.user_file import check_file, read_bytes
 
 READERS = {".gltf": read_gltf, ".glb": read_gltf}
@@ -27,6 +28,7 @@ READERS_WITH_UNIT = {".dae": read_collada, ".3mf": read_packed}
 """The same for files that name their unit; other formats are in m."""
 
 FACES_DIFFER = "; if its faces have different numbers of corners, export it as triangles"
+PICTURES = (".png", ".jpg", ".jpeg", ".tga", ".tif", ".tiff", ".bmp", ".gif", ".dds", ".webp")
 HINTS = {".ply": FACES_DIFFER, ".off": FACES_DIFFER}
 """What trimesh's own message does not say."""
 
@@ -46,15 +48,13 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
     # trimesh takes half a second to import, and STL files do not need it.
     import trimesh
 
-    from arm_description.mesh.side_files import SideFiles
-
     try:
         if suffix == ".off":
             _refuse_notches(*_off_polygons(content))
         scene = trimesh.load_scene(
             io.BytesIO(content),
             file_type=suffix.removeprefix("."),
-            resolver=SideFiles(path),
+            resolver=_side_files(path),
             process=False,
             group_material=True,
         )
@@ -70,6 +70,25 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         hint = HINTS.get(suffix, "")
         raise MeshFileError(f"{type(error).__name__}: {error}{hint}") from error
     return parts
+
+
+def _side_files(mesh: Path) -> Any:
+    """Return what gives trimesh the regular files beside or below a mesh, except pictures.
+
+    They are materials of an .obj or data of a .gltf. Parts of a robot have one colour each, so
+    pictures are not needed.
+    """
+    from trimesh.resolvers import FilePathResolver
+
+    class SideFiles(FilePathResolver):
+        def get(self, name: str) -> bytes:
+            """Return the content of a file; raise OSError, or ValueError outside the folder."""
+            path = self.absolute(name)
+            if path.suffix.lower() in PICTURES:
+                raise FileNotFoundError(f"the picture {path} is not needed")
+            return read_bytes(path, LARGEST_BYTES)
+
+    return SideFiles(str(mesh))
 
 
 def _has_notches(mesh: Any) -> bool:
@@ -160,7 +179,7 @@ def check_mesh_file(path: Path) -> None:
         check_file(path, LARGEST_BYTES)
     except (OSError, ValueError) as error:
         raise MeshFileError(str(error)) from error
-    if suffix == PACKED_SUFFIX and (size := _packed_bytes(path)) > LARGEST_BYTES:
+    if suffix == PACKED_SUFFIX and (size := unpacked_bytes(path)) > LARGEST_BYTES:
         raise MeshFileError(f"it unpacks to {size} bytes; at most {LARGEST_BYTES} are read")
 
 
@@ -171,15 +190,43 @@ def read_mesh_file(path: Path) -> tuple[MeshData, ...]:
         MeshFileError: the file is broken, or has no triangles.
     """
     if path.suffix.lower() == STL_SUFFIX:
-        return (read_stl(read_bytes(path, LARGEST_BYTES)),)
+        return (_read_stl(read_bytes(path, LARGEST_BYTES)),)
     parts = read_obj(path) if path.suffix.lower() == OBJ_SUFFIX else read_scene(path)
     if not parts:
         raise MeshFileError("no triangles in it")
     return parts
 
 
-def _packed_bytes(path: Path) -> int:
-    # Other meshes do not need zipfile and lxml.
-    from arm_description.mesh.packed import unpacked_bytes
+HEADER_BYTES = 80
+TRIANGLE = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
+VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
-    return unpacked_bytes(path)
+
+def _read_stl(data: bytes) -> MeshData:
+    """Return the mesh of an STL file's bytes.
+
+    Raises:
+        MeshFileError: the bytes are not STL, or incomplete.
+    """
+    start = HEADER_BYTES + 4
+    if len(data) >= start:
+        count = int.from_bytes(data[HEADER_BYTES:start], "little")
+        # A binary file may also start with the word 'solid', so the size decides.
+        if count and len(data) >= start + count * TRIANGLE.itemsize:
+            triangles = np.frombuffer(data, TRIANGLE, count, start)
+            return merged(triangles["vertices"].reshape(-1, 3))
+    if not data.lstrip()[:5].lower() == b"solid":
+        raise MeshFileError("neither a text STL nor a complete binary one")
+    return _read_text_stl(data)
+
+
+def _read_text_stl(data: bytes) -> MeshData:
+    corners = VERTEX.findall(data)
+    if not corners or len(corners) % 3:
+        raise MeshFileError(
+            f"a text STL whose number of vertices, {len(corners)}, is not a multiple of 3"
+        )
+    try:
+        return merged(np.array(corners).astype(np.float32))
+    except ValueError as error:
+        raise MeshFileError(f"a text STL with an invalid coordinate: {error}") from error

@@ -17,10 +17,8 @@ from arm_description.urdf.element import Remark
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Mesh, Robot
 from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
-from arm_gazebo.check.mesh_sizes import mesh_sizes
-from arm_gazebo.check.ros_parser import refused_by_ros
-from arm_gazebo.check.units import other_units
-from arm_gazebo.check.unread_elements import unread_elements
+from arm_gazebo.check.plausibility import mesh_sizes, other_units
+from arm_gazebo.check.unread_elements import refused_by_ros, unread_elements
 from arm_gazebo.drives.servo_tuning import tune, weak_drives
 from arm_gazebo.drives.slow_joints import slow_joints
 from arm_gazebo.errors import GazeboError

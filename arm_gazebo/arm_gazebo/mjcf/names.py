@@ -1,8 +1,10 @@
 """Names in a MuJoCo specification, which must be unique among elements of one kind."""
 
 from collections.abc import Collection
+from typing import TYPE_CHECKING
 
-import mujoco
+if TYPE_CHECKING:
+    import mujoco
 
 
 def free_name(name: str, taken: Collection[str]) -> str:
@@ -17,7 +19,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
 UNNAMED_BODY = "thing"
 
 
-def name_elements(spec: mujoco.MjSpec) -> None:
+def name_elements(spec: "mujoco.MjSpec") -> None:
     """Give every unnamed element that has a state a unique name, so that a swap finds it again."""
     bodies = {body.name for body in spec.bodies}
     for body in spec.bodies:

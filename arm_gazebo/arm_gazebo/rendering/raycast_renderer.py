@@ -1,13 +1,19 @@
-"""Render without OpenGL, by casting rays into the scene with MuJoCo's collision code."""
+"""Render without OpenGL, by casting rays into the scene with MuJoCo's collision code.
 
+Few rays are enough, with more only where something changes. Samples are first taken on a coarse
+lattice. A point between two similar samples gets their mean; a point between two different samples
+is sampled. Repeating this until every pixel is filled costs a fraction of a sample per pixel and
+keeps edges sharp. Objects thinner than the coarse lattice's step may be missed.
+"""
+
+import math
 import time
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.rendering.adaptive_sampling import MAX_STEP, SamplingStep, fill_picture
-from arm_gazebo.rendering.lighting import Lighting
 from arm_gazebo.rendering.renderer import VISIBLE_GROUPS, camera_id
 from arm_gazebo.rendering.surface_colours import SurfaceColours
 from arm_gazebo.sensors.camera import CameraSensor
@@ -146,3 +152,168 @@ def _pixel_rays(sensor: CameraSensor) -> NDArray[np.float64]:
     rays[..., :2] = sensor.lens.rays(sensor.width, sensor.height) * (1.0, -1.0)
     margin = (0, MAX_STEP)
     return np.pad(rays, (margin, margin, (0, 0)), mode="reflect", reflect_type="odd")
+
+
+class Lighting:
+    """The head light and the active lights of one state of a model, as seen by one camera."""
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, forward: NDArray[np.float64]
+    ) -> None:
+        """Collect the lights.
+
+        Args:
+            model: the model.
+            data: state with up-to-date frames of the lights.
+            forward: (3,) unit vector along which the camera looks; the head light's direction.
+        """
+        self._model = model
+        self._data = data
+        self._forward = forward
+        self._active = [int(index) for index in np.flatnonzero(model.light_active)]
+
+    def brightness(
+        self, points: NDArray[np.float64], normals: NDArray[np.float64]
+    ) -> NDArray[np.float32]:
+        """Return the brightness (n, 3) of white surfaces, 1 for fully lit.
+
+        Args:
+            points: (n, 3) points on the surfaces, in m.
+            normals: (n, 3) outward unit normals there.
+        """
+        light = np.zeros(points.shape, np.float32)
+        head = self._model.vis.headlight
+        if head.active:
+            facing = np.maximum(-(normals @ self._forward), 0.0)[:, np.newaxis]
+            light += np.asarray(head.ambient) + facing * np.asarray(head.diffuse)
+        for index in self._active:
+            light += self._model.light_ambient[index]
+            light += (
+                self._diffuse(index, points, normals)[:, np.newaxis]
+                * (self._model.light_diffuse[index])
+            )
+        return light
+
+    def _diffuse(
+        self, index: int, points: NDArray[np.float64], normals: NDArray[np.float64]
+    ) -> NDArray[np.float32]:
+        direction = self._data.light_xdir[index]
+        kind = self._model.light_type[index]
+        if kind == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL:
+            return np.maximum(-(normals @ direction), 0.0).astype(np.float32)
+        beams = points - self._data.light_xpos[index]
+        distances = np.maximum(np.linalg.norm(beams, axis=1), 1e-9)
+        beams /= distances[:, np.newaxis]
+        facing = np.maximum(-np.einsum("ij,ij->i", normals, beams), 0.0)
+        constant, linear, square = self._model.light_attenuation[index]
+        facing /= constant + distances * (linear + distances * square)
+        if kind == mujoco.mjtLightType.mjLIGHT_SPOT:
+            inside = beams @ direction
+            edge = math.cos(math.radians(float(self._model.light_cutoff[index])))
+            facing *= np.where(inside > edge, inside, 0.0) ** self._model.light_exponent[index]
+        return facing.astype(np.float32)
+
+
+FIRST_SAMPLES = 45_000
+"""Limit on the lattice rays of the first image; later images adapt to the time it took."""
+MAX_STEP = 8
+AVERAGED_FRAMES = 10
+AFFORDABLE = 0.8
+"""Fraction of the frame period that rendering may take."""
+FINER_COST = 4.0
+"""Halving the step multiplies the number of rays by at most this factor."""
+
+
+class SamplingStep:
+    """The step of the coarse lattice in pixels, a power of two, for one camera.
+
+    For a camera with a rate of 0, whose next image nobody waits for, every pixel is cast.
+
+    Attributes:
+        step: the step for the next image.
+    """
+
+    def __init__(self, width: int, height: int, rate_hz: float) -> None:
+        self.step = 1
+        self._affordable_s = AFFORDABLE / rate_hz if rate_hz else math.inf
+        while rate_hz and self.step < MAX_STEP and width * height > FIRST_SAMPLES * self.step**2:
+            self.step *= 2
+        self._start_average()
+
+    def note(self, duration_s: float) -> None:
+        """Adapt the step to the time in s that an image took to render."""
+        self._sum_s += duration_s
+        self._count += 1
+        if self._count < AVERAGED_FRAMES:
+            return
+        mean_s = self._sum_s / self._count
+        if mean_s > self._affordable_s and self.step < MAX_STEP:
+            self.step *= 2
+        elif mean_s * FINER_COST < self._affordable_s and self.step > 1:
+            self.step //= 2
+        self._start_average()
+
+    def _start_average(self) -> None:
+        self._sum_s = 0.0
+        self._count = 0
+
+
+Picture = NDArray[np.uint8]
+Sample = Callable[[NDArray[np.intp], NDArray[np.intp]], Picture]
+"""Returns the colours (n, 3) of the pixels with these rows and columns, (n,) each."""
+
+ALIKE_MASK = 0xF8
+"""Two colours are similar if no channel differs in these bits, that is by 8 or more of 255."""
+
+
+def fill_picture(picture: Picture, step: int, sample: Sample) -> None:
+    """Fill an image (height, width, 3).
+
+    Args:
+        picture: the image, which is overwritten.
+        step: step of the coarse lattice in pixels, a power of two; 1 samples every pixel.
+        sample: returns colours; it is also called for pixels up to `step` beyond the right and
+            lower edges.
+    """
+    height, width, _ = picture.shape
+    rows, columns = (np.arange(0, size - 1 + step, step) for size in (height, width))
+    level = _sample_lattice(rows, columns, sample)
+    while step > 1:
+        step //= 2
+        level = _insert_columns(level, step, sample)
+        level = _insert_rows(level, step, sample)
+    np.copyto(picture, level[:height, :width])
+
+
+def _sample_lattice(rows: NDArray[np.intp], columns: NDArray[np.intp], sample: Sample) -> Picture:
+    colours = sample(np.repeat(rows, len(columns)), np.tile(columns, len(rows)))
+    return colours.reshape(len(rows), len(columns), 3)
+
+
+def _insert_columns(level: Picture, step: int, sample: Sample) -> Picture:
+    """Insert a column between every two; rows stay 2 * step apart, columns become step apart."""
+    finer = np.empty((level.shape[0], 2 * level.shape[1] - 1, 3), np.uint8)
+    finer[:, ::2] = level
+    means, differ = _compare(level[:, :-1], level[:, 1:])
+    rows, columns = np.nonzero(differ)
+    means[rows, columns] = sample(rows * 2 * step, (2 * columns + 1) * step)
+    finer[:, 1::2] = means
+    return finer
+
+
+def _insert_rows(level: Picture, step: int, sample: Sample) -> Picture:
+    """Insert a row between every two; columns are already step apart."""
+    finer = np.empty((2 * level.shape[0] - 1, level.shape[1], 3), np.uint8)
+    finer[::2] = level
+    means, differ = _compare(level[:-1], level[1:])
+    rows, columns = np.nonzero(differ)
+    means[rows, columns] = sample((2 * rows + 1) * step, columns * step)
+    finer[1::2] = means
+    return finer
+
+
+def _compare(a: Picture, b: Picture) -> tuple[Picture, NDArray[np.bool_]]:
+    """Return the means of two arrays of colours, and a mask of where they are not similar."""
+    means: Picture = (a >> np.uint8(1)) + (b >> np.uint8(1)) + (a & b & np.uint8(1))
+    gap = np.maximum(a, b) - np.minimum(a, b)
+    return means, ((gap[..., 0] | gap[..., 1] | gap[..., 2]) & ALIKE_MASK).astype(np.bool_)

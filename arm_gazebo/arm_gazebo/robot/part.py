@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from arm_control.hardware.info import HardwareInfo
 from arm_description.resources import ResourceFinder
-from arm_description.urdf.robot import Pose, Robot
+from arm_description.transforms import rotation_from_rpy
+from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Joint, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mesh.cache import MeshCache
@@ -21,15 +23,16 @@ from arm_gazebo.mjcf.memory_limit import WORLD_LIMIT, MemoryLimit
 from arm_gazebo.physics_timing import MAX_STEP_S
 from arm_gazebo.robot.actuation import Drive, RobotJoint, add_actuators, drives
 from arm_gazebo.robot.body_tree import WORLD_LINK, BodyTree, TreeOptions
-from arm_gazebo.robot.camera_mount import add_cameras
-from arm_gazebo.robot.collision_policy import CollisionLayer, exclude_neighbour_contacts
+from arm_gazebo.robot.collision_policy import (
+    CollisionLayer,
+    exclude_neighbour_contacts,
+    report_overlaps,
+)
 from arm_gazebo.robot.floor_contact import FloorContact
 from arm_gazebo.robot.gazebo_tags import GazeboTags
-from arm_gazebo.robot.initial_state import initial_positions
 from arm_gazebo.robot.link_geometry import LinkGeometry
 from arm_gazebo.robot.mimic_joints import add_equalities, mimic_rules, without_independent_mimics
 from arm_gazebo.robot.rollers import add_rollers
-from arm_gazebo.robot.start_contacts import report_overlaps
 from arm_gazebo.robot.wheels import set_up_wheels
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.contact import ContactSensor
@@ -253,3 +256,107 @@ def _joints(
             linear=joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE,
         )
     return joints
+
+
+FORWARD_TO_MUJOCO = np.array([0.5, 0.5, -0.5, -0.5])
+"""Rotates a ROS camera (looks along x, z up) to MuJoCo's (looks along -z, y up), w x y z."""
+PIXEL_M = 1e-6
+"""Size of a pixel of a camera with <intrinsics>."""
+MIN_BUFFER = 800
+"""Smallest side of the off-screen buffer in pixels: a renderer may need more than a camera."""
+
+
+def add_cameras(
+    spec: mujoco.MjSpec, bodies: Mapping[str, mujoco.MjsBody], cameras: Sequence[CameraSensor]
+) -> None:
+    """Add each camera to its link's body under the sensor's name, and enlarge the render buffer.
+
+    Raises:
+        ModelError: a camera's link does not exist, or the world already has a camera of that name.
+    """
+    buffer = spec.visual.global_
+    buffer.offwidth = max([MIN_BUFFER, buffer.offwidth, *(c.width for c in cameras)])
+    buffer.offheight = max([MIN_BUFFER, buffer.offheight, *(c.height for c in cameras)])
+    # Four samples a pixel and a shadow map of 4096 make a frame twenty times slower in software.
+    spec.visual.quality.offsamples = 0
+    spec.visual.quality.shadowsize = 512
+    for camera in cameras:
+        if camera.link not in bodies:
+            raise ModelError(
+                f"camera '{camera.name}' is on link '{camera.link}', which does not exist; "
+                f"the robot has {', '.join(bodies)}"
+            )
+        if spec.camera(camera.name) is not None:
+            raise ModelError(f"the world already has a camera '{camera.name}'; rename one of them")
+        orientation, quaternion = np.zeros(4), np.zeros(4)
+        mujoco.mju_mat2Quat(orientation, rotation_from_rpy(camera.rpy).ravel())
+        mujoco.mju_mulQuat(quaternion, orientation, FORWARD_TO_MUJOCO)
+        mounted = bodies[camera.link].add_camera(
+            name=camera.name,
+            pos=camera.xyz,
+            quat=quaternion,
+            resolution=[camera.width, camera.height],
+        )
+        _apply_lens(mounted, camera)
+
+
+def _apply_lens(mounted: mujoco.MjsCamera, camera: CameraSensor) -> None:
+    """Give a camera of the model the sensor's projection; MuJoCo has no distortion."""
+    lens = camera.lens
+    if not camera.intrinsics:
+        mounted.fovy = math.degrees(2 * math.atan(camera.height / 2 / lens.fy))
+        return
+    # Only the ratio of the sensor's sides counts, because all lengths are in pixels.
+    mounted.sensor_size = [camera.width * PIXEL_M, camera.height * PIXEL_M]
+    mounted.focal_pixel = [lens.fx, lens.fy]
+    # MuJoCo measures from the principal point to the middle of the picture.
+    mounted.principal_pixel = [camera.width / 2 - lens.cx, camera.height / 2 - lens.cy]
+
+
+def initial_positions(
+    robot: Robot,
+    hardware: Sequence[HardwareInfo],
+    follow: Mapping[str, Mimic],
+    report: BuildReport,
+) -> dict[str, float]:
+    """Return the starting position of every joint with one degree of freedom, in rad or m.
+
+    It is the `initial_value` of the hardware's position interface, or else 0, clamped to the
+    joint's limits. A mimic joint starts where its leader puts it.
+    """
+    given = _given_positions(hardware)
+    positions = {
+        joint.name: _within_limits(joint, given, report)
+        for joint in robot.joints
+        if joint.type.is_scalar
+    }
+    for name, rule in follow.items():
+        positions[name] = rule.position(positions[rule.joint])
+    return positions
+
+
+def _given_positions(hardware: Sequence[HardwareInfo]) -> dict[str, float]:
+    return {
+        joint.name: interface.initial_value
+        for component in hardware
+        for joint in component.joints
+        # The state interface takes precedence over the command interface.
+        for interface in (*joint.command_interfaces, *joint.state_interfaces)
+        if interface.name == "position" and interface.initial_value is not None
+    }
+
+
+def _within_limits(joint: Joint, given: Mapping[str, float], report: BuildReport) -> float:
+    wanted = given.get(joint.name, 0.0)
+    if joint.limit is None or joint.mimic is not None:
+        return wanted
+    position = min(max(wanted, joint.limit.lower), joint.limit.upper)
+    if not math.isclose(position, wanted, abs_tol=1e-9):
+        source = "its initial_value" if joint.name in given else "its zero"
+        report.repair(
+            f"joint '{joint.name}'",
+            f"{source} of {wanted:g} is outside its limits of {joint.limit.lower:g} and "
+            f"{joint.limit.upper:g}; it starts at {position:g}",
+            joint.line,
+        )
+    return position

@@ -2,12 +2,17 @@
 
 import logging
 import math
+from collections import deque
 from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from arm_description.errors import UrdfError
+from arm_description.transforms import rotation_from_rpy
 from arm_description.urdf.description import Description, RobotDescription, as_description
+from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.robot import Pose
 from arm_gazebo.build_report import Finding
 from arm_gazebo.sensors.camera import (
@@ -19,8 +24,6 @@ from arm_gazebo.sensors.camera import (
     SAME_FRAME,
     CameraSensor,
 )
-from arm_gazebo.sensors.camera_frames import ROTATION_TOLERANCE, CameraFrames
-from arm_gazebo.sensors.lens_reader import with_lens
 from arm_gazebo.sensors.noise import noise_type
 from arm_gazebo.sensors.reader import TYPES, sensor_type
 from arm_gazebo.sensors.tags import (
@@ -135,7 +138,7 @@ def _read_camera(
     topics = _Topics.of(tags, taken)
     numbers = tags.pose()
     pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
-    frames = CameraFrames(document, tags.reference)
+    frames = _CameraFrames(document, tags.reference)
     frame = tags.frame(frames.optical())
     optics = frames.optics_in(frame, pose)
     if optics is not None and np.abs(optics[:3, :3] - np.eye(3)).max() > ROTATION_TOLERANCE:
@@ -169,7 +172,7 @@ def _read_camera(
         if optics is None or not topics.points_topics
         else tuple(optics[:3].ravel().tolist()),
     )
-    return with_lens(camera, tags)
+    return _with_lens(camera, tags)
 
 
 def _noise(tags: SensorTags, tag: str, least: float, must_be: str) -> float:
@@ -197,3 +200,155 @@ def _take_topics(camera: CameraSensor, tags: SensorTags, taken: dict[str, Camera
         if topic in taken:
             raise tags.topic_error(topic, "camera", taken[topic])
         taken[topic] = camera
+
+
+Matrix = NDArray[np.float64]
+
+OPTICAL_RPY = (-math.pi / 2, 0.0, -math.pi / 2)
+"""From a link that looks along x, z up, to the optical frame: z forward, y down (REP 103)."""
+OPTICAL = rotation_from_rpy(OPTICAL_RPY)
+ROTATION_TOLERANCE = 0.01
+
+
+class _CameraFrames:
+    """A link of a URDF and every link that fixed joints attach to it.
+
+    Args:
+        description: the URDF.
+        link: name of the link that carries the camera.
+    """
+
+    def __init__(self, description: RobotDescription, link: str) -> None:
+        self._link = link
+        self._poses: dict[str, Matrix] = {link: np.eye(4)}
+        fixed = [joint for joint in description.joints if joint.get("type") == "fixed"]
+        pending = deque([link])
+        while pending:
+            parent = pending.popleft()
+            for joint in fixed:
+                child = _child_of(joint, parent)
+                origin = _origin(joint) if child and child not in self._poses else None
+                if origin is not None:
+                    self._poses[child] = self._poses[parent] @ origin.matrix()
+                    pending.append(child)
+
+    def optical(self) -> str:
+        """Return the nearest frame with the optical orientation, or the link if there is none."""
+        for name, pose in self._poses.items():
+            if np.abs(pose[:3, :3] - OPTICAL).max() < ROTATION_TOLERANCE:
+                return name
+        return self._link
+
+    def optics_in(self, frame: str, camera: Pose) -> Matrix | None:
+        """Return the (4, 4) pose of a camera's optical axes in a frame.
+
+        Args:
+            frame: the link, or a frame that is fixed to it; for any other frame the result is None.
+            camera: pose of the camera in its link.
+        """
+        pose = self._poses.get(frame)
+        if pose is None:
+            return None
+        optics = camera.matrix()
+        optics[:3, :3] = optics[:3, :3] @ OPTICAL
+        return np.linalg.inv(pose) @ optics
+
+
+def _child_of(joint: UrdfElement, parent: str) -> str:
+    """Return the child link of a joint; empty if the joint has another parent link."""
+    above, below = joint.first("parent"), joint.first("child")
+    if above is None or below is None or above.get("link") != parent:
+        return ""
+    return below.get("link")
+
+
+def _origin(joint: UrdfElement) -> Pose | None:
+    """Return the pose of a joint in its parent link; None if the origin is invalid."""
+    origin = joint.first("origin")
+    try:
+        return origin.pose() if origin else Pose()
+    except UrdfError:
+        return None
+
+
+INTRINSICS = {"fx": 277.0, "fy": 277.0, "cx": 160.0, "cy": 120.0}
+"""SDF's defaults, which hold for a picture of 320x240 and are used for every size."""
+COEFFICIENTS = ("k1", "k2", "p1", "p2", "k3")
+MIDDLE = (0.5, 0.5)
+FOCAL_LENGTHS = (1.0, 1e6)
+OFFSETS = (-1e5, 1e5)
+"""Limits in pixels of the principal point and the skew."""
+LARGEST = 1e6
+"""Limit of a coefficient."""
+HALF_PIXEL = 0.5
+
+
+def _with_lens(camera: CameraSensor, tags: SensorTags) -> CameraSensor:
+    """Return a camera with the lens that its tags describe.
+
+    `<center>` is the principal point as a fraction of the picture's sides. It counts if there are
+    coefficients, as in Gazebo, and if `<intrinsics>` does not say where that point is.
+
+    Raises:
+        SensorError: a value is invalid, or the distortion cannot be undone in the whole picture.
+    """
+    intrinsics = _intrinsics(tags)
+    distortion = tuple(
+        _number(tags, f"distortion/{name}", 0.0, (-LARGEST, LARGEST)) for name in COEFFICIENTS
+    )
+    center = tags.numbers("distortion/center", MIDDLE)
+    point = center[0] * camera.width, center[1] * camera.height
+    if any(distortion) and center != MIDDLE:
+        if not all(0 <= share <= 1 for share in center):
+            raise tags.error("distortion/center", f"must be from 0 to 1, not {center}")
+        if not intrinsics:
+            focal_length = camera.lens.fx
+            intrinsics = (focal_length, focal_length, *point, 0.0)
+        elif np.abs(np.subtract(intrinsics[2:4], point)).max() > HALF_PIXEL:
+            used = " ".join(f"{value:g}" for value in intrinsics[2:4])
+            tags.doubt(
+                "distortion/center",
+                f"this is the pixel {point[0]:g} {point[1]:g}, but the principal point of "
+                f"<intrinsics>, {used}, is the centre of the distortion",
+            )
+    camera = replace(camera, intrinsics=intrinsics, distortion=distortion)
+    _check_size(camera, tags)
+    return camera
+
+
+def _intrinsics(tags: SensorTags) -> tuple[float, ...]:
+    """Return fx, fy, cx, cy and skew; empty without `<intrinsics>`."""
+    where = "lens/intrinsics"
+    if not tags.has(where):
+        return ()
+    missing = {name: value for name, value in INTRINSICS.items() if not tags.has(f"{where}/{name}")}
+    if missing:
+        values = ", ".join(f"<{name}> {value:g}" for name, value in missing.items())
+        tags.doubt(where, f"what it leaves out has SDF's value for 320x240: {values}")
+    numbers = [
+        _number(tags, f"{where}/{name}", value, FOCAL_LENGTHS if name[0] == "f" else OFFSETS)
+        for name, value in INTRINSICS.items()
+    ]
+    return (*numbers, _number(tags, f"{where}/s", 0.0, OFFSETS))
+
+
+def _number(tags: SensorTags, tag: str, default: float, limits: tuple[float, float]) -> float:
+    least, largest = limits
+    must_be = f"from {least:g} to {largest:g}"
+    return tags.number(tag, default, lambda value: least <= value <= largest, must_be)
+
+
+def _check_size(camera: CameraSensor, tags: SensorTags) -> None:
+    lens, size = camera.lens, (camera.width, camera.height)
+    if lens.is_pinhole:
+        return
+    problem = lens.problem(*size)
+    if not problem:
+        drawn = np.ptp(lens.outline(*size), axis=0) * (lens.fx, lens.fy)
+        if drawn.max() > MAX_SIDE:
+            problem = (
+                f"a picture without it would have {drawn[0]:.0f}x{drawn[1]:.0f} pixels; at most "
+                f"{MAX_SIDE} can be rendered"
+            )
+    if problem:
+        raise tags.error("distortion", problem)

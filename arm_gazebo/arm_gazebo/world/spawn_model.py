@@ -31,9 +31,8 @@ from arm_gazebo.robot.link_geometry import LinkGeometry
 from arm_gazebo.robot.mimic_joints import add_equalities, mimic_rules
 from arm_gazebo.sdf.body import WORLD_MASKS, add_model
 from arm_gazebo.sdf.element import SdfElement, unread_findings
-from arm_gazebo.sdf.include import sdf_file_in
 from arm_gazebo.sdf.model import read_model
-from arm_gazebo.sdf.scope import SdfScope
+from arm_gazebo.sdf.scope import SdfScope, sdf_file_in
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import MjcfTrial

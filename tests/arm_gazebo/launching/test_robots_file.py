@@ -4,7 +4,7 @@ import pytest
 
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import controllers_in_namespace
-from arm_gazebo.launching.robots_file import RobotRequest, read_robots_file
+from arm_gazebo.launching.several_robots import RobotRequest, read_robots_file
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Pose
 from arm_gazebo.errors import ModelError
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
+from arm_gazebo.launching.edited_description import placed
 from arm_gazebo.model.builder import build_world
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
-from arm_gazebo.robot.placed_description import placed
 
 BALL = '<collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>'
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_gazebo.rendering.adaptive_sampling import fill_picture
+from arm_gazebo.rendering.raycast_renderer import fill_picture
 
 
 class Source:

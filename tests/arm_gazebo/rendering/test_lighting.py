@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.rendering.lighting import Lighting
+from arm_gazebo.rendering.raycast_renderer import Lighting
 
 UP = np.array([[0.0, 0.0, 1.0]])
 ORIGIN = np.zeros((1, 3))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_gazebo.rendering.adaptive_sampling import AVERAGED_FRAMES, MAX_STEP, SamplingStep
+from arm_gazebo.rendering.raycast_renderer import AVERAGED_FRAMES, MAX_STEP, SamplingStep
 
 
 def after(sampling: SamplingStep, duration_s: float, frames: int = AVERAGED_FRAMES) -> int:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_gazebo.sensors.lens import UNDISTORTED, Lens
+from arm_gazebo.sensors.camera import UNDISTORTED, Lens
 
 SIZE = (640, 480)
 LENSES = {

@@ -7,7 +7,7 @@ import pytest
 
 from arm_description.urdf.description_source import source_of, with_source
 from arm_description.urdf.parser import parse_urdf
-from arm_gazebo.robot.placed_description import placed
+from arm_gazebo.launching.edited_description import placed
 
 BASE = "<link name='base'/>"
 ON_WORLD = f"""<robot name='r'><link name='world'/>{BASE}<joint name='stand' type='fixed'>

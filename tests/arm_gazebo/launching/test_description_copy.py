@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from arm_description.errors import XmlError
-from arm_description.urdf.description_copy import copy_description
 from arm_description.urdf.description_source import source_of, with_source
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.xml_document import parse_xml
+from arm_gazebo.launching.edited_description import copy_description
 
 GRIPPER = """<robot name="gripper">
   <link name="palm"/><link name="thumb"/><link name="finger"/>
