@@ -3,6 +3,8 @@
 It imports no ROS. The nodes robot_state_publisher and joint_state_publisher are in `publishers`.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from arm_description.errors import (
     DescriptionError,
     JointStateError,
@@ -15,7 +17,6 @@ from arm_description.errors import (
     XacroError,
     XmlError,
 )
-from arm_description.kinematics.forward import forward_kinematics
 from arm_description.resources import ResourceFinder, resolve_uri
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.mimic import Mimic
@@ -41,6 +42,9 @@ from arm_description.urdf.robot import (
 )
 from arm_description.urdf.xml_document import parse_xml
 from arm_description.xacro.expansion import expand_xacro
+
+if TYPE_CHECKING:
+    from arm_description.kinematics.forward import forward_kinematics
 
 __all__ = [
     "Box",
@@ -79,3 +83,12 @@ __all__ = [
     "parse_xml",
     "resolve_uri",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # Imported on first use: reading a description, as the launcher does, needs no NumPy.
+    if name != "forward_kinematics":
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    from arm_description.kinematics.forward import forward_kinematics
+
+    return forward_kinematics

@@ -4,10 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from arm_description.errors import UrdfError
-from arm_description.transforms import rotation_from_quaternion, rpy_from_rotation
 from arm_description.urdf.robot import Pose, Vector
 from arm_description.urdf.xml_document import XmlElement
 
@@ -135,6 +132,11 @@ class UrdfElement(XmlElement[Callable[[Remark], None]]):
             return None
         if "rpy" in self.attributes:
             raise self.error(f"has both rpy and {QUATERNION}")
+        # Imported here: the launcher needs NumPy for nothing else.
+        import numpy as np
+
+        from arm_description.transforms import rotation_from_quaternion, rpy_from_rotation
+
         quaternion = np.array(self.numbers(QUATERNION, 4))
         length = math.hypot(*quaternion)  # The sum of squares may overflow.
         if not 0.0 < length < math.inf:

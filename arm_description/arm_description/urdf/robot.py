@@ -6,15 +6,16 @@ text, 0 for objects that were made without a text.
 
 from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from arm_description.errors import MimicCycleError, UrdfError
-from arm_description.transforms import rotation_from_rpy, transform
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.mimic import Mimic, resolve_leader
 from arm_node.names import listing
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 Vector = tuple[float, float, float]
 
@@ -26,8 +27,11 @@ class Pose:
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
 
-    def matrix(self) -> NDArray[np.float64]:
+    def matrix(self) -> "NDArray[np.float64]":
         """Return the (4, 4) homogeneous transform."""
+        # Imported here: reading a description, as the launcher does, needs no NumPy.
+        from arm_description.transforms import rotation_from_rpy, transform
+
         return transform(rotation_from_rpy(self.rpy), self.xyz)
 
 
