@@ -23,11 +23,11 @@ _LINE = re.compile(r"from (\S+) import (\w+)\s*(?:#.*)?")
 
 def import_messages_lazily() -> None:
     """Apply to all message packages that this process imports from now on."""
-    if is_on("lazy_messages") and not any(isinstance(f, _Finder) for f in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())
+    if is_on("lazy_messages") and not any(isinstance(f, _MessageFinder) for f in sys.meta_path):
+        sys.meta_path.insert(0, _MessageFinder())
 
 
-class _Finder(MetaPathFinder):
+class _MessageFinder(MetaPathFinder):
     """Finds PACKAGE.msg, PACKAGE.srv and PACKAGE.action."""
 
     def find_spec(
