@@ -48,7 +48,6 @@ class UnisonController(Controller[UnisonParameters]):
 ADAPTER = '''\
 """The ROS half of UnisonController: the topic of its target."""
 
-from rclpy.subscription import Subscription
 from std_msgs.msg import Float64
 
 from arm_control.controllers.ros_adapter import ControllerAdapter
@@ -58,17 +57,9 @@ from arm_control.controllers.unison.controller import UnisonController, UnisonPa
 class UnisonAdapter(ControllerAdapter[UnisonController]):
     """Hands each std_msgs/msg/Float64 of ~/target to the core."""
 
-    _subscription: Subscription | None = None
-
     def on_configure(self, parameters: UnisonParameters) -> None:
         """Subscribe."""
-        self._subscription = self.node.create_subscription(Float64, "~/target", self._take, 10)
-
-    def on_cleanup(self) -> None:
-        """Unsubscribe."""
-        if self._subscription is not None:
-            self.destroy(self._subscription)
-            self._subscription = None
+        self.subscribe(Float64, "~/target", self._take)
 
     def _take(self, message: Float64) -> None:
         self.controller.target = message.data

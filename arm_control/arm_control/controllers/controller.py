@@ -172,6 +172,7 @@ class Controller(ABC, Generic[ParametersT]):
             controller without topics.
         configured_with: the latest parameters that it was given; None before that.
         input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
+        sink: receives what the ROS half publishes, on the loop thread; None publishes nothing.
         halted_by: why the manager keeps the active controller from running, such as "emergency
             stop" or "hardware component 'arm' is inactive"; empty while it runs. `on_deactivate`
             has been called by then, and `on_activate` is called before the next update.
@@ -183,6 +184,7 @@ class Controller(ABC, Generic[ParametersT]):
     adapter: ClassVar[str] = ""
     configured_with: Any = None
     input_gate: InputGate | None = None
+    sink: Any = None
     halted_by: str = ""
     transient: ClassVar[tuple[str, ...]] = ()
 

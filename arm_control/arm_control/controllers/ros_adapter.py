@@ -2,22 +2,27 @@
 
 import logging
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 from builtin_interfaces.msg import Duration, Time
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSPresetProfiles, QoSProfile
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 
 from arm_control.controllers.controller import NOT_ACTIVE, Controller
 from arm_control.errors import ControllerError
+from arm_control.loop.clock import Throttle
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import run_on_executor
 
 SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0
 """The range of a Duration message."""
+WARNING_INTERVAL_S = 1.0
+SYSTEM_DEFAULT = QoSPresetProfiles.SYSTEM_DEFAULT.value
 
 
 def seconds_of(time: Time | Duration) -> float:
@@ -65,6 +70,8 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
         self.node = node
         self.loop = loop
         self._said = ""
+        self._throttle = Throttle(WARNING_INTERVAL_S)
+        self._end_points: list[Publisher | Subscription | Service] = []
 
     @property
     def executor(self) -> Executor:
@@ -102,13 +109,56 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
         name = self.controller.name
         return f"; activate it with: arm control switch_controllers --activate {name}{manager}"
 
+    def warn_dropped(self, what: str, reason: str, level: int = logging.WARNING) -> None:
+        """Log why a message was dropped, at most once a second; do nothing if it was not.
+
+        Args:
+            what: the message, such as 'command'.
+            reason: why; empty if it was accepted.
+            level: the severity.
+        """
+        if reason and self._throttle.permits():
+            logger = logging.getLogger(self.controller.name)
+            logger.log(level, "a %s was dropped: %s", what, reason)
+
     @abstractmethod
     def on_configure(self, parameters: Any) -> None:
         """Create the end points; the core already has these parameters."""
 
-    @abstractmethod
+    def publisher(
+        self, message_type: type[Any], topic: str, qos: QoSProfile = SYSTEM_DEFAULT
+    ) -> Publisher:
+        """Create a publisher that `on_cleanup` destroys."""
+        publisher = self.node.create_publisher(message_type, topic, qos)
+        self._end_points.append(publisher)
+        return publisher
+
+    def subscribe(
+        self,
+        message_type: type[Any],
+        topic: str,
+        callback: Callable[[Any], None],
+        qos: QoSProfile = SYSTEM_DEFAULT,
+        *,
+        raw: bool = False,
+    ) -> None:
+        """Create a subscription that `on_cleanup` destroys."""
+        self._end_points.append(
+            self.node.create_subscription(message_type, topic, callback, qos, raw=raw)
+        )
+
+    def serve(self, service_type: type[Any], name: str, answer: Callable[[Any, Any], Any]) -> None:
+        """Create a service that `on_cleanup` destroys."""
+        self._end_points.append(self.node.create_service(service_type, name, answer))
+
     def on_cleanup(self) -> None:
-        """Destroy what `on_configure` created, using `destroy`; may be called more than once."""
+        """Take the sink from the core, and destroy the end points; may be called more than once.
+
+        An adapter that creates end points in another way destroys those here, using `destroy`.
+        """
+        self.controller.sink = None
+        end_points, self._end_points = self._end_points, []
+        self.destroy(*end_points)
 
     def destroy(self, *end_points: Publisher | Subscription | Service) -> None:
         """Destroy end points of the node; call it from a thread other than the executor's.

@@ -1,12 +1,9 @@
 """The ROS half of the differential drive: commands in, odometry and frames out."""
 
-import logging
-
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles, QoSProfile
-from rclpy.subscription import Subscription
+from rclpy.qos import QoSProfile
 from tf2_msgs.msg import TFMessage
 
 from arm_control.controllers.diff_drive import (
@@ -17,11 +14,9 @@ from arm_control.controllers.diff_drive import (
 )
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.controllers.ros_odometry import OdometryPublisher
-from arm_control.loop.clock import Throttle
 from arm_node.workarounds.message_template import MessageTemplate
 
 TF_DEPTH = 100
-WARNING_INTERVAL_S = 1.0
 TWIST = [0, 5]
 """Indices in the velocities along and about x y z: forward velocity and yaw rate."""
 
@@ -29,33 +24,19 @@ TWIST = [0, 5]
 class DiffDriveAdapter(ControllerAdapter[DiffDriveController]):
     """Connects the controller to ~/cmd_vel, ~/odom, ~/cmd_vel_out and /tf."""
 
-    _end_points: tuple[Publisher | Subscription, ...] = ()
-
     def on_configure(self, parameters: DiffDriveParameters) -> None:
         """Create the end points."""
-        self._throttle = Throttle(WARNING_INTERVAL_S)
-        qos = QoSPresetProfiles.SYSTEM_DEFAULT.value
-        odometry = self.node.create_publisher(Odometry, "~/odom", qos)
+        odometry = self.publisher(Odometry, "~/odom")
         commands = frames = None
         if parameters.publish_limited_velocity:
-            commands = self.node.create_publisher(TwistStamped, "~/cmd_vel_out", qos)
+            commands = self.publisher(TwistStamped, "~/cmd_vel_out")
         if parameters.enable_odom_tf:
             # Not latched like the others: a frame that is no longer published must not reappear.
-            frames = self.node.create_publisher(TFMessage, "/tf", QoSProfile(depth=TF_DEPTH))
+            frames = self.publisher(TFMessage, "/tf", QoSProfile(depth=TF_DEPTH))
         self.controller.sink = _DrivePublisher(
             parameters, self.node.get_namespace(), odometry, frames, commands
         )
-        made = (publisher for publisher in (odometry, frames, commands) if publisher is not None)
-        self._end_points = (
-            *made,
-            self.node.create_subscription(TwistStamped, "~/cmd_vel", self._take, qos),
-        )
-
-    def on_cleanup(self) -> None:
-        """Destroy the end points."""
-        self.controller.sink = None
-        self.destroy(*self._end_points)
-        self._end_points = ()
+        self.subscribe(TwistStamped, "~/cmd_vel", self._take)
 
     def _take(self, message: TwistStamped) -> None:
         if not self.takes_commands("~/cmd_vel"):
@@ -63,9 +44,7 @@ class DiffDriveAdapter(ControllerAdapter[DiffDriveController]):
         stamp = message.header.stamp
         stamp_s = stamp.sec + stamp.nanosec * 1e-9
         twist = PlanarTwist(message.twist.linear.x, message.twist.angular.z)
-        reason = self.controller.offer(twist, stamp_s or None)
-        if reason and self._throttle.permits():
-            logging.getLogger(self.controller.name).warning("a command was dropped: %s", reason)
+        self.warn_dropped("command", self.controller.offer(twist, stamp_s or None))
 
 
 class _DrivePublisher:

@@ -4,15 +4,10 @@ import logging
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from rclpy.qos import QoSPresetProfiles
-from rclpy.subscription import Subscription
 from std_msgs.msg import Float64, Float64MultiArray
 
 from arm_control.controllers.forward_command.controller import DROPPED, SHOWN, ForwardCommander
 from arm_control.controllers.ros_adapter import ControllerAdapter
-from arm_control.loop.clock import Throttle
-
-WARNING_INTERVAL_S = 1.0
 
 
 class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
@@ -25,20 +20,10 @@ class ForwardCommandAdapter(ControllerAdapter[ForwardCommander[Any]]):
 
     message_type: ClassVar[type[Any]] = Float64MultiArray
     topic: ClassVar[str] = "~/commands"
-    _subscription: Subscription | None = None
 
     def on_configure(self, parameters: Any) -> None:
         """Subscribe; best effort on Fast DDS, so that every publisher matches."""
-        self._throttle = Throttle(WARNING_INTERVAL_S)
-        self._subscription = self.node.create_subscription(
-            self.message_type, self.topic, self._take, QoSPresetProfiles.SYSTEM_DEFAULT.value
-        )
-
-    def on_cleanup(self) -> None:
-        """Unsubscribe."""
-        if self._subscription is not None:
-            self.destroy(self._subscription)
-            self._subscription = None
+        self.subscribe(self.message_type, self.topic, self._take)
 
     def values_of(self, message: Any) -> Sequence[float]:
         """Return the numbers in a message."""

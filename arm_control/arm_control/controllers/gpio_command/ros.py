@@ -7,52 +7,30 @@ import numpy as np
 from control_msgs.msg import DynamicInterfaceGroupValues, InterfaceValue
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles
-from rclpy.subscription import Subscription
 
 from arm_control.controllers.gpio_command.controller import (
     GpioCommandController,
     GpioCommandParameters,
 )
 from arm_control.controllers.ros_adapter import ControllerAdapter
-from arm_control.loop.clock import Throttle
 from arm_control.loop.outbox import Outbox
 from arm_node.workarounds.message_template import MessageTemplate, raw_sender
-
-WARNING_INTERVAL_S = 1.0
 
 
 class GpioCommandAdapter(ControllerAdapter[GpioCommandController]):
     """Connects the controller to its two topics."""
 
-    _end_points: tuple[Publisher | Subscription, ...] = ()
-
     def on_configure(self, parameters: GpioCommandParameters) -> None:
         """Create the end points; without command interfaces there is nothing to subscribe to."""
-        self._throttle = Throttle(WARNING_INTERVAL_S)
-        qos = QoSPresetProfiles.SYSTEM_DEFAULT.value
-        publisher = self.node.create_publisher(DynamicInterfaceGroupValues, "~/gpio_states", qos)
+        publisher = self.publisher(DynamicInterfaceGroupValues, "~/gpio_states")
         self.controller.sink = _GpioStatePublisher(
             publisher, self.controller.shown, self.loop.outbox
         )
-        self._end_points = (publisher,)
         if any(parameters.commands.values()):
-            self._end_points += (
-                self.node.create_subscription(
-                    DynamicInterfaceGroupValues, "~/commands", self._take, qos
-                ),
-            )
-
-    def on_cleanup(self) -> None:
-        """Destroy the end points."""
-        self.controller.sink = None
-        self.destroy(*self._end_points)
-        self._end_points = ()
+            self.subscribe(DynamicInterfaceGroupValues, "~/commands", self._take)
 
     def _take(self, message: DynamicInterfaceGroupValues) -> None:
-        reason = self._offer(message)
-        if reason and self._throttle.permits():
-            logging.getLogger(self.controller.name).error("a command was dropped: %s", reason)
+        self.warn_dropped("command", self._offer(message), logging.ERROR)
 
     def _offer(self, message: DynamicInterfaceGroupValues) -> str:
         """Pass a message on; return why it is refused, or an empty string."""

@@ -4,7 +4,6 @@ import numpy as np
 from control_msgs.msg import DynamicJointState, InterfaceValue
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles
 from sensor_msgs.msg import JointState
 
 from arm_control.controllers.joint_state_broadcaster.controller import (
@@ -21,29 +20,16 @@ from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
     """Gives the broadcaster its publishers."""
 
-    _publishers: tuple[Publisher, ...] = ()
-
     def on_configure(self, parameters: JointStateBroadcasterParameters) -> None:
         """Create the publishers; on Fast DDS they keep the last message for late subscribers."""
         prefix = "~/" if parameters.use_local_topics else ""
-        qos = QoSPresetProfiles.SYSTEM_DEFAULT.value
-        joint_states = self.node.create_publisher(JointState, f"{prefix}joint_states", qos)
-        self._publishers = (joint_states,)
+        joint_states = self.publisher(JointState, f"{prefix}joint_states")
         dynamic = None
         if parameters.publish_dynamic_joint_states:
-            dynamic = self.node.create_publisher(
-                DynamicJointState, f"{prefix}dynamic_joint_states", qos
-            )
-            self._publishers = (joint_states, dynamic)
+            dynamic = self.publisher(DynamicJointState, f"{prefix}dynamic_joint_states")
         self.controller.sink = _JointStateBroadcastPublisher(
             joint_states, dynamic, parameters.frame_id, self.loop.outbox
         )
-
-    def on_cleanup(self) -> None:
-        """Destroy the publishers."""
-        self.controller.sink = None
-        self.destroy(*self._publishers)
-        self._publishers = ()
 
 
 class _StampedArray:

@@ -13,15 +13,7 @@ from numpy.typing import NDArray
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    QoSPresetProfiles,
-    QoSProfile,
-    ReliabilityPolicy,
-)
-from rclpy.service import Service
-from rclpy.subscription import Subscription
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_control.controllers.joint_trajectory import (
@@ -165,18 +157,13 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
     """Connects the configured controller to its topics, its service and its action."""
 
     _action: _JointTrajectoryAction | None = None
-    _publisher: Publisher | None = None
-    _query: Service | None = None
-    _subscriptions: tuple[Subscription, ...] = ()
 
     def on_configure(self, parameters: JointTrajectoryParameters) -> None:
         """Create the end points."""
-        node, default = self.node, QoSPresetProfiles.SYSTEM_DEFAULT.value
+        node = self.node
         self._executor = self.executor
         self._joints = parameters.joints
-        self._publisher = node.create_publisher(
-            JointTrajectoryControllerState, "~/controller_state", default
-        )
+        publisher = self.publisher(JointTrajectoryControllerState, "~/controller_state")
         self._action = _JointTrajectoryAction(
             self.controller,
             node,
@@ -184,43 +171,24 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
             self._executor,
             lambda: bool(node.get_parameter("reject_with_reason").value),
         )
-        sink = _RosTrajectorySink(self._publisher, self._action)
+        sink = _RosTrajectorySink(publisher, self._action)
         sink.open(self.controller.state_layout)
         self.controller.sink = sink
-        answer: Any = self._answer  # rclpy accepts a coroutine, but its annotations do not.
-        self._query = node.create_service(QueryTrajectoryState, "~/query_state", answer)
-        self._subscriptions = (
-            node.create_subscription(
-                JointTrajectory, "~/joint_trajectory", self._take, default, raw=True
-            ),
-        )
+        self.serve(QueryTrajectoryState, "~/query_state", self._answer)
+        self.subscribe(JointTrajectory, "~/joint_trajectory", self._take, raw=True)
         if self.controller.takes_speed_scaling:
-            self._subscriptions += (
-                node.create_subscription(
-                    SpeedScalingFactor, "~/speed_scaling_input", self._scale, SPEED_SCALING_QOS
-                ),
+            self.subscribe(
+                SpeedScalingFactor, "~/speed_scaling_input", self._scale, SPEED_SCALING_QOS
             )
 
     def on_cleanup(self) -> None:
         """Destroy the end points after the results of all goals have been sent."""
         self.controller.sink = None
-        if self._action is not None:
-            self._action.wait_for_results()
-            run_on_executor(self._executor, self._destroy)
-
-    def _destroy(self) -> None:
-        for subscription in self._subscriptions:
-            self.node.destroy_subscription(subscription)
-        self._subscriptions = ()
-        if self._query is not None:
-            self.node.destroy_service(self._query)
-            self._query = None
-        if self._action is not None:
-            self._action.destroy()
-            self._action = None
-        if self._publisher is not None:
-            self.node.destroy_publisher(self._publisher)
-            self._publisher = None
+        action, self._action = self._action, None
+        if action is not None:
+            action.wait_for_results()
+            run_on_executor(self._executor, action.destroy)
+        super().on_cleanup()
 
     def _take(self, message: bytes) -> None:
         if not self.takes_commands("~/joint_trajectory"):

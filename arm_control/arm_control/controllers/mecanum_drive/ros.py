@@ -1,14 +1,11 @@
 """The ROS half of the mecanum drive: references in; odometry, transform and state out."""
 
-import logging
-
 import numpy as np
 from control_msgs.msg import MecanumDriveControllerState
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
-from rclpy.subscription import Subscription
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 from arm_control.controllers.mecanum_drive.controller import (
@@ -18,11 +15,9 @@ from arm_control.controllers.mecanum_drive.controller import (
 from arm_control.controllers.mecanum_drive.kinematics import Array, MecanumOdometry, MecanumTwist
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.controllers.ros_odometry import OdometryPublisher
-from arm_control.loop.clock import Throttle
 from arm_node.workarounds.message_template import MessageTemplate
 
 REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-WARNING_INTERVAL_S = 1.0
 TWIST = (0, 1, 5)
 """Indices in the velocities along and about x y z that a mecanum drive has."""
 
@@ -30,15 +25,11 @@ TWIST = (0, 1, 5)
 class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
     """Connects the controller to ~/reference, ~/odometry, ~/tf_odometry and ~/controller_state."""
 
-    _end_points: tuple[Publisher | Subscription, ...] = ()
-
     def on_configure(self, parameters: MecanumDriveParameters) -> None:
         """Create the end points."""
-        self._throttle = Throttle(WARNING_INTERVAL_S)
-        qos = QoSPresetProfiles.SYSTEM_DEFAULT.value
-        odometry = self.node.create_publisher(Odometry, "~/odometry", qos)
-        frames = self.node.create_publisher(TFMessage, "~/tf_odometry", qos)
-        state = self.node.create_publisher(MecanumDriveControllerState, "~/controller_state", qos)
+        odometry = self.publisher(Odometry, "~/odometry")
+        frames = self.publisher(TFMessage, "~/tf_odometry")
+        state = self.publisher(MecanumDriveControllerState, "~/controller_state")
         publisher = OdometryPublisher(
             odometry,
             frames if parameters.enable_odom_tf else None,
@@ -48,20 +39,7 @@ class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
             TWIST,
         )
         self.controller.sink = _MecanumPublisher(publisher, state, parameters.odom_frame_id)
-        self._end_points = (
-            odometry,
-            frames,
-            state,
-            self.node.create_subscription(
-                TwistStamped, "~/reference", self._take_reference, REFERENCE_QOS
-            ),
-        )
-
-    def on_cleanup(self) -> None:
-        """Destroy the end points."""
-        self.controller.sink = None
-        self.destroy(*self._end_points)
-        self._end_points = ()
+        self.subscribe(TwistStamped, "~/reference", self._take_reference, REFERENCE_QOS)
 
     def _take_reference(self, message: TwistStamped) -> None:
         if not self.takes_commands("~/reference"):
@@ -69,11 +47,8 @@ class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
         stamp = message.header.stamp
         stamp_s = stamp.sec + stamp.nanosec * 1e-9
         twist = message.twist
-        reason = self.controller.offer(
-            MecanumTwist(twist.linear.x, twist.linear.y, twist.angular.z), stamp_s or None
-        )
-        if reason and self._throttle.permits():
-            logging.getLogger(self.controller.name).warning("a reference was dropped: %s", reason)
+        reference = MecanumTwist(twist.linear.x, twist.linear.y, twist.angular.z)
+        self.warn_dropped("reference", self.controller.offer(reference, stamp_s or None))
 
 
 class _MecanumPublisher:

@@ -9,71 +9,42 @@ from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped, PidState, Si
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
-from rclpy.service import Service
-from rclpy.subscription import Subscription
 from std_srvs.srv import SetBool
 
 from arm_control.controllers.pid_controller.controller import STATE_FIELDS, PidController, PidTerms
 from arm_control.controllers.pid_controller.parameters import PidControllerParameters
 from arm_control.controllers.ros_adapter import ControllerAdapter, duration_message, time_message
-from arm_control.loop.clock import Throttle
 from arm_node.names import as_node_name
 from arm_node.workarounds.message_template import MessageTemplate
 
 REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-WARNING_INTERVAL_S = 1.0
 
 
 class PidControllerAdapter(ControllerAdapter[PidController]):
     """Connects the controller to its topics and its service."""
 
-    _end_points: tuple[Publisher | Service | Subscription, ...] = ()
-
     def on_configure(self, parameters: PidControllerParameters) -> None:
         """Create the end points."""
-        self._throttle = Throttle(WARNING_INTERVAL_S)
-        publisher = self.node.create_publisher(
-            MultiDOFStateStamped, "~/controller_state", QoSPresetProfiles.SYSTEM_DEFAULT.value
-        )
+        publisher = self.publisher(MultiDOFStateStamped, "~/controller_state")
         # One for each, because `activate_state_publisher` may be set at any time.
+        sensor_data = QoSPresetProfiles.SENSOR_DATA.value
         terms = [
-            self.node.create_publisher(
-                PidState, f"~/{_as_topic(dof)}/pid_state", QoSPresetProfiles.SENSOR_DATA.value
-            )
+            self.publisher(PidState, f"~/{_as_topic(dof)}/pid_state", sensor_data)
             for dof in parameters.dof_names
         ]
         self.controller.sink = _PidStatePublisher(publisher, parameters.state_dof_names, terms)
-        self._end_points = (
-            publisher,
-            *terms,
-            self.node.create_service(SetBool, "~/set_feedforward_control", self._set_feedforward),
-            self.node.create_subscription(
-                MultiDOFCommand, "~/reference", self._take_reference, REFERENCE_QOS
-            ),
-        )
+        self.serve(SetBool, "~/set_feedforward_control", self._set_feedforward)
+        self.subscribe(MultiDOFCommand, "~/reference", self._take_reference, REFERENCE_QOS)
         if parameters.use_external_measured_states:
-            self._end_points += (
-                self.node.create_subscription(
-                    MultiDOFCommand, "~/measured_state", self._take_measured, REFERENCE_QOS
-                ),
-            )
-
-    def on_cleanup(self) -> None:
-        """Destroy the end points."""
-        self.controller.sink = None
-        self.destroy(*self._end_points)
-        self._end_points = ()
+            self.subscribe(MultiDOFCommand, "~/measured_state", self._take_measured, REFERENCE_QOS)
 
     def _take_reference(self, message: MultiDOFCommand) -> None:
         if self.takes_commands("~/reference"):
-            self._warn_dropped("reference", self.controller.offer(*_parts(message)))
+            self.warn_dropped("reference", self.controller.offer(*_parts(message)), logging.ERROR)
 
     def _take_measured(self, message: MultiDOFCommand) -> None:
-        self._warn_dropped("measured state", self.controller.offer_measured(*_parts(message)))
-
-    def _warn_dropped(self, what: str, reason: str) -> None:
-        if reason and self._throttle.permits():
-            logging.getLogger(self.controller.name).error("a %s was dropped: %s", what, reason)
+        reason = self.controller.offer_measured(*_parts(message))
+        self.warn_dropped("measured state", reason, logging.ERROR)
 
     def _set_feedforward(self, request: SetBool.Request, response: Any) -> Any:
         self.controller.enable_feedforward(request.data)

@@ -7,7 +7,6 @@ import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles
 from sensor_msgs.msg import Imu
 
 from arm_control.controllers.ros_adapter import ControllerAdapter
@@ -55,21 +54,10 @@ WRENCH_PATHS = ("wrench.force", "wrench.torque")
 class _SensorBroadcasterAdapter(ControllerAdapter[SensorBroadcaster[Any]]):
     """Gives a broadcaster its publisher."""
 
-    _publishers: tuple[Publisher, ...] = ()
-
     def open(self, topic: str, message: Any, paths: tuple[str, ...]) -> None:
         """Publish readings on a topic; `message` provides the constant fields."""
-        publisher = self.node.create_publisher(
-            type(message), topic, QoSPresetProfiles.SYSTEM_DEFAULT.value
-        )
-        self._publishers = (publisher,)
+        publisher = self.publisher(type(message), topic)
         self.controller.sink = ReadingPublisher(publisher, message, paths)
-
-    def on_cleanup(self) -> None:
-        """Destroy the publisher."""
-        self.controller.sink = None
-        self.destroy(*self._publishers)
-        self._publishers = ()
 
 
 class ImuSensorBroadcasterAdapter(_SensorBroadcasterAdapter):
