@@ -1,9 +1,12 @@
 """What controllers with an action share: how goals end, and the request queue."""
 
 import threading
+from abc import abstractmethod
 from collections import deque
 from enum import Enum
 from typing import Generic, Protocol, TypeVar
+
+from arm_control.controllers.controller import Controller, ParametersT
 
 
 def ended_at_deactivation(halted_by: str) -> str:
@@ -46,25 +49,19 @@ class GoalEnd(Protocol):
         ...
 
 
-class GoalController(Protocol):
-    """The part of a controller that handles goals."""
+class GoalController(Controller[ParametersT]):
+    """A controller that handles goals."""
 
-    @property
-    def name(self) -> str:
-        """Its name."""
-        ...
-
+    @abstractmethod
     def cancel_goal(self, goal_id: object) -> None:
         """Cancel a goal and stop; any thread."""
-        ...
 
+    @abstractmethod
     def serve_requests(self) -> None:
         """Process the clients' requests; loop thread."""
-        ...
 
 
 RequestT = TypeVar("RequestT")
-
 
 SIMULATION_RESET = "Goal aborted: the simulation was reset."
 SIMULATION_RESTORED = "Goal aborted: the simulation was restored to a snapshot without this goal."

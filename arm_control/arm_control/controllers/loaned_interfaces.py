@@ -69,13 +69,7 @@ class _ScatteredInterfaces(LoanedInterfaces):
         places: Sequence[tuple[NDArray[np.float64], int]],
         data_types: Sequence[str] = (),
     ) -> None:
-        """Create the view.
-
-        Args:
-            names: full name of each interface.
-            places: array of each named interface, and its index there.
-            data_types: type of each interface in the description; empty if all are double.
-        """
+        """Create the view; `places` has each interface's array, and its index there."""
         self._values = np.full(len(names), np.nan)
         super().__init__(names, self._values, range(len(names)), data_types)
         arrays = {id(array): array for array, _ in places}

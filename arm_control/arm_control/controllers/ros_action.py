@@ -12,11 +12,9 @@ from rclpy.action.server import (
     GoalResponse,
     ServerGoalHandle,
 )
-from rclpy.executors import Executor
-from rclpy.node import Node
 
 from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
-from arm_control.loop.control_loop import ControlLoop
+from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.loop.ros_executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer
 
 RESULT_TIMEOUT_S = 10
@@ -24,7 +22,7 @@ RESULT_TIMEOUT_S = 10
 would fill the memory; this is rcl's default."""
 
 
-ControllerT = TypeVar("ControllerT", bound=GoalController)
+ControllerT = TypeVar("ControllerT", bound=GoalController[Any])
 ResultT = TypeVar("ResultT", bound=GoalEnd)
 
 
@@ -40,34 +38,19 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
     """
 
     def __init__(
-        self,
-        controller: ControllerT,
-        node: Node,
-        loop: ControlLoop,
-        executor: Executor,
-        action_type: type[Any],
-        name: str,
+        self, adapter: ControllerAdapter[ControllerT], action_type: type[Any], name: str
     ) -> None:
-        """Offer the action.
-
-        Args:
-            controller: executes the goals.
-            node: offers the action.
-            loop: runs the controller.
-            executor: spins the node.
-            action_type: class of the action.
-            name: name of the action, such as '~/gripper_cmd'.
-        """
-        self.controller = controller
-        self._loop = loop
-        self._executor = executor
-        self._logger = logging.getLogger(controller.name)
+        """Offer the action on the adapter's node, which an executor spins by now."""
+        self.controller = adapter.controller
+        self._loop = adapter.loop
+        self._executor = adapter.executor
+        self._logger = logging.getLogger(self.controller.name)
         self._running: dict[bytes, ServerGoalHandle] = {}
         self._ending: set[bytes] = set()
         self._idle = threading.Event()
         self._idle.set()
         self._server = ActionServer(
-            node,
+            adapter.node,
             action_type,
             name,
             _refuse_to_execute,

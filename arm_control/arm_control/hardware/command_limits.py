@@ -242,12 +242,7 @@ class CommandLimiter:
     """
 
     def __init__(self, limits: Mapping[str, JointLimits], resources: ResourceManager) -> None:
-        """Find the commands that have limits.
-
-        Args:
-            limits: by joint.
-            resources: holds the commands and states.
-        """
+        """Find the commands that have limits; these are by joint."""
         names = [
             name
             for component in resources.components.values()

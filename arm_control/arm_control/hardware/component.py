@@ -28,13 +28,7 @@ class HardwareComponent:
     def __init__(
         self, hardware: Hardware, cycle_rate_hz: int, supervision: RunSupervision | None = None
     ) -> None:
-        """Take ownership of an unconfigured driver.
-
-        Args:
-            hardware: the driver.
-            cycle_rate_hz: the manager's cycles per second, an upper bound for the component's rate.
-            supervision: measures its reads and writes and handles their exceptions.
-        """
+        """Take ownership of an unconfigured driver, whose rate is at most that of the cycles."""
         self.hardware = hardware
         self.state = LifecycleState.UNCONFIGURED
         supervision = supervision or RunSupervision()

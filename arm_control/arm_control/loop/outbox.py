@@ -23,11 +23,6 @@ class Outbox:
     """
 
     def __init__(self, clock: Clock | None = None) -> None:
-        """Create an empty outbox.
-
-        Args:
-            clock: wall time; default the operating system's monotonic clock.
-        """
         self._now_s = (clock or MonotonicClock()).now_s
         self._messages: list[tuple[Callable[[bytes], None], bytes]] = []
         self._ticks = 0

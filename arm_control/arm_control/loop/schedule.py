@@ -79,12 +79,7 @@ class Cadence:
     """
 
     def __init__(self, rate_hz: int, cycle_rate_hz: int) -> None:
-        """Make a cadence whose first cycle is due.
-
-        Args:
-            rate_hz: the lower rate; see `achievable_rate_hz`.
-            cycle_rate_hz: the loop's rate.
-        """
+        """Make a cadence whose first cycle is due; for `rate_hz` see `achievable_rate_hz`."""
         self.rate_hz = rate_hz
         self.skips = rate_hz < cycle_rate_hz
         self._own_period_s = 1.0 / rate_hz

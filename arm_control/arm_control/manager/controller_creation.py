@@ -203,14 +203,7 @@ class ControllerStarter:
         robot_description: Description = "",
         namespace: str = ROOT,
     ) -> None:
-        """Take a manager whose components are already brought up.
-
-        Args:
-            manager: runs the controllers.
-            parameters: a parameter file's content: types and parameters of controllers.
-            robot_description: URDF for the controllers.
-            namespace: the manager's namespace, with the leading slash.
-        """
+        """Take a manager in a namespace, such as '/left', whose components are brought up."""
         self._manager = manager
         self._parameters = parameters
         self._robot_description = robot_description

@@ -122,14 +122,6 @@ class ManagerDiagnostics:
         loop: ControlLoop,
         refusals: RefusedRequests,
     ) -> None:
-        """Refer to a manager.
-
-        Args:
-            manager: the core; only its rates and measured states are read.
-            snapshot: its controllers and components with their states.
-            loop: runs the manager.
-            refusals: the requests that it has refused.
-        """
         self._manager = manager
         self._snapshot = snapshot
         self._loop = loop

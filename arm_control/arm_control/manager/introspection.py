@@ -60,12 +60,6 @@ class InterfaceValues:
     """The values of all command and state interfaces that are numbers. Loop thread only."""
 
     def __init__(self, manager: ControllerManager, snapshot: ManagerSnapshot) -> None:
-        """Refer to a manager.
-
-        Args:
-            manager: holds the values.
-            snapshot: lists the interfaces.
-        """
         self._manager = manager
         self._snapshot = snapshot
         self._listed: object = None
@@ -93,13 +87,6 @@ class ManagerStatistics:
     """Recent rates and execution times of controllers, components and the loop."""
 
     def __init__(self, manager: ControllerManager, snapshot: ManagerSnapshot, name: str) -> None:
-        """Refer to a manager.
-
-        Args:
-            manager: has the record of its updates.
-            snapshot: has the records of controllers and components.
-            name: name of the manager's node.
-        """
         self._manager = manager
         self._snapshot = snapshot
         self._name = name

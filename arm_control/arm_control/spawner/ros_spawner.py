@@ -118,11 +118,6 @@ class _Spawner:
     def __init__(self, node: Node, process: NodeProcess, options: SpawnerOptions) -> None:
         """Prepare.
 
-        Args:
-            node: node of the service clients; a spinning executor serves it.
-            process: tells when the process must end.
-            options: the spawner's options.
-
         Raises:
             SpawnError: the namespace is given twice.
             ParameterError: a parameter file cannot be read.

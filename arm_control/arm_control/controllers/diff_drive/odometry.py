@@ -81,11 +81,7 @@ class Odometry:
     """
 
     def __init__(self, window: int = 10) -> None:
-        """Start at the origin.
-
-        Args:
-            window: number of arcs over which the speeds are averaged, at least 1.
-        """
+        """Start at the origin; the speeds are averaged over `window` arcs, at least 1."""
         self.pose = PlanarPose()
         self.twist = PlanarTwist()
         self._speeds: deque[tuple[float, float]] = deque(maxlen=window)

@@ -12,12 +12,16 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from arm_control.controllers.controller import (
-    Controller,
     ControllerContext,
     InterfaceConfiguration,
     ReturnType,
 )
-from arm_control.controllers.goals import GoalOutcome, RequestQueue, refused_while_inactive
+from arm_control.controllers.goals import (
+    GoalController,
+    GoalOutcome,
+    RequestQueue,
+    refused_while_inactive,
+)
 from arm_control.controllers.gripper.goals import (
     CANCELED,
     PREEMPTED,
@@ -115,7 +119,7 @@ STATES = ("position", "velocity")
 """The joint's states that are read, in this order."""
 
 
-class GripperController(Controller[ParametersT], Generic[ParametersT]):
+class GripperController(GoalController[ParametersT], Generic[ParametersT]):
     """Moves one joint to a goal position and holds it there.
 
     Goals may arrive on any thread. They take effect at the next update, or when `serve_requests` is

@@ -6,14 +6,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from control_msgs.action import GripperCommand, ParallelGripperCommand
-from rclpy.executors import Executor
-from rclpy.node import Node
 
 from arm_control.controllers.gripper import GripperController, GripperRequest, GripperResult
 from arm_control.controllers.gripper.parameters import GripperParameters
 from arm_control.controllers.ros_action import ControllerAction
 from arm_control.controllers.ros_adapter import ControllerAdapter
-from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import run_on_executor
 
 
@@ -75,30 +72,10 @@ PARALLEL_GRIPPER_COMMAND = _GripperActionFormat(
 class _GripperAction(ControllerAction[GripperController[Any], GripperResult]):
     """The action of a gripper controller; without feedback, as in ros2_controllers."""
 
-    def __init__(
-        self,
-        controller: GripperController[Any],
-        node: Node,
-        loop: ControlLoop,
-        executor: Executor,
-        action_format: _GripperActionFormat,
-        joint: str,
-    ) -> None:
-        """Offer the action.
-
-        Args:
-            controller: executes the goals.
-            node: offers the action.
-            loop: runs the controller.
-            executor: spins the node.
-            action_format: the action's type and the conversion of its messages.
-            joint: the gripper's joint.
-        """
-        self._action_format = action_format
+    def __init__(self, adapter: "_GripperAdapter", joint: str) -> None:
+        self._action_format = adapter.action_format
         self._joint = joint
-        super().__init__(
-            controller, node, loop, executor, action_format.action_type, "~/gripper_cmd"
-        )
+        super().__init__(adapter, adapter.action_format.action_type, "~/gripper_cmd")
 
     def accepts(self, goal: Any) -> bool:
         """Return whether a goal is acceptable."""
@@ -154,14 +131,7 @@ class _GripperAdapter(ControllerAdapter[GripperController[Any]], ABC):
 
     def _offer(self) -> None:
         if self._action is None and self.controller.sink is self:
-            self._action = _GripperAction(
-                self.controller,
-                self.node,
-                self.loop,
-                self._executor,
-                self.action_format,
-                self._joint,
-            )
+            self._action = _GripperAction(self, self._joint)
 
     def _withdraw(self) -> None:
         if self._action is not None:

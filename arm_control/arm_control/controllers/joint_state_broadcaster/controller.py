@@ -38,11 +38,7 @@ class StateCopy:
     """Copies selected states into a flat array; other elements keep fixed values."""
 
     def __init__(self, sources: Sequence[int | float]) -> None:
-        """Allocate the array.
-
-        Args:
-            sources: for each element, the index of a state (int) or a fixed value (float).
-        """
+        """Take for each element the index of a state (int) or a fixed value (float)."""
         taken = [i for i, source in enumerate(sources) if isinstance(source, int)]
         self._source = np.array([sources[i] for i in taken], dtype=np.intp)
         self._target = slice(None) if len(taken) == len(sources) else np.array(taken, dtype=np.intp)

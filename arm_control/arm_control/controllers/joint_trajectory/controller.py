@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from arm_control.controllers.controller import (
-    Controller,
     ControllerContext,
     InterfaceConfiguration,
     ReturnType,
 )
+from arm_control.controllers.goals import GoalController
 from arm_control.controllers.joint_trajectory.execution import (
     GoalCancel,
     GoalStart,
@@ -52,7 +52,7 @@ EXECUTOR_SETTINGS = frozenset(
 """Attributes of an executor that are not part of its state."""
 
 
-class JointTrajectoryController(Controller[JointTrajectoryParameters]):
+class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
     """Executes trajectories from action goals or a topic; otherwise it holds the position.
 
     Requests may arrive on any thread. They take effect at the next update, or when `serve_requests`

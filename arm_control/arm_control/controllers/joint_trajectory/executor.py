@@ -83,16 +83,7 @@ class TrajectoryExecutor:
         sink: TrajectorySink | None,
         logger: logging.Logger,
     ) -> None:
-        """Hold the last commanded position, or else the measured one.
-
-        Args:
-            configuration: configuration of the controller.
-            commands: its command interfaces.
-            states: its state interfaces.
-            speed_scaling: speed of trajectory time.
-            sink: receives states, feedback and results.
-            logger: the controller's logger.
-        """
+        """Hold the last commanded position, or else the measured one."""
         self.time_s: float | None = None
         self._configuration = configuration
         self._states = states
@@ -409,12 +400,7 @@ class Commander:
     """
 
     def __init__(self, configuration: Configuration, commands: LoanedInterfaces) -> None:
-        """Take the loaned command interfaces.
-
-        Args:
-            configuration: configuration of the controller.
-            commands: its command interfaces, and possibly one for the speed scaling factor.
-        """
+        """Take the command interfaces; the last may be the one for the speed scaling factor."""
         interfaces = configuration.interfaces
         self._commands = commands
         self._interfaces = interfaces

@@ -219,13 +219,7 @@ class StepPlan(StateValue):
     __slots__ = ("_motions", "_times_s", "end_s")
 
     def __init__(self, start: Array, motions: Array, times_s: Array) -> None:
-        """Make a plan of steps.
-
-        Args:
-            start: motion until the time of the first point, shape (4, n).
-            motions: waypoints, shape (m, 4, n).
-            times_s: their times, shape (m,).
-        """
+        """Make a plan that is at `start` until the first of `motions`, shape (m, 4, n), is due."""
         self._motions = np.nan_to_num(np.concatenate([start[None], motions, motions[-1:]]))
         self._times_s: list[float] = times_s.tolist()
         self.end_s = self._times_s[-1]
@@ -245,13 +239,7 @@ class StopPlan(StateValue):
     __slots__ = ("_deceleration", "_position", "_rest", "_stop_s", "_velocity", "end_s")
 
     def __init__(self, position: Array, velocity: Array, deceleration: Array) -> None:
-        """Make a plan that stops from a state.
-
-        Args:
-            position: shape (n,).
-            velocity: shape (n,).
-            deceleration: positive, shape (n,).
-        """
+        """Make a plan that stops; all shapes are (n,), and the deceleration is positive."""
         self._position = position
         self._velocity = velocity
         self._deceleration = np.copysign(deceleration, velocity)

@@ -1,7 +1,7 @@
 """The ROS half of the joint trajectory controller: its topics, its service and its action."""
 
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,6 @@ from control_msgs.msg import JointTolerance as JointToleranceMessage
 from control_msgs.msg import JointTrajectoryControllerState, SpeedScalingFactor
 from control_msgs.srv import QueryTrajectoryState
 from numpy.typing import NDArray
-from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -47,7 +45,6 @@ from arm_control.controllers.ros_adapter import (
     time_message,
 )
 from arm_control.errors import LoopStoppedError
-from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import run_on_executor
 from arm_node.workarounds.message_template import MessageTemplate
 
@@ -100,29 +97,14 @@ class _JointTrajectoryStatePublisher:
 
 
 class _JointTrajectoryAction(ControllerAction[JointTrajectoryController, GoalResult]):
-    """The action of the joint trajectory controller, with its feedback."""
+    """The action of the joint trajectory controller, with its feedback.
 
-    def __init__(
-        self,
-        controller: JointTrajectoryController,
-        node: Node,
-        loop: ControlLoop,
-        executor: Executor,
-        accepts_faulty: Callable[[], bool],
-    ) -> None:
-        """Offer the action.
+    With the parameter `reject_with_reason` an invalid goal is accepted, then aborted.
+    """
 
-        Args:
-            controller: executes the goals.
-            node: offers the action.
-            loop: runs the controller.
-            executor: spins the node.
-            accepts_faulty: returns whether to accept an invalid goal and abort it with the reason.
-        """
-        self._accepts_faulty = accepts_faulty
-        super().__init__(
-            controller, node, loop, executor, serializing_action_type(), "~/follow_joint_trajectory"
-        )
+    def __init__(self, adapter: "JointTrajectoryAdapter") -> None:
+        self._node = adapter.node
+        super().__init__(adapter, serializing_action_type(), "~/follow_joint_trajectory")
 
     def publish_feedback(self, goal_id: bytes, layout: StateLayout, feedback: Feedback) -> None:
         """Publish a goal's feedback; loop thread."""
@@ -133,7 +115,7 @@ class _JointTrajectoryAction(ControllerAction[JointTrajectoryController, GoalRes
     def accepts(self, goal: FollowJointTrajectory.Goal | TakenGoal) -> bool:
         """Return whether a goal is valid, or is accepted to be aborted with the reason."""
         refusal = self.controller.check_goal(taken_goal(goal).request)
-        return refusal is None or self._accepts_faulty()
+        return refusal is None or bool(self._node.get_parameter("reject_with_reason").value)
 
     def submit(
         self, goal_id: bytes, goal: FollowJointTrajectory.Goal | TakenGoal
@@ -154,26 +136,22 @@ SPEED_SCALING_QOS = QoSProfile(
 
 
 class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
-    """Connects the configured controller to its topics, its service and its action."""
+    """Connects the configured controller to its topics, its service and its action.
+
+    It is the sink of the controller, see `TrajectorySink`.
+    """
 
     _action: _JointTrajectoryAction | None = None
+    _layout: StateLayout | None = None
 
     def on_configure(self, parameters: JointTrajectoryParameters) -> None:
         """Create the end points."""
-        node = self.node
         self._executor = self.executor
         self._joints = parameters.joints
-        publisher = self.publisher(JointTrajectoryControllerState, "~/controller_state")
-        self._action = _JointTrajectoryAction(
-            self.controller,
-            node,
-            self.loop,
-            self._executor,
-            lambda: bool(node.get_parameter("reject_with_reason").value),
-        )
-        sink = _RosTrajectorySink(publisher, self._action)
-        sink.open(self.controller.state_layout)
-        self.controller.sink = sink
+        self._states = self.publisher(JointTrajectoryControllerState, "~/controller_state")
+        self._action = _JointTrajectoryAction(self)
+        self.open(self.controller.state_layout)
+        self.controller.sink = self
         self.serve(QueryTrajectoryState, "~/query_state", self._answer)
         self.subscribe(JointTrajectory, "~/joint_trajectory", self._take, raw=True)
         if self.controller.takes_speed_scaling:
@@ -183,12 +161,35 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
 
     def on_cleanup(self) -> None:
         """Destroy the end points after the results of all goals have been sent."""
-        self.controller.sink = None
+        self.controller.sink = self._layout = None
         action, self._action = self._action, None
         if action is not None:
             action.wait_for_results()
             run_on_executor(self._executor, action.destroy)
         super().on_cleanup()
+
+    def open(self, layout: StateLayout) -> None:
+        """Serialise a message of this layout, unless that has been done.
+
+        It takes as long as several ticks, so it is first done when the controller is configured.
+        """
+        if layout != self._layout:
+            self._layout = layout
+            self._publisher = _JointTrajectoryStatePublisher(self._states, layout)
+
+    def publish_state(self, state: ControllerState) -> None:
+        """Publish on ~/controller_state; loop thread."""
+        self._publisher.publish(state)
+
+    def publish_feedback(self, goal_id: Any, feedback: Feedback) -> None:
+        """Publish the action's feedback; loop thread."""
+        if self._layout is not None and self._action is not None:
+            self._action.publish_feedback(goal_id, self._layout, feedback)
+
+    def finish_goal(self, goal_id: Any, result: GoalResult) -> None:
+        """Send the result to the goal's client; any thread."""
+        if self._action is not None:
+            self._action.finish(goal_id, result)
 
     def _take(self, message: bytes) -> None:
         if not self.takes_commands("~/joint_trajectory"):
@@ -217,39 +218,6 @@ class JointTrajectoryAdapter(ControllerAdapter[JointTrajectoryController]):
         if not state.success:
             logging.getLogger(self.controller.name).error("query_state: %s", state.message)
         return response
-
-
-class _RosTrajectorySink:
-    """Publishes the controller's states, feedback and results. Loop thread, except `open`."""
-
-    def __init__(self, publisher: Publisher, action: _JointTrajectoryAction) -> None:
-        self._publisher = publisher
-        self._action = action
-        self._layout: StateLayout | None = None
-        self._states: _JointTrajectoryStatePublisher | None = None
-
-    def open(self, layout: StateLayout) -> None:
-        """Serialise a message of this layout, unless that has been done.
-
-        It takes as long as several ticks, so it is first done when the controller is configured.
-        """
-        if layout != self._layout:
-            self._layout = layout
-            self._states = _JointTrajectoryStatePublisher(self._publisher, layout)
-
-    def publish_state(self, state: ControllerState) -> None:
-        """Publish on ~/controller_state."""
-        if self._states is not None:
-            self._states.publish(state)
-
-    def publish_feedback(self, goal_id: Any, feedback: Feedback) -> None:
-        """Publish the action's feedback."""
-        if self._layout is not None:
-            self._action.publish_feedback(goal_id, self._layout, feedback)
-
-    def finish_goal(self, goal_id: Any, result: GoalResult) -> None:
-        """Send the result to the goal's client."""
-        self._action.finish(goal_id, result)
 
 
 def goal_request(goal_id: object, goal: TakenGoal) -> GoalRequest:

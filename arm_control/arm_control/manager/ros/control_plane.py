@@ -62,12 +62,7 @@ class ControlPlane:
     ) -> None:
         """Take ownership of the manager's controllers.
 
-        Args:
-            node: the manager's node; its parameters hold the types and files of controllers.
-            manager: the core, which belongs to the loop thread.
-            loop: the loop that runs it.
-            executor: serves the nodes of the controllers.
-            robot_description: URDF for the controllers.
+        The parameters of `node` hold their types and files; `executor` serves their nodes.
         """
         self._node = node
         self._manager = manager

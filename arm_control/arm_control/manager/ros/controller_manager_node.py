@@ -39,12 +39,7 @@ class DescriptionTopic:
     """
 
     def __init__(self, node: Node, in_use: str = "") -> None:
-        """Subscribe.
-
-        Args:
-            node: the controller manager's node.
-            in_use: the description already in use; empty if there is none.
-        """
+        """Subscribe; `in_use` is the description already in use, empty if there is none."""
         self._in_use = in_use
         self._latest: str | None = None
         self._subscription = node.create_subscription(
@@ -93,13 +88,7 @@ class HealthPublisher:
     def __init__(
         self, node: Node, settings: Callable[[], ManagerSettings], stamp: Callable[[], Time]
     ) -> None:
-        """Prepare the thread.
-
-        Args:
-            node: publishes the messages.
-            settings: returns the manager's current parameters; any thread.
-            stamp: returns the time for a message's header; any thread.
-        """
+        """Prepare the thread; it calls `settings` and `stamp`."""
         self._node = node
         self._settings = settings
         self._stamp = stamp

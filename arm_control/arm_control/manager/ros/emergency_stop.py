@@ -39,14 +39,7 @@ class EmergencyStopServer:
         loop: ControlLoop,
         managers: Sequence[ControllerManager],
     ) -> None:
-        """Offer them.
-
-        Args:
-            node: gets the end points.
-            executor: spins the node; the callbacks never block it.
-            loop: runs the managers.
-            managers: the managers to stop together; the loop is running, paused or not.
-        """
+        """Offer them on a node that the executor spins; the loop is running, paused or not."""
         self._executor = executor
         self._loop = loop
         self._managers = tuple(managers)

@@ -51,14 +51,7 @@ class IntrospectionPublisher:
         snapshot: ManagerSnapshot,
         loop: ControlLoop,
     ) -> None:
-        """Prepare the thread; `start` starts it.
-
-        Args:
-            node: the manager's node.
-            manager: the core, which belongs to the loop thread.
-            snapshot: the manager's snapshot.
-            loop: runs the manager.
-        """
+        """Prepare the thread; `start` starts it."""
         self._node = node
         self._loop = loop
         self._interfaces = InterfaceValues(manager, snapshot)
@@ -130,13 +123,7 @@ class StatisticsTopic:
         prefix: str,
         sample: Callable[[], tuple[Time, NamedValues] | None],
     ) -> None:
-        """Make the publishers.
-
-        Args:
-            node: the manager's node.
-            prefix: prefix of the topic names.
-            sample: returns the current numbers and their stamp, None if there are none.
-        """
+        """Make the publishers; `sample` returns the numbers and their stamp, or None."""
         # Imported here, so that a start does not load these messages.
         from pal_statistics_msgs.msg import Statistic, Statistics, StatisticsNames, StatisticsValues
 
