@@ -18,7 +18,6 @@ import harness
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 from arm_sim import Simulation
-from arm_sim.assembly import SimulationParts, assemble
 
 START = """
 import json, time
@@ -44,10 +43,8 @@ class NodeLoop:
     """The node's loop and tick, with the same controllers, without ROS."""
 
     def __init__(self, robot: str) -> None:
-        self.parts: SimulationParts = assemble(robot, None, {}, None, (), {})
-        self.parts.start_controllers()
-        period_s = self.parts.physics.timing.period_s
-        self._loop = ControlLoop(self.parts.tick, Pacer(period_s))
+        self.sim = Simulation(robot)
+        self._loop = ControlLoop(self.sim.parts.tick, Pacer(self.sim.period_s))
         self._loop.start(paused=True)
 
     def run(self, ticks: int) -> None:
@@ -58,7 +55,7 @@ class NodeLoop:
         """End the loop."""
         self._loop.stop()
         self._loop.join()
-        self.parts.close()
+        self.sim.close()
 
 
 def cost_us(run: Callable[[int], None], ticks: int) -> float:

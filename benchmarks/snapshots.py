@@ -10,7 +10,7 @@ import harness
 import numpy as np
 
 from arm_gazebo.state.complete_state import CompleteState
-from arm_sim.assembly import SimulationParts, assemble
+from arm_sim import Simulation
 
 RESETS_CLIENT = Path(__file__).with_name("resets_client.py")
 REPEATS = 300
@@ -50,24 +50,23 @@ def timed_ms(action: Callable[[], object], repeats: int = REPEATS) -> float:
     return median(taken)
 
 
-def moving(robot: str) -> SimulationParts:
+def moving(robot: str) -> Simulation:
     """Return a robot whose arm follows a long trajectory."""
     controller, joints = TRAJECTORY[robot]
-    parts = assemble(robot, None, {}, ["joint_state_broadcaster", controller], (), {})
-    parts.start_controllers()
-    parts.controllers[controller].follow({"times_s": [1000.0], "positions": [[0.5] * joints]})
+    sim = Simulation(robot, spawn=["joint_state_broadcaster", controller])
+    sim.controllers[controller].follow({"times_s": [1000.0], "positions": [[0.5] * joints]})
     for _ in range(TICKS_BEFORE):
-        parts.tick()
-    return parts
+        sim.step()
+    return sim
 
 
 def rows_of(robot: str) -> list[harness.Row]:
     """Return what saving, restoring and comparing take."""
-    parts = moving(robot)
-    state: CompleteState = parts.state
+    run = moving(robot).parts
+    state: CompleteState = run.state
     saved = state.save()
     digest_us = timed_ms(state.digest, 3 * REPEATS) * 1e3
-    tick_us = timed_ms(parts.tick, 3 * REPEATS) * 1e3
+    tick_us = timed_ms(run.tick, 3 * REPEATS) * 1e3
     save_ms, restore_ms = timed_ms(state.save), timed_ms(lambda: state.restore(saved))
     reset_ms = timed_ms(lambda: state.reset(True))
     return [

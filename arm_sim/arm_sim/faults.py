@@ -8,9 +8,9 @@ from typing import Any
 
 from arm_gazebo.faults.fault import Fault, FaultKind
 from arm_gazebo.faults.injector import FaultInjector
-from arm_sim.assembly import SimulationParts
+from arm_gazebo.run.run import SimulationRun
 from arm_sim.cameras import Camera
-from arm_sim.controllers import ControllerHandle
+from arm_sim.controllers import ControllerHandle, Controllers
 from arm_sim.fault_log import FaultLog
 from arm_sim.faulty_link import FaultyLink, LinkFault
 
@@ -25,13 +25,14 @@ class SimulationFaults:
         log: the faults so far.
     """
 
-    def __init__(self, parts: SimulationParts, find_camera: Callable[[str], Camera]) -> None:
-        self.log = FaultLog(lambda: parts.physics.time_s)
-        self._parts = parts
+    def __init__(
+        self, run: SimulationRun, controllers: Controllers, find_camera: Callable[[str], Camera]
+    ) -> None:
+        self.log = FaultLog(lambda: run.physics.time_s)
+        self._run = run
+        self._controllers = controllers
         self._find_camera = find_camera
-        self._injector = FaultInjector(
-            parts.physics, [parts.robot.manager], parts.tick, parts.robot.sensors
-        )
+        self._injector = FaultInjector(run.physics, run.managers, run.tick, run.sensors)
 
     def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
         """Make a joint stick where it is, whatever its drive does."""
@@ -136,14 +137,14 @@ class SimulationFaults:
 
     @contextmanager
     def _linked(self, how: str, controller: str, fault: LinkFault) -> Iterator[None]:
-        handle, parts = self._parts.controllers[controller], self._parts
-        line = _CommandLine(handle, FaultyLink(fault), lambda: parts.physics.time_s)
+        handle, run = self._controllers[controller], self._run
+        line = _CommandLine(handle, FaultyLink(fault), lambda: run.physics.time_s)
         with self.log.noted(f"{controller} {how}"):
-            parts.tick.add_feed(line)
+            run.tick.add_feed(line)
             try:
                 yield
             finally:
-                parts.tick.remove_feed(line)
+                run.tick.remove_feed(line)
                 line.close()
 
 

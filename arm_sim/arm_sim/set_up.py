@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from os import fspath, pathsep
 from typing import Any
 
+from arm_control.manager.controller_creation import MANAGER, ControllerStarter, manager_settings
 from arm_control.manager.parameter_file import ParametersByNode
 from arm_gazebo.launching.controllers_file import read_controllers
 from arm_gazebo.launching.robot_setup import SPAWN_AUTO, RobotSetup, set_up_robot
+from arm_gazebo.run.robot import ManagedRobot
+from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.run.settings import SimulationSettings, simulation_settings
 from arm_node.setting import given_values
 from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
@@ -29,6 +32,19 @@ class SimulationSetup:
     parameters: ParametersByNode
     remarks: tuple[str, ...]
     left_out: str
+
+    def build(self) -> tuple[SimulationRun, ControllerStarter]:
+        """Return the run, and what starts its controllers.
+
+        Raises:
+            DescriptionError, GazeboError, ArmControlError: it cannot be built.
+        """
+        manager = manager_settings(self.parameters)
+        run = SimulationRun.of(
+            self.settings, [ManagedRobot(self.settings.robots[0], manager, f"/{MANAGER}")]
+        )
+        starter = ControllerStarter(run.robot.manager, self.parameters, run.robot.document)
+        return run, starter
 
 
 def set_up(

@@ -1,31 +1,39 @@
 """The simulation as a library: the robot in its world with its controllers, without ROS."""
 
+import logging
 import math
 from collections.abc import Callable
 from contextlib import AbstractContextManager, ExitStack
+from functools import cached_property
+from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from arm_sim.arguments import SimulationArguments, takes, with_settings
-from arm_sim.assembly import SimulationParts, assemble
-from arm_sim.controllers import ControllerHandle
+from arm_sim.controllers import ControllerHandle, Controllers
 from arm_sim.errors import CallError, GoalError
 from arm_sim.goals import Goal, ResultT
-from arm_sim.pose import AnyPose, Matrix
+from arm_sim.joints import Joints
+from arm_sim.pose import AnyPose, Matrix, pose_matrix
 from arm_sim.robots import AnyPath
 from arm_sim.snapshots import SavedState, Snapshots
 from arm_sim.states import Sensors, States
-from arm_sim.user_traceback import ends_at_the_caller
+from arm_sim.user_traceback import ends_at_the_caller, warn_caller
 
 if TYPE_CHECKING:
     from arm_control.controllers.gripper import GripperResult
     from arm_control.controllers.joint_trajectory import GoalResult
+    from arm_gazebo.run.run import SimulationRun
     from arm_gazebo.world.contacts import Contact
-    from arm_sim.cameras import Camera
+    from arm_sim.cameras import Camera, RobotCameras
     from arm_sim.trajectory import AnyTrajectory
 
 GOAL_TIMEOUT_S = 60.0
 ROUNDING = 1e-6  # of a duration, in control periods
+
+logger = logging.getLogger("arm_sim")
 
 
 @ends_at_the_caller
@@ -41,7 +49,7 @@ class Simulation:
         states: the state interfaces of the hardware by full name, such as 'j0/position'.
         sensors: the present readings of the robot's sensors: `sim.sensors["imu"]` is a mapping.
         controllers: the loaded controllers by name; `sim["NAME"]` is one of them.
-        parts: the parts behind it, for what this class does not offer.
+        parts: the run behind it, for what this class does not offer.
 
     Args:
         description: URDF or xacro file, as a path or a package:// URI; the text of a URDF; or
@@ -70,7 +78,10 @@ class Simulation:
             RecordingError: the recording cannot be written.
             ParameterValueError: another argument is wrong.
         """
-        self.parts = assemble(
+        # Imported here, because it takes long, and a program may never build a simulation.
+        from arm_sim.set_up import set_up
+
+        setup = set_up(
             arguments.description,
             arguments.controllers,
             arguments.arguments or {},
@@ -78,14 +89,20 @@ class Simulation:
             arguments.package_path,
             arguments.parameters(),
         )
-        self._physics = self.parts.physics
-        self._tick = self.parts.tick
+        for remark in setup.remarks:
+            logger.info("%s", remark)
+        if setup.left_out:
+            warn_caller(setup.left_out)
+        self.parts, starter = setup.build()
+        self._physics, self._tick = self.parts.physics, self.parts.tick
+        self._render_backend = setup.settings.render_backend
         self._ending = ExitStack()
         self._closed = False
-        self.joints = self.parts.joints
+        self.joints = Joints(self._physics)
+        self.parts.holders.append(self.joints)
         self.states = States(self.parts.robot.manager.resources)
-        self.sensors = Sensors(self.parts.robot.sensors)
-        self.controllers = self.parts.controllers
+        self.sensors = Sensors(self.parts.sensors)
+        self.controllers = Controllers(self.parts.robot.manager, starter)
         self._start(arguments.record)
 
     def _start(self, record: AnyPath | None) -> None:
@@ -94,12 +111,10 @@ class Simulation:
             failing.callback(self.close)
             self._ending.callback(self.parts.close)
             if record is not None:
-                from arm_sim.recording import recording
-
-                self._ending.enter_context(recording(self.parts, Path(record)))
-            self.parts.start_controllers()
+                self._ending.enter_context(self.record(record))
+            self.parts.robot.start_controllers(self.controllers.start, logger)
             failing.pop_all()
-        self._snapshots = Snapshots(self.parts)
+        self._snapshots = Snapshots(self.parts, self.controllers, self._reseed)
 
     # Time
 
@@ -120,9 +135,9 @@ class Simulation:
             UnhandledFailureError: a controller or component raised, and the parameter
                 `handle_exceptions` is false. Otherwise only that one is stopped, which is logged.
         """
-        parts = self._open
+        run = self._open
         self._tick()
-        parts.log_findings()
+        run.log_findings(logger)
 
     def run(self, seconds: float) -> None:
         """Advance by simulated seconds, to the first tick at or after their end.
@@ -130,10 +145,10 @@ class Simulation:
         Raises:
             CallError: `seconds` is not a duration; other errors as in `step`.
         """
-        parts = self._open
+        run = self._open
         for _ in range(self._periods_in(seconds)):
             self._tick()
-        parts.log_findings()
+        run.log_findings(logger)
 
     def run_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Advance until a condition holds after a tick; return whether it did in time.
@@ -212,7 +227,7 @@ class Simulation:
     @property
     def entities(self) -> tuple[str, ...]:
         """Names of the entities: robots, parts of the world, spawned models."""
-        return self._open.things.names
+        return tuple(entity.name for entity in self._open.editor.entities)
 
     def spawn(
         self, model: AnyPath, *, name: str = "", pose: AnyPose = None, frame: str = ""
@@ -228,7 +243,13 @@ class Simulation:
         Raises:
             RequestError: it cannot be spawned; the world is unchanged.
         """
-        return self._open.things.spawn(model, name, pose, frame)
+        from arm_gazebo.world.editor import SpawnRequest
+
+        text = fspath(model)
+        uri, text = ("", text) if text.lstrip().startswith("<") else (text, "")
+        matrix, allow_renaming = pose_matrix(pose), not name
+        request = SpawnRequest(name, uri, text, matrix, frame, allow_renaming=allow_renaming)
+        return self._open.editor.spawn(request)
 
     def delete(self, name: str) -> None:
         """Delete an entity of the world that is not a robot with controllers.
@@ -236,7 +257,7 @@ class Simulation:
         Raises:
             RequestError: it cannot be deleted.
         """
-        self._open.things.delete(name)
+        self._open.editor.delete(name)
 
     def place(self, name: str, pose: AnyPose, frame: str = "") -> None:
         """Move an entity, which is at rest afterwards.
@@ -249,7 +270,7 @@ class Simulation:
         Raises:
             RequestError: it cannot be moved.
         """
-        self._open.things.place(name, pose, frame)
+        self._open.editor.place(name, pose_matrix(pose), frame, None)
 
     def pose(self, name: str, frame: str = "") -> Matrix:
         """Return the pose of an entity or a link, shape (4, 4).
@@ -261,7 +282,9 @@ class Simulation:
         Raises:
             RequestError: there is none of that name.
         """
-        return self._open.things.pose(name, frame)
+        in_world = self._open.editor.in_world
+        seen = in_world(np.eye(4), name)
+        return np.linalg.inv(in_world(np.eye(4), frame)) @ seen if frame else seen
 
     def contacts(self, name: str | None = None) -> "tuple[Contact, ...]":
         """Return the contacts of an entity or a link in the present state.
@@ -272,14 +295,17 @@ class Simulation:
         Raises:
             RequestError: there is none of that name.
         """
-        return self._open.things.contacts(name)
+        from arm_gazebo.world.contacts import contacts_of
+
+        run = self._open
+        return contacts_of(name, self._physics.model, self._physics.observe(), run.editor.entities)
 
     # Cameras
 
     @property
     def cameras(self) -> tuple[str, ...]:
         """Names of the robot's cameras."""
-        return tuple(sensor.name for sensor in self.parts.robot.cameras)
+        return tuple(sensor.name for sensor in self.parts.cameras)
 
     def camera(self, name: str) -> "Camera":
         """Return a camera by its name or one of its topics; it draws on request.
@@ -287,7 +313,17 @@ class Simulation:
         Raises:
             UnknownNameError: the robot has none of that name.
         """
-        return self._open.cameras.find(name)
+        self._check_open()
+        return self._drawn_cameras.find(name)
+
+    @cached_property
+    def _drawn_cameras(self) -> "RobotCameras":
+        from arm_sim.cameras import RobotCameras
+
+        run = self.parts
+        cameras = RobotCameras(run.physics, run.cameras, self._render_backend, run.seed)
+        self._ending.callback(cameras.close)
+        return cameras
 
     # States
 
@@ -331,13 +367,18 @@ class Simulation:
         self._check_open()
         self._snapshots.reset(seed)
 
+    def _reseed(self, seed: int) -> None:
+        self.parts.reseed(seed)
+        if "_drawn_cameras" in self.__dict__:
+            self._drawn_cameras.reseed(seed)
+
     def record(self, path: AnyPath) -> AbstractContextManager[None]:
         """Record the run from now on, for `arm sim replay`, until the returned context ends.
 
         Raises:
             RecordingError: the file exists or cannot be written, or a controller cannot be saved.
         """
-        from arm_sim.recording import recording
+        from arm_gazebo.recording.recorder import recording
 
         return recording(self._open, Path(path))
 
@@ -360,7 +401,7 @@ class Simulation:
             raise CallError("the simulation is closed")
 
     @property
-    def _open(self) -> SimulationParts:
-        """The parts of the simulation, unless it is closed."""
+    def _open(self) -> "SimulationRun":
+        """The run, unless the simulation is closed."""
         self._check_open()
         return self.parts

@@ -1,19 +1,20 @@
 """Saves a simulation, and restores a saved state bit for bit."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_control.errors import StateError
-from arm_sim.assembly import SimulationParts
+from arm_sim.controllers import Controllers
 from arm_sim.errors import CallError
 from arm_sim.goals import Goal
 from arm_sim.robots import AnyPath
 
 if TYPE_CHECKING:
+    from arm_gazebo.run.run import SimulationRun
     from arm_gazebo.state.snapshots import SnapshotStore
     from arm_gazebo.world.changes import WorldChanges
 
@@ -44,14 +45,19 @@ class SavedState:
 class Snapshots:
     """Saves and restores a simulation between two ticks.
 
-    Attributes:
-        seed: the present seed of the noise.
+    Args:
+        run: the run.
+        controllers: its controllers.
+        reseed: gives sensors and cameras the noise of another run.
     """
 
-    def __init__(self, parts: SimulationParts) -> None:
+    def __init__(
+        self, run: "SimulationRun", controllers: Controllers, reseed: Callable[[int], None]
+    ) -> None:
         """Remember the state at the start, if every controller can be saved."""
-        self._parts = parts
-        self.seed = parts.settings.seed
+        self._run = run
+        self._controllers = controllers
+        self._reseed = reseed
         self._start: SavedState | StateError
         try:
             self._start = self.save()
@@ -67,11 +73,11 @@ class Snapshots:
         if path is not None:
             self._files.save(_absolute(path))
         return SavedState(
-            self._parts.physics.time_s,
-            self._parts.state.save(),
-            self._parts.world_changes,
-            self.seed,
-            self._parts.controllers.running_goals(),
+            self._run.physics.time_s,
+            self._run.state.save(),
+            self._run.changes,
+            self._run.seed,
+            self._controllers.running_goals(),
             self,
         )
 
@@ -86,16 +92,19 @@ class Snapshots:
             _, remark = self._files.restore(_absolute(snapshot))
             if remark:
                 logger.warning("%s: %s", snapshot, remark)
-            self._parts.controllers.restore_goals({})
+            self._controllers.restore_goals({})
             return
         if snapshot.owner is not self:
             raise CallError("the snapshot was saved by another simulation")
         self._check_seed(snapshot.seed)
-        self._parts.state.check(snapshot.state)
-        self._parts.change_world(snapshot.world)
-        self._parts.state.restore(snapshot.state)
-        self._parts.controllers.restore_goals(snapshot.goals)
-        self._reseed(snapshot.seed)
+        self._run.state.check(snapshot.state)
+        if snapshot.world is not self._run.changes:
+            from arm_gazebo.world.changes import NOTHING
+
+            self._run.editor.change_to(snapshot.world or NOTHING)
+        self._run.state.restore(snapshot.state)
+        self._controllers.restore_goals(snapshot.goals)
+        self._change_seed(snapshot.seed)
 
     def reset(self, seed: int | None) -> None:
         """Go back to the start; with a seed, to that of a simulation with this seed.
@@ -109,32 +118,23 @@ class Snapshots:
             self._check_seed(seed)
         self.restore(self._start)
         if seed is not None:
-            self._reseed(seed)
+            self._change_seed(seed)
 
     @cached_property
     def _files(self) -> "SnapshotStore":
         """The snapshots in files, which the node's services read and write as well."""
         from arm_gazebo.state.snapshots import SnapshotStore
 
-        things = self._parts.things
-        return SnapshotStore(
-            self._parts.state,
-            things.editor,
-            lambda function: function(),
-            things.source,
-            lambda: self._parts.world_name,
-            lambda: None,
-        )
+        run = self._run
+        return SnapshotStore(run.state, run.editor, lambda: run.world_name, lambda: None)
 
     def _check_seed(self, seed: int) -> None:
-        if seed != self.seed and self._parts.physics.input_gate is not None:
+        if seed != self._run.seed and self._run.physics.input_gate is not None:
             raise CallError("a run that is being recorded keeps its seed")
 
-    def _reseed(self, seed: int) -> None:
-        if seed == self.seed:
-            return
-        self.seed = seed
-        self._parts.reseed(seed)
+    def _change_seed(self, seed: int) -> None:
+        if seed != self._run.seed:
+            self._reseed(seed)
 
 
 def _absolute(path: AnyPath) -> str:

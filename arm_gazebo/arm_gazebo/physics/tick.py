@@ -70,14 +70,12 @@ class SimulationTick:
         managers: Sequence[ControllerManager],
         simulation: Physics,
         clock: ClockPublisher,
-        feeds: Sequence[Feed],
-        period_s: float,
     ) -> None:
         self._managers = tuple(managers)
         self._simulation = simulation
         self._clock = clock
-        self._feeds = list(feeds)
-        self._period_s = period_s
+        self._feeds: list[Feed] = []
+        self._period_s = simulation.timing.period_s
         self.costs = TickCosts()
         self._now_s = MonotonicClock.now_s
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from itertools import zip_longest
 
 from arm_control.state.encoding import encode
-from arm_gazebo.recording.recorded_run import rebuild, run_of
+from arm_gazebo.recording.recorded_run import run_of
 from arm_gazebo.recording.replay import Difference, differing
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
 from arm_gazebo.recording.run_state import state_names
@@ -104,9 +104,8 @@ def _names(file: RunFile, inputs: list[RecordedInput]) -> list[str]:
     """Return the names of a state's numbers after these inputs."""
     run = run_of(file)
     models = [item.arguments["model"] for item in inputs if item.method == "swap"]
-    _, robots = rebuild(run)
     model = (models[-1] if models else run.model).load().model
-    return state_names(model, [robot.manager for robot in robots])
+    return state_names(model, run.build().managers)
 
 
 def _differing_settings(first: RunFile, second: RunFile) -> Iterator[str]:

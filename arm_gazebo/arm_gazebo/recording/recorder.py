@@ -4,29 +4,29 @@ import logging
 import threading
 from array import array
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from typing import Protocol, TypeVar
+from typing import Protocol, Self, TypeVar
 
 import mujoco
 import numpy as np
 
 from arm_control.controllers.controller import Controller
 from arm_control.errors import ArmControlError, LoopStoppedError
-from arm_control.manager.controller_manager import ControllerManager
 from arm_control.state.encoding import NotPlainError
-from arm_gazebo.errors import GazeboError
-from arm_gazebo.physics.physics import Physics
+from arm_gazebo.errors import GazeboError, RecordingError
+from arm_gazebo.recording.recorded_run import first_inputs, header_of
 from arm_gazebo.recording.run_file import (
     Record,
     RecordedInput,
     RecordingEnd,
+    RunFileWriter,
     StateBlock,
 )
 from arm_gazebo.recording.run_state import StateRow, chained_hashes
-from arm_gazebo.state.complete_state import CompleteState
+from arm_gazebo.run.run import LOOP_TIMEOUT_S, SimulationRun
 
 ResultT = TypeVar("ResultT")
 
@@ -41,19 +41,6 @@ MAX_BYTES_PER_S = 200_000
 """Of larger states not every one is stored, so that files of large worlds stay small."""
 
 logger = logging.getLogger(__name__)
-
-
-class OnLoop(Protocol):
-    """The loop that runs the simulation."""
-
-    @property
-    def is_this_thread(self) -> bool:
-        """Whether the caller is on the loop's thread."""
-        ...
-
-    def call(self, function: Callable[[], ResultT]) -> "Future[ResultT]":
-        """Run a function between two ticks."""
-        ...
 
 
 class RecordWriter(Protocol):
@@ -121,10 +108,7 @@ class RunRecorder:
     be written any more, the recording ends with `failure`, and the run goes on.
 
     Args:
-        simulation: the simulation; the loop thread owns it.
-        state: the state of the run, which may be restored and reset.
-        managers: the controller managers of its robots.
-        loop: runs them.
+        run: the run.
         writer: writes the file, which already has its header.
 
     Attributes:
@@ -132,20 +116,10 @@ class RunRecorder:
         periods: number of control periods recorded so far.
     """
 
-    def __init__(
-        self,
-        simulation: Physics,
-        state: CompleteState,
-        managers: Sequence[ControllerManager],
-        loop: OnLoop,
-        writer: RecordWriter,
-    ) -> None:
+    def __init__(self, run: SimulationRun, writer: RecordWriter) -> None:
         self.failure = ""
         self.periods = 0
-        self._simulation = simulation
-        self._complete_state = state
-        self._managers = tuple(managers)
-        self._loop = loop
+        self._run = run
         self._writer = writer
         self._records: deque[Record | _StateQueue | None] = deque()
         self._wake: SimpleQueue[None] = SimpleQueue()
@@ -159,6 +133,45 @@ class RunRecorder:
         """The file."""
         return self._writer.path
 
+    @classmethod
+    def to_file(cls, run: SimulationRun, path: Path) -> Self:
+        """Record a run to a file from now on. Not on the loop's thread.
+
+        Args:
+            run: the run.
+            path: the file, which must not exist.
+
+        Raises:
+            RecordingError: the file cannot be written, or the run cannot be recorded.
+        """
+        built = run.physics.built
+        writer = RunFileWriter(path, header_of(run, built))
+        recorder = cls(run, writer)
+
+        def begin() -> None:
+            if run.physics.built is not built:
+                raise RecordingError(
+                    "the world changed just as the recording began; start the recording again"
+                )
+            recorder.start(list(first_inputs(run)))
+
+        try:
+            run.loop.call(begin).result(LOOP_TIMEOUT_S)
+        except RecordingError:
+            writer.close()
+            path.unlink(missing_ok=True)
+            raise
+        return recorder
+
+    def end(self, reason: str = "") -> None:
+        """End the recording, and wait for its file. Not on the loop's thread.
+
+        Args:
+            reason: why it ends; "" if its user ends it.
+        """
+        self._run.loop.call(lambda: self.stop(reason)).result(LOOP_TIMEOUT_S)
+        self.join()
+
     def start(self, first: Iterable[RecordedInput] = ()) -> None:
         """Record from now on. Loop thread, between two ticks, or before the loop runs.
 
@@ -168,6 +181,7 @@ class RunRecorder:
         self._records.extend(first)
         self._thread.start()
         self._set_gate(self)
+        self._run.tick.add_feed(self)
 
     def stop(self, reason: str = "") -> None:
         """End the recording. Loop thread, or after the loop has ended; see `join`.
@@ -175,6 +189,7 @@ class RunRecorder:
         Args:
             reason: why it ends; "" if its user ends it.
         """
+        self._run.tick.remove_feed(self)
         self._set_gate(None)
         self._end_block()
         self._records.extend((RecordingEnd(self.periods, reason), None))
@@ -193,10 +208,10 @@ class RunRecorder:
         /,
     ) -> ResultT:
         """Run an input on the loop thread, between two ticks, and note it; any thread."""
-        if self._loop.is_this_thread:
+        if self._run.loop.is_this_thread:
             return self._note(target, method, arguments, act)
         try:
-            return self._loop.call(lambda: self._note(target, method, arguments, act)).result()
+            return self._run.loop.call(lambda: self._note(target, method, arguments, act)).result()
         except LoopStoppedError:
             # The run has ended, and with it the recording.
             return act()
@@ -213,8 +228,8 @@ class RunRecorder:
             self._end_block()
 
     def _set_gate(self, gate: "RunRecorder | None") -> None:
-        self._simulation.input_gate = self._complete_state.input_gate = gate
-        for manager in self._managers:
+        self._run.physics.input_gate = self._run.state.input_gate = gate
+        for manager in self._run.managers:
             manager.set_input_gate(gate)
 
     def _note(
@@ -248,7 +263,7 @@ class RunRecorder:
 
     def _place_of(self, target: object) -> tuple[int | None, str | None]:
         """Return the index of a target's robot, and its name if it is a controller."""
-        for index, manager in enumerate(self._managers):
+        for index, manager in enumerate(self._run.managers):
             if target is manager:
                 return index, None
             if isinstance(target, Controller):
@@ -259,8 +274,8 @@ class RunRecorder:
 
     def _begin_model(self) -> None:
         """Note the states of the present model from now on."""
-        self._state = StateRow(self._simulation, self._managers)
-        width, period_s = self._state.width, self._simulation.timing.period_s
+        self._state = StateRow(self._run.physics, self._run.managers)
+        width, period_s = self._state.width, self._run.physics.timing.period_s
         interval = max(1, round(8 * width / period_s / MAX_BYTES_PER_S))
         self._periods_in_block = max(1, min(MAX_PERIODS, BLOCK_BYTES // (8 * width)))
         self._states = _StateQueue(self.periods, width, interval)
@@ -329,3 +344,23 @@ class RunRecorder:
     def _write_record(self, record: Record) -> None:
         if not self.failure:
             self._writer.write(record)
+
+
+@contextmanager
+def recording(run: SimulationRun, path: Path) -> Iterator[None]:
+    """Record a run from now on to the end of the `with` block.
+
+    Args:
+        run: the run.
+        path: the file, which must not exist.
+
+    Raises:
+        RecordingError: the file cannot be written, or the run cannot be recorded.
+    """
+    recorder = RunRecorder.to_file(run, path)
+    reason = "the program failed"
+    try:
+        yield
+        reason = ""
+    finally:
+        recorder.end(reason)

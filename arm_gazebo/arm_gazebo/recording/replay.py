@@ -16,11 +16,10 @@ from arm_control.run_inputs import is_run_input
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError, RecordingError
 from arm_gazebo.model.saved_model import SavedModel
-from arm_gazebo.physics.tick import SilentClock, SimulationTick
-from arm_gazebo.recording.recorded_run import rebuild, run_of
+from arm_gazebo.recording.recorded_run import run_of
 from arm_gazebo.recording.run_file import RecordedInput, RecordingEnd, RunFile, StateBlock
 from arm_gazebo.recording.run_state import Row, StateRow, chained_hashes, state_names
-from arm_gazebo.run.robot import AssembledRobot
+from arm_gazebo.run.robot import SimulatedRobot
 from arm_gazebo.state.complete_state import CompleteState
 
 MAX_NAMED = 6
@@ -70,25 +69,18 @@ class Replay:
         GazeboError, ArmControlError, DescriptionError: the run cannot be built with what is here.
 
     Attributes:
-        simulation: the simulation.
+        simulation: the physics.
         robots: its robots with their controller managers.
         periods: control periods that have run.
     """
 
     def __init__(self, file: RunFile) -> None:
         self._file = file
-        run = run_of(file)
-        self.simulation, self.robots = rebuild(run)
+        self._run = run = run_of(file).build()
+        self.simulation, self.robots = run.physics, run.robots
         self.periods = 0
-        self._period_s = run.timing.period_s
-        managers = [robot.manager for robot in self.robots]
-        self._managers = managers
-        self._complete_state = CompleteState(self.simulation, managers)
-        self._tick = SimulationTick(
-            managers, self.simulation, SilentClock(), (), run.timing.period_s
-        )
         self._hash = 0
-        self._state = StateRow(self.simulation, managers)
+        self._state = StateRow(run.physics, run.managers)
         self._end: RecordingEnd | None = None
 
     def run(
@@ -112,7 +104,7 @@ class Replay:
             if isinstance(block, Difference):
                 difference = block
                 break
-            self._tick()
+            self._run.tick()
             difference = self._compare(block, period)
             if difference is not None:
                 break
@@ -140,7 +132,10 @@ class Replay:
                     self._end = record
                 case StateBlock():
                     for period in range(record.first, record.first + len(record.hashes)):
-                        if self.simulation.time_s + 0.5 * self._period_s >= until_s:
+                        if (
+                            self.simulation.time_s + 0.5 * self.simulation.timing.period_s
+                            >= until_s
+                        ):
                             return
                         while waiting and waiting[0].period <= period:
                             before_input(waiting[0])
@@ -174,7 +169,7 @@ class Replay:
                 return
             target: Any = self.simulation
             if hasattr(CompleteState, recorded.method):
-                target = self._complete_state
+                target = self._run.state
         else:
             robot = self._robot(recorded)
             target = robot.manager
@@ -192,7 +187,7 @@ class Replay:
             )
         method(**arguments)
 
-    def _robot(self, recorded: RecordedInput) -> AssembledRobot:
+    def _robot(self, recorded: RecordedInput) -> SimulatedRobot:
         index = recorded.robot
         if index is None or not 0 <= index < len(self.robots):
             raise RecordingError(f"{self._file.path} has no robot number {index}")
@@ -201,10 +196,9 @@ class Replay:
     def _swap(self, model: SavedModel, roots: tuple[str, ...]) -> None:
         following = self.simulation.prepare(model.load(), roots)
         self.simulation.swap(following)
-        for robot in self.robots:
-            for component in robot.hardware:
-                component.rebind()
-        self._state = StateRow(self.simulation, self._managers)
+        for holder in self._run.holders:
+            holder.rebind()
+        self._state = StateRow(self.simulation, self._run.managers)
 
     def _compare(self, block: StateBlock, period: int) -> Difference | None:
         state = self._state.copy(self.simulation.time_s)
@@ -215,7 +209,7 @@ class Replay:
         if recorded is None:
             lines = ["the hash of the state differs; the state itself was not recorded here"]
         else:
-            names = state_names(self.simulation.model, self._managers)
+            names = state_names(self.simulation.model, self._run.managers)
             lines = differing(names, recorded, np.frombuffer(state))
         return Difference(period, self.simulation.time_s, tuple(lines))
 
@@ -243,7 +237,7 @@ def differing(names: list[str], recorded: Row, now: Row) -> list[str]:
     return [*lines, f"and {more} more numbers"] if more > 0 else lines
 
 
-def _controller(robot: AssembledRobot, arguments: dict[str, Any]) -> Any:
+def _controller(robot: SimulatedRobot, arguments: dict[str, Any]) -> Any:
     manager: ControllerManager = robot.manager
     context = ControllerContext.of(
         str(arguments["controller"]), manager.update_rate_hz, robot.document

@@ -12,7 +12,7 @@ from rclpy.parameter import Parameter
 from arm_control.errors import LoopStoppedError
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.recording.recorder import RunRecorder
-from arm_gazebo.recording.session import RunParts, begin_recording, end_recording
+from arm_gazebo.run.run import SimulationRun
 
 PARAMETER = "record_run"
 
@@ -33,7 +33,7 @@ class RunRecording:
         RecordingError: the first recording cannot begin.
     """
 
-    def __init__(self, node: Node, run: RunParts, path: str) -> None:
+    def __init__(self, node: Node, run: SimulationRun, path: str) -> None:
         self._node = node
         self._run = run
         self._recorder: RunRecorder | None = None
@@ -73,11 +73,11 @@ class RunRecording:
             self._begin(path)
 
     def _begin(self, path: str) -> None:
-        self._recorder = begin_recording(self._run, Path(path).expanduser().absolute())
+        self._recorder = RunRecorder.to_file(self._run, Path(path).expanduser().absolute())
         logger.info("recording the run to %s", self._recorder.path)
 
     def _end(self, reason: str = "") -> None:
         recorder, self._recorder = self._recorder, None
         if recorder is not None:
-            end_recording(self._run, recorder, reason)
+            recorder.end(reason)
             logger.info("recorded %d control periods to %s", recorder.periods, recorder.path)

@@ -59,14 +59,12 @@ class RunServices:
         run: RunControl,
         reset: RunReset,
         loader: WorldLoader,
-        world: NamedWorld,
         about: str,
     ) -> None:
         self._editor = editor
         self._run = run
         self._reset_run = reset
         self._loader = loader
-        self._world: NamedWorld | None = world
         self._about = about
         services: tuple[ServiceRow, ...] = (
             (GetSimulatorFeatures, "get_simulator_features", self._features),
@@ -79,11 +77,6 @@ class RunServices:
             (GetAvailableWorlds, "get_available_worlds", self._available),
         )
         create_services(node, services)
-
-    @property
-    def world_name(self) -> str:
-        """The name of the world, "" for none."""
-        return "" if self._world is None else self._world.name
 
     def _features(self, _request: Any, response: GetSimulatorFeatures.Response) -> Any:
         response.features = SimulatorFeatures(
@@ -134,7 +127,7 @@ class RunServices:
             )
             with self._run.paused_as(RunState.STOPPED):
                 self._editor.replace_world(base)
-            self._world = world
+            self._loader.world = world
             response.world = world_message(world)
 
         return answer(response, LOAD_CODES, load)
@@ -144,7 +137,7 @@ class RunServices:
             self._loaded()
             with self._run.paused_as(RunState.NO_WORLD):
                 self._editor.replace_world(self._loader.load_empty())
-            self._world = None
+            self._loader.world = None
 
         return answer(response, UNLOAD_CODES, unload)
 
@@ -164,6 +157,6 @@ class RunServices:
         return answer(response, {}, look)
 
     def _loaded(self) -> NamedWorld:
-        if self._world is None:
+        if self._loader.world is None:
             raise RequestError(Refusal.NO_WORLD, "no world is loaded")
-        return self._world
+        return self._loader.world

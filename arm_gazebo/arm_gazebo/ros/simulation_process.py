@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, closing, contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -20,27 +20,22 @@ from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.lock_step import LockStep
 from arm_control.loop.outbox import Outbox
 from arm_control.loop.pacer import Pacer
-from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 from arm_control.manager.ros.controller_node import controllers_executor
 from arm_control.manager.ros.emergency_stop import EmergencyStopServer
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.faults.injector import FaultInjector
-from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
-from arm_gazebo.hardware.simulated_sensors import SensorFeed, SimulatedSensor
-from arm_gazebo.physics.physics import Physics
+from arm_gazebo.hardware.simulated_sensors import SensorFeed
 from arm_gazebo.physics.statistics import SimulationStatistics
-from arm_gazebo.physics.tick import SimulationTick
-from arm_gazebo.physics_timing import PhysicsTiming
-from arm_gazebo.recording.session import RunParts
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.fault_parameter import FaultParameter
 from arm_gazebo.ros.live_parameters import follow_parameter
-from arm_gazebo.ros.managed_robot import ManagedRobot
 from arm_gazebo.ros.run_recording import RunRecording
+from arm_gazebo.run.robot import ManagedRobot, SimulatedRobot
+from arm_gazebo.run.robot_settings import RobotSettings
+from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.run.settings import SimulationSettings, read_above_zero, simulation_settings
-from arm_gazebo.run.world import AssembledWorld, assemble_world
-from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.feed import WindowFeed
 from arm_node.notify import notify
@@ -48,6 +43,7 @@ from arm_node.parameter_values import read_non_negative
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
 from arm_node.workarounds.discovery import first_node
+from arm_node.workarounds.process_clock import ProcessClock
 
 if TYPE_CHECKING:
     from arm_gazebo.ros.simulation_server import SimulationServer
@@ -80,139 +76,133 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         executor = (
             process.executor if settings.lockstep else ending.enter_context(controllers_executor())
         )
-        robots = []
+        robots: list[_RobotNodes] = []
         for robot_settings in settings.robots:
-            robots.append(ManagedRobot(robot_settings, arguments, clock.of_nodes))
-            nodes.callback(robots[-1].destroy_nodes)
-        world = assemble_world(
-            [robot.robot for robot in robots], settings, _update_rates_hz(robots)
-        )
-        simulation, timing = world.simulation, world.simulation.timing
-        for robot in robots:
-            robot.drive(simulation, settings.seed)
-        feeds = [
+            robots.append(_RobotNodes(robot_settings, arguments, clock.of_nodes))
+            nodes.callback(robots[-1].destroy)
+        run = SimulationRun.of(settings, [robot.managed for robot in robots], clock)
+        loop = run.loop = _loop(process, run, settings, robots[0].node, outbox)
+        viewers = [
             ending.enter_context(closing(feed))
-            for feed in _feeds(robots, settings, node.get_namespace())
+            for feed in _viewers(run, settings, node.get_namespace())
         ]
-        managers = [robot.robot.manager for robot in robots]
-        consumers = [*feeds, *_sensor_feed(robots, node, timing)]
-        cameras = [feed for feed in feeds if isinstance(feed, CameraFeed)]
-        tick = SimulationTick(managers, simulation, clock, consumers, timing.period_s)
-        loop = _loop(process, tick, simulation, settings, robots[0].node, outbox)
+        cameras = [feed for feed in viewers if isinstance(feed, CameraFeed)]
+        streams = [*cameras, *_sensor_feed(run, node)]
+        run.viewers.extend(viewers)
+        for feed in [*viewers, *streams[len(cameras) :]]:
+            run.tick.add_feed(feed)
+        for stream in streams:
+            run.state.add_schedule(stream.schedule)
         _follow_pace(node, process.executor, loop, nodes, ending)
-        FaultParameter(node, FaultInjector(simulation, managers, tick, _sensors(robots)), loop)
+        FaultParameter(node, FaultInjector(run.physics, run.managers, run.tick, run.sensors), loop)
         ending.enter_context(_started_paused(loop))
-        state = _complete_state(simulation, managers, consumers, clock)
-        run = _parts(robots, settings, simulation, state, tick, loop)
         recording = ending.enter_context(closing(RunRecording(node, run, settings.record_run)))
-        _serve_robots(robots, executor, loop, ending)
-        _serve_all(robots, node, loop, process.executor)
+        for nodes_of_robot, robot in zip(robots, run.robots, strict=True):
+            ending.callback(nodes_of_robot.shutdown)
+            nodes_of_robot.serve(robot, loop, executor)
+        _serve_all(robots, run, node, loop, process.executor)
         if not settings.paused:
             loop.resume()
-        for feed in feeds:
-            feed.start(simulation.model)
-        hardware = [component for robot in robots for component in robot.robot.hardware]
-        _supervise(node, clock, loop.pacer, simulation, hardware, [*feeds, recording])
-        statistics = _statistics(simulation, tick, loop, consumers)
-        serving = (state, partial(_is_set, node, "reset_clock"), loop, settings.spawn_limit)
-        serving = (world, *serving, hardware, feeds, cameras, statistics, process.stop)
-        _start_services(process, nodes, ending, serving)
-        _remark(world)
+        for feed in viewers:
+            feed.start(run.physics.model)
+        _supervise(node, clock, loop.pacer, run, [*viewers, recording])
+        statistics = SimulationStatistics(
+            run.physics, run.tick.costs, loop.pacer, [stream.counts for stream in streams]
+        )
+
+        def serve() -> "SimulationServer":
+            # Imported on its own thread: the robot does not wait while the messages load.
+            from arm_gazebo.ros.simulation_server import SimulationServer
+
+            resets_clock = partial(_is_set, node, "reset_clock")
+            return SimulationServer(run, loop, resets_clock, cameras, statistics, process.stop)
+
+        _start_services(process, nodes, ending, serve)
+        _remark(run)
         yield
 
 
-def _serve_robots(
-    robots: Sequence[ManagedRobot],
-    executor: Executor,
-    loop: ControlLoop,
-    ending: ExitStack,
-) -> None:
-    """Serve each robot's manager.
+class _RobotNodes:
+    """The nodes of one robot: its controller manager's, and from `serve` on all others.
 
-    Raises:
-        ArmControlError: a required controller cannot start.
+    Attributes:
+        node: the manager's node.
+        managed: the settings of the robot and of its manager.
+
+    Args:
+        settings: settings of the robot.
+        arguments: ROS arguments of the process.
+        clock: simulation time.
     """
-    for robot in robots:
-        ending.callback(robot.shutdown)
-        robot.serve(loop, executor)
+
+    def __init__(
+        self, settings: RobotSettings, arguments: Sequence[str], clock: ProcessClock
+    ) -> None:
+        self._server: ControllerManagerServer | None = None
+        self.node = ControllerManagerNode(arguments, namespace=settings.namespace, clock=clock)
+        name = self.node.get_fully_qualified_name()
+        self.managed = ManagedRobot(settings, self.node.settings, name)
+
+    def serve(self, robot: SimulatedRobot, loop: ControlLoop, executor: Executor) -> None:
+        """Create the manager's services and start the requested controllers.
+
+        Raises:
+            ArmControlError: a required controller cannot start.
+        """
+        self._server = server = ControllerManagerServer(
+            self.node, robot.manager, loop, executor, robot_description=robot.document
+        )
+        robot.start_controllers(
+            lambda name: server.start_controllers((name,)), logging.getLogger("controller_manager")
+        )
+
+    def shutdown(self) -> None:
+        """Stop the services; the loop still runs."""
+        if self._server is not None:
+            self._server.shutdown()
+
+    def destroy(self) -> None:
+        """Destroy every node of the robot after the loop has ended."""
+        if self._server is None:
+            self.node.destroy_node()
+        else:
+            self._server.destroy_nodes()
 
 
 def _serve_all(
-    robots: Sequence[ManagedRobot], node: Node, loop: ControlLoop, executor: Executor
+    robots: Sequence[_RobotNodes],
+    run: SimulationRun,
+    node: Node,
+    loop: ControlLoop,
+    executor: Executor,
 ) -> None:
     """Serve the emergency stop of all robots, unless one of them has it."""
     namespaces = {robot.node.get_namespace() for robot in robots}
     if node.get_namespace() not in namespaces:
-        managers = [robot.robot.manager for robot in robots]
-        EmergencyStopServer(node, executor, loop, managers)
+        EmergencyStopServer(node, executor, loop, run.managers)
 
 
-def _complete_state(
-    simulation: Physics,
-    managers: Sequence[ControllerManager],
-    feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
-    clock: RosClockPublisher,
-) -> CompleteState:
-    scheduled = [feed for feed in feeds if not isinstance(feed, WindowFeed)]
-    return CompleteState(simulation, managers, scheduled, clock)
-
-
-def _statistics(
-    simulation: Physics,
-    tick: SimulationTick,
-    loop: ControlLoop,
-    feeds: Sequence[CameraFeed | WindowFeed | SensorFeed],
-) -> SimulationStatistics:
-    streams = [feed.counts for feed in feeds if not isinstance(feed, WindowFeed)]
-    return SimulationStatistics(simulation, tick.costs, loop.pacer, streams)
-
-
-def _remark(world: AssembledWorld) -> None:
+def _remark(run: SimulationRun) -> None:
     """Log which parts of the world are not simulated."""
-    if world.left_out:
-        remark = f"world {world.named.name}: {world.left_out}"
+    left_out, world = run.physics.built.report.left_out, run.loader.world
+    if left_out and world is not None:
+        remark = f"world {world.name}: {left_out}"
         logger.warning("%s", remark)
         notify(f"X_REMARK={remark}")
 
 
-def _parts(
-    robots: Sequence[ManagedRobot],
-    settings: SimulationSettings,
-    simulation: Physics,
-    state: CompleteState,
-    tick: SimulationTick,
-    loop: ControlLoop,
-) -> RunParts:
-    """Return what a recording needs of the run."""
-    each = zip(robots, settings.robots, strict=True)
-    return RunParts(
-        simulation,
-        state,
-        tick,
-        loop,
-        [(robot.robot, of_robot, robot.node.settings) for robot, of_robot in each],
-        settings.hold_joints,
-        settings.position_proportional_gain,
-        settings.seed,
-    )
-
-
 def _start_services(
-    process: NodeProcess, nodes: ExitStack, ending: ExitStack, serving: tuple[Any, ...]
+    process: NodeProcess,
+    nodes: ExitStack,
+    ending: ExitStack,
+    serve: "Callable[[], SimulationServer]",
 ) -> None:
     """Start the services on a thread of their own; the two exit stacks stop and destroy them."""
     starter = ending.enter_context(ThreadPoolExecutor(1, "simulation services"))
-    server = starter.submit(_serve, *serving)
+    server = starter.submit(serve)
     server.add_done_callback(lambda made: _check(made, process))
     nodes.callback(lambda: server.exception() or server.result().destroy_node())
     ending.callback(lambda: server.exception() or server.result().shutdown())
-
-
-def _serve(*arguments: Any) -> "SimulationServer":
-    """Serve simulation_interfaces; the robot does not wait while its messages load."""
-    from arm_gazebo.ros.simulation_server import SimulationServer
-
-    return SimulationServer(*arguments)
 
 
 def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
@@ -225,8 +215,7 @@ def _check(server: "Future[SimulationServer]", process: NodeProcess) -> None:
 
 def _loop(
     process: NodeProcess,
-    tick: SimulationTick,
-    simulation: Physics,
+    run: SimulationRun,
     settings: SimulationSettings,
     manager: ControllerManagerNode,
     outbox: Outbox,
@@ -236,12 +225,12 @@ def _loop(
     if settings.lockstep:
         lock_step = LockStep(settings.lockstep, settings.lockstep_timeout_s)
     pacer = Pacer(
-        simulation.timing.period_s,
+        run.physics.timing.period_s,
         real_time_factor=settings.real_time_factor,
         print_warnings=manager.settings.overruns.print_warnings,
     )
     return ControlLoop(
-        tick if lock_step is None else _answered_ticks(tick, simulation, lock_step),
+        run.tick if lock_step is None else _answered_ticks(run, lock_step),
         pacer,
         on_failure=lambda _: process.stop(EXIT_FAILED),
         priority=manager.loop_priority(),
@@ -254,17 +243,15 @@ def _is_set(node: Node, parameter: str) -> bool:
     return bool(node.get_parameter(parameter).value)
 
 
-def _answered_ticks(
-    tick: SimulationTick, simulation: Physics, lock_step: LockStep
-) -> Callable[[], None]:
+def _answered_ticks(run: SimulationRun, lock_step: LockStep) -> Callable[[], None]:
     """Return a tick after which the partners' answers are awaited."""
 
-    def run() -> None:
+    def tick() -> None:
         lock_step.begin_tick()
-        tick()
-        lock_step.end_tick(simulation.time_s)
+        run.tick()
+        lock_step.end_tick(run.physics.time_s)
 
-    return run
+    return tick
 
 
 def _follow_partners(
@@ -319,14 +306,8 @@ def _started_paused(loop: ControlLoop) -> Iterator[None]:
         loop.join(LOOP_JOIN_TIMEOUT_S)
 
 
-def _update_rates_hz(robots: Sequence[ManagedRobot]) -> dict[str, int]:
-    """Return the update rate of each robot's manager by the name of its node."""
-    nodes = [robot.node for robot in robots]
-    return {node.get_fully_qualified_name(): node.settings.update_rate for node in nodes}
-
-
-def _feeds(
-    robots: Sequence[ManagedRobot], settings: SimulationSettings, namespace: str
+def _viewers(
+    run: SimulationRun, settings: SimulationSettings, namespace: str
 ) -> Iterator[CameraFeed | WindowFeed]:
     """Create the feeds of window and cameras.
 
@@ -336,48 +317,35 @@ def _feeds(
     if not settings.headless:
         check_display()
         yield WindowFeed()
-    cameras = [camera for robot in robots for camera in robot.robot.cameras]
-    if cameras:
+    if run.cameras:
         ros_arguments = ("-r", f"__ns:={namespace}")
-        yield CameraFeed(cameras, settings.render_backend, settings.seed, ros_arguments)
+        yield CameraFeed(run.cameras, settings.render_backend, settings.seed, ros_arguments)
 
 
-def _sensors(robots: Sequence[ManagedRobot]) -> list[SimulatedSensor]:
-    return [sensor for robot in robots for sensor in robot.robot.sensors]
-
-
-def _sensor_feed(
-    robots: Sequence[ManagedRobot], node: Node, timing: PhysicsTiming
-) -> Iterator[SensorFeed]:
+def _sensor_feed(run: SimulationRun, node: Node) -> Iterator[SensorFeed]:
     """Create the feed of the robots' sensors, if there are any."""
-    sensors = _sensors(robots)
-    if sensors:
+    if run.sensors:
         # Imported only here, because messages load slowly and most robots have no sensors.
         from arm_gazebo.ros.sensor_publisher import SensorPublisher
 
-        sinks = [SensorPublisher(node, sensor.description) for sensor in sensors]
-        yield SensorFeed(sensors, sinks, timing.period_s)
+        sinks = [SensorPublisher(node, sensor.description) for sensor in run.sensors]
+        yield SensorFeed(run.sensors, sinks, run.physics.timing.period_s)
 
 
 def _supervise(
     node: Node,
     clock: RosClockPublisher,
     pacer: Pacer,
-    simulation: Physics,
-    hardware: Sequence[SimulatedHardware],
+    run: SimulationRun,
     supervised: Sequence[CameraFeed | WindowFeed | RunRecording],
 ) -> None:
     """Periodically log what the loop must not log itself, and supervise child processes."""
 
     def check() -> None:
-        for component in hardware:
-            for warning in component.take_warnings():
-                logger.warning("%s", warning)
+        run.log_findings(logger)
         warning = clock.take_warning()
         if warning is not None:
             logger.warning("%s", warning)
-        for failure in simulation.take_failures():
-            logger.error("%s", failure)
         for part in supervised:
             part.supervise()
         factor = pacer.statistics.achieved_factor

@@ -1,8 +1,10 @@
 """One robot of the simulation: its description, its hardware and its controller manager."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
+from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.hardware.info import parse_hardware_info
 from arm_control.manager.controller_manager import ControllerManager, bring_up, configured_manager
 from arm_control.manager.settings import ManagerSettings
@@ -21,10 +23,26 @@ from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors
 
 
-class AssembledRobot:
-    """One robot; call `in_world` to build the world, then `drive` with its simulation.
+@dataclass(frozen=True, slots=True)
+class ManagedRobot:
+    """A robot and its controller manager, as their user wants them.
 
     Attributes:
+        settings: the robot's settings, its URDF among them.
+        manager: the settings of its controller manager.
+        manager_name: fully qualified name of the manager's node, for messages.
+    """
+
+    settings: RobotSettings
+    manager: ManagerSettings
+    manager_name: str
+
+
+class SimulatedRobot:
+    """One robot; call `in_world` to build the world, then `drive` with its physics.
+
+    Attributes:
+        managed: its settings and those of its manager.
         document: the parsed description.
         cameras: its cameras, with names and topics that are unique among all robots.
         sensors: its running sensors, from `drive` on.
@@ -36,14 +54,14 @@ class AssembledRobot:
     hardware: Sequence[SimulatedHardware]
     manager: ControllerManager
 
-    def __init__(self, settings: RobotSettings) -> None:
+    def __init__(self, managed: ManagedRobot) -> None:
         """Read the description.
 
         Raises:
             SimSettingsError, DescriptionError, ArmControlError, GazeboError: it has no hardware,
                 or is invalid.
         """
-        self._settings = settings
+        self.managed, settings = managed, managed.settings
         self.document = RobotDescription(settings.robot_description)
         self._hardware_info = parse_hardware_info(self.document)
         if not self._hardware_info:
@@ -66,7 +84,7 @@ class AssembledRobot:
         Args:
             options: the user's choices for all robots.
         """
-        settings = self._settings
+        settings = self.managed.settings
         return RobotInWorld(
             self._robot,
             self._hardware_info,
@@ -84,26 +102,46 @@ class AssembledRobot:
             self._sensors,
         )
 
-    def drive(
-        self, simulation: Physics, seed: int, settings: ManagerSettings, manager_name: str
-    ) -> None:
+    def drive(self, physics: Physics, seed: int) -> None:
         """Create hardware, sensors and manager before the first tick.
 
         Args:
-            simulation: the simulation that contains the robot.
+            physics: the physics of the world that contains the robot.
             seed: seed of the sensors' noise.
-            settings: settings of the manager.
-            manager_name: fully qualified name of the manager's node, for messages.
 
         Raises:
             ArmControlError: a component does not reach its initial state.
         """
-        self.sensors = [SimulatedSensor(simulation, sensor, seed) for sensor in self._sensors]
+        managed = self.managed
+        self.sensors = [SimulatedSensor(physics, sensor, seed) for sensor in self._sensors]
         self.hardware = [
-            SimulatedHardware(simulation, info, self.sensors) for info in self._hardware_info
+            SimulatedHardware(physics, info, self.sensors) for info in self._hardware_info
         ]
-        self.manager = configured_manager(self.hardware, settings, self.document, manager_name)
-        bring_up(self.manager, settings)
+        self.manager = configured_manager(
+            self.hardware, managed.manager, self.document, managed.manager_name
+        )
+        bring_up(self.manager, managed.manager)
+
+    def start_controllers(self, start: Callable[[str], object], logger: logging.Logger) -> None:
+        """Start the controllers that the settings name.
+
+        Args:
+            start: loads, configures and activates the controller of a name.
+            logger: for those that cannot start and that the user did not name.
+
+        Raises:
+            ArmControlError: one that the user named cannot start.
+        """
+        for name in self.managed.settings.spawn:
+            try:
+                start(name)
+            except LoopStoppedError:
+                raise
+            except ArmControlError as error:
+                if self.managed.settings.spawn_required:
+                    raise
+                # Files for the real robot often have more controllers.
+                logger.warning("%s does not start: %s", name, " ".join(str(error).split()))
 
 
 def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from hashlib import blake2b
 from itertools import zip_longest
-from typing import Any, Protocol
+from typing import Any
 
 from arm_control.errors import StateError
 from arm_control.manager.controller_manager import ControllerManager
@@ -16,15 +16,6 @@ from arm_gazebo.physics.tick import ClockPublisher, SilentClock
 DIGEST_BYTES = 16
 
 
-class Scheduled(Protocol):
-    """A feed of pictures or readings with rates of their own."""
-
-    @property
-    def schedule(self) -> FrameSchedule:
-        """When the next ones are due."""
-        ...
-
-
 class CompleteState:
     """Saves, restores, resets and compares the state of a run. Loop thread, between two ticks.
 
@@ -35,7 +26,6 @@ class CompleteState:
     Args:
         simulation: the physics, which must have the same model when a state is restored.
         managers: the controller managers of its robots.
-        feeds: the cameras and the sensors. Without any, a state is restored without theirs.
         clock: publishes a time to which the clock is set.
 
     Attributes:
@@ -48,13 +38,16 @@ class CompleteState:
         self,
         simulation: Physics,
         managers: Sequence[ControllerManager],
-        feeds: Sequence[Scheduled] = (),
         clock: ClockPublisher | None = None,
     ) -> None:
         self._simulation = simulation
         self._managers = tuple(managers)
-        self._schedules = tuple(feed.schedule for feed in feeds)
+        self._schedules: list[FrameSchedule] = []
         self._clock = clock or SilentClock()
+
+    def add_schedule(self, schedule: FrameSchedule) -> None:
+        """Count the rates of cameras or sensors as state; without any, a state has none."""
+        self._schedules.append(schedule)
 
     @property
     def time_s(self) -> float:

@@ -16,10 +16,9 @@ from arm_gazebo.state.snapshot import (
     write_snapshot,
 )
 from arm_gazebo.world.changes import WorldChanges
-from arm_gazebo.world.editor import LoopCall, WorldEditor
+from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import NAME
 from arm_gazebo.world.refusal import Refusal, RequestError
-from arm_gazebo.world.spawn_model import ModelSource
 from arm_node.names import describe_known
 
 
@@ -32,8 +31,6 @@ class SnapshotStore:
     Args:
         state: the state of the run, which belongs to the loop.
         editor: the world.
-        on_loop: runs functions on the loop's thread.
-        source: reads the models that a file's snapshot has spawned.
         world: returns the name of the present world.
         on_restore: called on the loop thread after each restore, to restart the figures.
     """
@@ -42,15 +39,11 @@ class SnapshotStore:
         self,
         state: CompleteState,
         editor: WorldEditor,
-        on_loop: LoopCall,
-        source: ModelSource,
         world: Callable[[], str],
         on_restore: Callable[[], None],
     ) -> None:
         self._state = state
         self._editor = editor
-        self._on_loop = on_loop
-        self._source = source
         self._world = world
         self._on_restore = on_restore
         self._named: dict[str, RunSnapshot] = {}
@@ -72,7 +65,7 @@ class SnapshotStore:
             )
         changes = self._editor.changes
         try:
-            time_s, state = self._on_loop(lambda: (self._state.time_s, self._state.save()))
+            time_s, state = self._editor.on_loop(lambda: (self._state.time_s, self._state.save()))
         except StateError as error:
             raise RequestError(Refusal.FAILED, str(error)) from error
         model = self._hash_of(changes)
@@ -94,7 +87,7 @@ class SnapshotStore:
                 Or a controller refused its transition.
         """
         path = _path_of(where)
-        snapshot = self._find(where) if path is None else read_snapshot(path, self._source)
+        snapshot = self._find(where) if path is None else read_snapshot(path, self._editor.source)
         self._check(where, snapshot)
         refused: list[str] = []
 
@@ -123,7 +116,7 @@ class SnapshotStore:
             del self._named[where]
             return
         # Only a snapshot is deleted.
-        read_snapshot(path, self._source)
+        read_snapshot(path, self._editor.source)
         path.unlink(missing_ok=True)
 
     def named(self) -> dict[str, RunSnapshot]:
@@ -148,7 +141,7 @@ class SnapshotStore:
                 "arguments and the files of spawned models must be the same as well",
             )
         try:
-            self._on_loop(lambda: self._state.check(snapshot.state))
+            self._editor.on_loop(lambda: self._state.check(snapshot.state))
         except StateError as error:
             raise RequestError(Refusal.FAILED, str(error)) from error
 

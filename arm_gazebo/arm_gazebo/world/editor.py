@@ -97,6 +97,10 @@ class WorldEditor:
         holders: look up their indices in the model after each swap.
         feeds: receive each new model.
         source: reads models to spawn.
+
+    Attributes:
+        on_loop: runs functions on the simulation's thread.
+        source: reads models to spawn.
     """
 
     def __init__(
@@ -108,10 +112,10 @@ class WorldEditor:
         source: ModelSource,
     ) -> None:
         self._simulation = simulation
-        self._on_loop = on_loop
+        self.on_loop = on_loop
         self._holders = tuple(holders)
         self._feeds = tuple(feeds)
-        self._source = source
+        self.source = source
         self._base = simulation.built
         self._built = simulation.built
         self._changes = NOTHING
@@ -153,7 +157,7 @@ class WorldEditor:
         if changes is not self._changes:
             self._change(changes, then)
         else:
-            self._on_loop(then)
+            self.on_loop(then)
 
     @property
     def entities(self) -> Entities:
@@ -162,7 +166,7 @@ class WorldEditor:
 
     def motions(self) -> EntityMotions:
         """Return the present poses and velocities of all entities."""
-        self._motions.take(self._on_loop(self._simulation.state))
+        self._motions.take(self.on_loop(self._simulation.state))
         return self._motions
 
     def spawn(self, request: SpawnRequest) -> str:
@@ -175,7 +179,7 @@ class WorldEditor:
             )
         self._entities.name_for(request.name, request.allow_renaming, "entity")
         pose = self.in_world(request.pose, request.frame)
-        model = self._source.read(request.uri, request.text)
+        model = self.source.read(request.uri, request.text)
         name = self._entities.name_for(request.name, request.allow_renaming, model.root)
         for finding in model.findings:
             logger.log(finding.outcome.level, "entity '%s': %s", name, finding)
@@ -237,7 +241,7 @@ class WorldEditor:
         elif moved and self._changes.moved:
             self._change(replace(self._changes, moved={}), then)
         else:
-            self._on_loop(then)
+            self.on_loop(then)
 
     def replace_world(self, base: BuiltModel) -> None:
         """Continue in another world with the same robots in their present state."""
@@ -283,7 +287,7 @@ class WorldEditor:
         position = np.concatenate((root[:3, 3], quaternion_of(root)))
         linear = linear + np.cross(angular, root[:3, 3] - at[:3, 3])
         velocity = np.concatenate((linear, root[:3, :3].T @ angular))
-        self._on_loop(lambda: self._simulation.place(entity.free_joint, position, velocity))
+        self.on_loop(lambda: self._simulation.place(entity.free_joint, position, velocity))
 
     def _change(self, changes: WorldChanges, then: Callable[[], None] = lambda: None) -> None:
         """Continue with other changes to the same world; `then` is called in the same tick."""
@@ -323,7 +327,7 @@ class WorldEditor:
             return before
 
         # The old state is returned, so that this thread frees it and not the loop thread.
-        self._on_loop(swap)
+        self.on_loop(swap)
         self._built = built
 
     def _take_model(self) -> None:

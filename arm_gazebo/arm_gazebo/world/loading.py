@@ -5,7 +5,9 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlError
 from arm_description.resources import resolve_uri
@@ -13,6 +15,7 @@ from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.launching.world_path import find_world, shipped_worlds
+from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, MemoryLimit
 from arm_gazebo.mjcf.references import check_readable
 from arm_gazebo.mjcf.size import check_mjcf_size
 from arm_gazebo.model.builder import build_world
@@ -21,8 +24,11 @@ from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
 from arm_gazebo.robot.part import RobotInWorld
 from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
-from arm_gazebo.world.trial import WORLD_PROCESSOR_S, MjcfTrial
+from arm_gazebo.world.trial import WORLD_PROCESSOR_S
 from arm_node.user_file import read_text
+
+if TYPE_CHECKING:
+    from arm_gazebo.world.spawn_model import ModelSource
 
 SUFFIXES = (".xml", ".mjcf", *SDF_SUFFIXES)
 TEXT_SUFFIXES = {"sdf": ".sdf", "mujoco": ".xml"}
@@ -48,16 +54,46 @@ class NamedWorld:
 
 
 class WorldLoader:
-    """Reads worlds and adds the robots to them. One thread other than the simulation's.
+    """Puts the robots into worlds. One thread other than the simulation's.
 
     Args:
         entries: the robots; the first one's options give the memory limit of a world.
-        trial: tries each MJCF before it is compiled in this process; None for a new one.
+        spawn_limit: limit on the memory of an MJCF that is spawned into it.
+
+    Attributes:
+        world: the present world; None for none.
     """
 
-    def __init__(self, entries: Sequence[RobotInWorld], trial: MjcfTrial | None = None) -> None:
+    def __init__(
+        self, entries: Sequence[RobotInWorld], spawn_limit: MemoryLimit = SPAWN_LIMIT
+    ) -> None:
+        self.world: NamedWorld | None = None
         self._entries = tuple(entries)
-        self._trial = trial or MjcfTrial()
+        self._spawn_limit = spawn_limit
+
+    @cached_property
+    def source(self) -> "ModelSource":
+        """Reads models that are spawned into the world."""
+        # Imported here, because most runs spawn nothing.
+        from arm_gazebo.world.spawn_model import ModelSource
+
+        each = [entry.options for entry in self._entries]
+        folders = tuple(dict.fromkeys(f for options in each for f in options.resources.folders))
+        return ModelSource(each[0].step_s, folders, each[0].mesh_cache, self._spawn_limit)
+
+    def begin(self, world: str) -> BuiltModel:
+        """Return the first world with the robots in it, and log what is repaired or left out.
+
+        Args:
+            world: a shipped world's name, or the path of a MuJoCo XML or SDF file.
+
+        Raises:
+            GazeboError: the world or a robot cannot be simulated.
+        """
+        built = build_world(self._entries, world)
+        built.report.log(logging.getLogger("arm_gazebo"))
+        self.world = named_world(find_world(world), built.report)
+        return built
 
     def load(self, uri: str, text: str, all_elements: bool) -> tuple[BuiltModel, NamedWorld]:
         """Return a world with the robots in it.
@@ -116,7 +152,7 @@ class WorldLoader:
             check_mjcf_size(text, path.name, path, limit)
         except (GazeboError, DescriptionError, OSError, ValueError) as error:
             raise RequestError(Refusal.UNREADABLE, " ".join(str(error).split())) from error
-        problem = self._trial.problem("", path, limit, WORLD_PROCESSOR_S)
+        problem = self.source.trial.problem("", path, limit, WORLD_PROCESSOR_S)
         if problem:
             raise RequestError(Refusal.UNREADABLE, f"the world {path} is not usable: {problem}")
 

@@ -5,11 +5,10 @@ from pathlib import Path
 
 from arm_control.errors import StateError
 from arm_gazebo.errors import RecordingError
+from arm_gazebo.recording.recorded_run import first_inputs, header_of
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.run_file import Record, RecordedInput, RunFileWriter, StateBlock
-from arm_gazebo.recording.session import first_inputs, header_of
-from arm_sim.assembly import SimulationParts
-from arm_sim.recording import run_parts
+from arm_gazebo.run.run import SimulationRun
 
 
 class BlackBox:
@@ -19,14 +18,13 @@ class BlackBox:
         refusal: why the run cannot be recorded; "" if it can.
     """
 
-    def __init__(self, parts: SimulationParts) -> None:
+    def __init__(self, run: SimulationRun) -> None:
         self.refusal = ""
-        self._parts = parts
-        self._run = run_parts(parts)
+        self._run = run
         self._recorder: RunRecorder | None = None
         self._first: list[RecordedInput] = []
         self._memory = _Memory()
-        self._built = parts.physics.built
+        self._built = run.physics.built
 
     def begin(self, at_start: bool = False) -> None:
         """Record from the present state on.
@@ -34,28 +32,23 @@ class BlackBox:
         Args:
             at_start: whether this is the state in which the first recording began.
         """
-        if self._parts.physics.input_gate is not None:
+        if self._run.physics.input_gate is not None:
             self.refusal = "the test records its run itself"
             return
         try:
-            is_known = at_start and self._first and self._parts.physics.faults.present is None
+            is_known = at_start and self._first and self._run.physics.faults.present is None
             first = self._first if is_known else list(first_inputs(self._run))
         except (RecordingError, StateError) as error:
             self.refusal = str(error)
             return
         self._first = self._first or first
-        self._memory, self._built = _Memory(), self._parts.physics.built
-        run = self._run
-        self._recorder = RunRecorder(
-            run.simulation, run.state, run.managers, run.loop, self._memory
-        )
+        self._memory, self._built = _Memory(), self._run.physics.built
+        self._recorder = RunRecorder(self._run, self._memory)
         self._recorder.start(first)
-        run.tick.add_feed(self._recorder)
 
     def end(self) -> None:
         """Stop; has no effect if nothing is recorded."""
         if self._recorder is not None:
-            self._run.tick.remove_feed(self._recorder)
             self._recorder.stop()
             self._recorder.join()
             self._recorder = None

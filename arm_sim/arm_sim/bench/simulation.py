@@ -5,6 +5,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
+from arm_gazebo.world.contacts import bodies_of
 from arm_gazebo.world.entity import WORLD_FRAME
 from arm_sim.bench.black_box import BlackBox
 from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
@@ -34,12 +35,12 @@ class BenchSimulation(Simulation):
     def __init__(self, *, robot: AnyPath = "arm", **arguments: Any) -> None:
         """Build it; `robot` is the description, and the others are `Simulation`'s arguments."""
         super().__init__(robot, **arguments)
-        self.first_seed = self.parts.settings.seed
+        self.first_seed = self.parts.seed
         joints = self._physics.built.joints
         units = ["m" if joints[name].linear else "rad" for name in self.joints.names]
         self.history = StateHistory(self.joints.names, units)
         self.touches = TouchLog()
-        self.faults = SimulationFaults(self.parts, self.camera)
+        self.faults = SimulationFaults(self.parts, self.controllers, self.camera)
         self._observer = _StateObserver(self.joints, self.history, self.touches)
         self._tick.add_feed(self._observer)
         self._black_box = BlackBox(self.parts)
@@ -147,7 +148,9 @@ class BenchSimulation(Simulation):
         if name == WORLD_FRAME:
             return frozenset((WORLD_FRAME,))
         names = list(self._physics.built.robots) if name is None else [name]
-        return frozenset(body for each in names for body in self._open.things.bodies(each))
+        model, entities = self._physics.model, self._open.editor.entities
+        numbers = frozenset().union(*(bodies_of(each, model, entities) for each in names))
+        return frozenset(model.body(number).name for number in numbers)
 
     def _circumstances(self) -> Iterator[str]:
         """Return sentences about the circumstances, such as faults and contacts."""

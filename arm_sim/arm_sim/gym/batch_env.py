@@ -78,7 +78,7 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         self.joints = tuple(joint.name for joint in self._robot.joints)
         self._commands = Commands(actions, self._robot.joints, decision_s)
         parts = self._robot.simulation.parts
-        self._physics = make_copies(parts.physics, parts.robot.hardware, num_envs, threads, device)
+        self._physics = make_copies(parts.physics, parts.hardware, num_envs, threads, device)
         self._of_drives = np.zeros((num_envs, len(parts.physics.servo.joints)))
         self._addresses = np.array([joint.qpos_address for joint in self._robot.joints])
         self._dofs = np.array([joint.dof_address for joint in self._robot.joints])

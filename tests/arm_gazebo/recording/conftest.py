@@ -1,7 +1,6 @@
 """A run that can be recorded: an arm with controllers, without ROS and without threads."""
 
 from collections.abc import Callable
-from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -12,14 +11,13 @@ from arm_control.manager.registry import controller_class
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import SwitchRequest
 from arm_gazebo.model.saved_model import SavedModel
-from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import physics_timing
-from arm_gazebo.recording.recorded_run import RecordedRobot, RecordedRun, rebuild
+from arm_gazebo.recording.recorded_run import RecordedRun
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.replay import Replay, ReplayResult
 from arm_gazebo.recording.run_file import RunFile, RunFileWriter
+from arm_gazebo.run.robot import ManagedRobot
 from arm_gazebo.run.robot_settings import RobotSettings
-from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.state.made_with import made_with
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource
@@ -30,22 +28,6 @@ MANAGER = "/controller_manager"
 def robot_settings(urdf: str) -> RobotSettings:
     """Return the settings of a robot that is bolted down."""
     return RobotSettings(namespace="", robot_description=urdf)
-
-
-class InlineLoop:
-    """A loop without a thread: what it is given runs at once."""
-
-    is_this_thread = True
-
-    def call(self, function):
-        future: Future = Future()
-        future.set_result(function())
-        return future
-
-
-class SilentClock:
-    def publish(self, time_s: float) -> None:
-        """Nobody listens."""
 
 
 def load_controller(manager: ControllerManager, document, name: str, type_name: str, **values):
@@ -67,28 +49,23 @@ class RecordedBench:
     def __init__(self, path: Path, built, urdf: str, seed: int = 0) -> None:
         self.path = path
         timing = physics_timing(100.0)
-        robot = RecordedRobot(robot_settings(urdf), ManagerSettings(), MANAGER)
-        run = RecordedRun(SavedModel.of(built), timing, True, 0.0, seed, (robot,))
-        self.simulation, (rebuilt,) = rebuild(run)
+        robot = ManagedRobot(robot_settings(urdf), ManagerSettings(), MANAGER)
+        recorded = RecordedRun(SavedModel.of(built), timing, True, 0.0, seed, (robot,))
+        self.rebuilt = recorded.build()
+        self.simulation = self.rebuilt.physics
         # The world editor needs a specification, which a saved model lacks.
         self.simulation.built = built
-        self.manager: ControllerManager = rebuilt.manager
-        self.document = rebuilt.document
+        self.manager: ControllerManager = self.rebuilt.robot.manager
+        self.document = self.rebuilt.robot.document
         self.parameters: dict[str, object] = {}
-        self.tick = SimulationTick(
-            [self.manager], self.simulation, SilentClock(), [], timing.period_s
-        )
-        writer = RunFileWriter(path, {"made_with": made_with(), "run": run})
-        self.state = CompleteState(self.simulation, [self.manager])
-        self.recorder = RunRecorder(
-            self.simulation, self.state, [self.manager], InlineLoop(), writer
-        )
+        self.tick, self.state = self.rebuilt.tick, self.rebuilt.state
+        writer = RunFileWriter(path, {"made_with": made_with(), "run": recorded})
+        self.recorder = RunRecorder(self.rebuilt, writer)
         self.recorder.start()
-        self.tick.add_feed(self.recorder)
         self.editor = WorldEditor(
             self.simulation,
             lambda function: function(),
-            list(rebuilt.hardware),
+            self.rebuilt.hardware,
             [],
             ModelSource(timing.step_s),
         )
@@ -113,7 +90,6 @@ class RecordedBench:
 
     def finish(self) -> Path:
         """End the recording; return its file."""
-        self.tick.remove_feed(self.recorder)
         self.recorder.stop()
         self.recorder.join()
         return self.path

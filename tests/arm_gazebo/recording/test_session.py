@@ -7,17 +7,17 @@ from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoin
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.physics.physics import Physics
-from arm_gazebo.physics.tick import SimulationTick
 from arm_gazebo.physics_timing import physics_timing
+from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
-from arm_gazebo.recording.session import RunParts, begin_recording, end_recording
-from arm_gazebo.run.robot import AssembledRobot
-from arm_gazebo.state.complete_state import CompleteState
+from arm_gazebo.run.robot import ManagedRobot, SimulatedRobot
+from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
+from arm_gazebo.world.loading import WorldLoader
 from arm_gazebo.world.spawn_model import ModelSource
 
-from .conftest import MANAGER, InlineLoop, SilentClock, load_controller, robot_settings
+from .conftest import MANAGER, load_controller, robot_settings
 
 TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 JOINTS = ("j0", "j1", "j2", "j3")
@@ -32,12 +32,10 @@ class RunningArm:
         settings = robot_settings(parts.arm())
         timing = physics_timing(100.0)
         built = parts.build(settings.robot_description, "objects", step_s=timing.step_s)
-        self.simulation = Physics(built, timing)
-        robot = AssembledRobot(settings)
-        robot.drive(self.simulation, 0, ManagerSettings(), MANAGER)
-        self.tick = SimulationTick(
-            [robot.manager], self.simulation, SilentClock(), [], timing.period_s
-        )
+        managed = ManagedRobot(settings, ManagerSettings(), MANAGER)
+        robot = SimulatedRobot(managed)
+        self.whole = SimulationRun([robot], Physics(built, timing), WorldLoader(()), 0)
+        self.simulation, self.tick = self.whole.physics, self.whole.tick
         self.arm, _ = load_controller(
             robot.manager,
             robot.document,
@@ -47,20 +45,10 @@ class RunningArm:
             command_interfaces=("position",),
             state_interfaces=("position", "velocity"),
         )
-        self.run_parts = RunParts(
-            self.simulation,
-            CompleteState(self.simulation, [robot.manager]),
-            self.tick,
-            InlineLoop(),
-            [(robot, settings, ManagerSettings())],
-            True,
-            0.0,
-            0,
-        )
         self.editor = WorldEditor(
             self.simulation,
             lambda function: function(),
-            list(robot.hardware),
+            robot.hardware,
             [],
             ModelSource(timing.step_s),
         )
@@ -88,11 +76,11 @@ def test_a_recording_begins_in_the_middle_of_a_motion(running, tmp_path):
     running.run(7)
     running.move(0.5, 0.3, -0.2, 0.1)
     running.run(30)
-    recorder = begin_recording(running.run_parts, tmp_path / "a.run")
+    recorder = RunRecorder.to_file(running.whole, tmp_path / "a.run")
     running.run(30)
     running.move(-0.5, 0.3, -0.2, 0.1, time_s=0.5)
     running.run(40)
-    end_recording(running.run_parts, recorder)
+    recorder.end()
     replay = Replay(RunFile(tmp_path / "a.run"))
     result = replay.run()
     assert result.difference is None
@@ -106,13 +94,13 @@ def test_a_recording_begins_in_a_world_that_has_changed(running, tmp_path):
     running.drop_a_ball("first")
     running.move(0.5, 0.3, -0.2, 0.1)
     running.run(10)
-    recorder = begin_recording(running.run_parts, tmp_path / "a.run")
+    recorder = RunRecorder.to_file(running.whole, tmp_path / "a.run")
     running.run(20)
     running.drop_a_ball("second")
     running.run(20)
     running.editor.delete("first")
     running.run(20)
-    end_recording(running.run_parts, recorder)
+    recorder.end()
     result = Replay(RunFile(tmp_path / "a.run")).run()
     assert result.difference is None
     assert result.periods == 60
@@ -120,21 +108,21 @@ def test_a_recording_begins_in_a_world_that_has_changed(running, tmp_path):
 
 def test_one_recording_follows_another(running, tmp_path):
     for name in ("a.run", "b.run"):
-        recorder = begin_recording(running.run_parts, tmp_path / name)
+        recorder = RunRecorder.to_file(running.whole, tmp_path / name)
         running.move(*np.random.default_rng(len(name)).uniform(-0.5, 0.5, 4))
         running.run(20)
-        end_recording(running.run_parts, recorder)
+        recorder.end()
         assert Replay(RunFile(tmp_path / name)).run().difference is None
 
 
 def test_a_run_is_not_changed_by_being_recorded(running, parts, tmp_path):
     other = RunningArm(parts)
-    recorder = begin_recording(running.run_parts, tmp_path / "a.run")
+    recorder = RunRecorder.to_file(running.whole, tmp_path / "a.run")
     for run in (running, other):
         run.run(5)
         run.move(0.5, 0.3, -0.2, 0.1)
         run.run(50)
-    end_recording(running.run_parts, recorder)
+    recorder.end()
     np.testing.assert_array_equal(running.simulation.data.qpos, other.simulation.data.qpos)
     np.testing.assert_array_equal(running.simulation.data.qvel, other.simulation.data.qvel)
 
@@ -145,9 +133,9 @@ def test_a_controller_whose_state_cannot_be_saved_is_named_and_leaves_no_file(
     monkeypatch.setattr(running.arm, "save_state", lambda: {"socket": object()})
     path = tmp_path / "a.run"
     with pytest.raises(RecordingError, match=r"cannot be recorded: .*'arm'"):
-        begin_recording(running.run_parts, path)
+        RunRecorder.to_file(running.whole, path)
     assert not path.exists()
     assert running.arm.input_gate is None
     monkeypatch.undo()
-    end_recording(running.run_parts, begin_recording(running.run_parts, path))
+    RunRecorder.to_file(running.whole, path).end()
     assert path.exists()

@@ -121,10 +121,10 @@ class RunningRobot:
         for name, (type_name, parameters) in controllers.items():
             self.start(name, type_name, parameters)
         feed = SensorFeed(sensors, [self.results] * len(sensors), timing.period_s)
-        self._tick = SimulationTick(
-            [self.manager], self.simulation, Silent(), [feed], timing.period_s
-        )
-        self.state = CompleteState(self.simulation, [self.manager], [feed])
+        self._tick = SimulationTick([self.manager], self.simulation, Silent())
+        self._tick.add_feed(feed)
+        self.state = CompleteState(self.simulation, [self.manager])
+        self.state.add_schedule(feed.schedule)
 
     def start(self, name: str, type_name: str, parameters: Mapping[str, Any]) -> None:
         """Load, configure and activate a controller."""

@@ -8,7 +8,7 @@ import pytest
 from arm_control.controllers.diff_drive.odometry import PlanarTwist
 from arm_control.controllers.gripper import GripperRequest
 from arm_control.controllers.mecanum_drive.kinematics import MecanumTwist
-from arm_sim.assembly import SimulationParts, assemble
+from arm_sim import Simulation
 
 DEMOS = "package://gz_ros2_control_demos"
 ROSMASTER = "package://yahboom_rosmaster"
@@ -16,91 +16,90 @@ TICKS = 60
 
 
 @pytest.fixture
-def assembled() -> Iterator[Callable[..., SimulationParts]]:
+def assembled() -> Iterator[Callable[..., Simulation]]:
     """Return a maker of robots with the controllers of their files, active."""
-    made: list[SimulationParts] = []
+    made: list[Simulation] = []
 
-    def make(model: str, controllers: Any, **arguments: str) -> SimulationParts:
+    def make(model: str, controllers: Any, **arguments: str) -> Simulation:
         base = {"base": arguments.pop("base", "fixed")}
-        parts = assemble(model, controllers, arguments, None, (), base)
-        made.append(parts)
-        parts.start_controllers()
-        return parts
+        sim = Simulation(model, controllers=controllers, arguments=arguments, **base)
+        made.append(sim)
+        return sim
 
     yield make
-    for parts in made:
-        parts.close()
+    for sim in made:
+        sim.close()
 
 
-def run(parts: SimulationParts, ticks: int = TICKS) -> list[bytes]:
+def run(sim: Simulation, ticks: int = TICKS) -> list[bytes]:
     digests = []
     for _ in range(ticks):
-        parts.tick()
-        digests.append(parts.state.digest())
+        sim.step()
+        digests.append(sim.parts.state.digest())
     return digests
 
 
-def core(parts: SimulationParts, name: str) -> Any:
-    return parts.controllers[name].core
+def core(sim: Simulation, name: str) -> Any:
+    return sim.controllers[name].core
 
 
-def assert_goes_on(parts: SimulationParts, disturb: Callable[[], object]) -> None:
+def assert_goes_on(sim: Simulation, disturb: Callable[[], object]) -> None:
     """Check that the run goes on from here as it did, whatever happened in between."""
-    saved = parts.state.save()
-    first = run(parts), parts.state.save()
+    saved = sim.parts.state.save()
+    first = run(sim), sim.parts.state.save()
     disturb()
-    run(parts, 17)
-    parts.state.restore(saved)
-    assert (run(parts), parts.state.save()) == first
-    parts.state.reset(True)
-    once = run(parts)
+    run(sim, 17)
+    sim.parts.state.restore(saved)
+    assert (run(sim), sim.parts.state.save()) == first
+    sim.parts.state.reset(True)
+    once = run(sim)
     disturb()
-    run(parts, 17)
-    parts.state.reset(True)
-    assert run(parts) == once
+    run(sim, 17)
+    sim.parts.state.reset(True)
+    assert run(sim) == once
 
 
 def test_two_driven_wheels_with_their_odometry_and_limits(assembled):
-    parts = assembled(
+    sim = assembled(
         f"{DEMOS}/urdf/diff_drive.urdf.xacro",
         f"{DEMOS}/config/diff_drive_controller.yaml",
         base="free",
     )
-    name = next(name for name in parts.controllers if "diff_drive" in name)
-    drive = core(parts, name)
-    run(parts, 5)
+    name = next(name for name in sim.controllers if "diff_drive" in name)
+    drive = core(sim, name)
+    run(sim, 5)
     assert not drive.offer(PlanarTwist(0.4, 0.3), None)
-    run(parts, 20)
-    assert_goes_on(parts, lambda: drive.offer(PlanarTwist(-0.2, 0.0), None))
+    run(sim, 20)
+    assert_goes_on(sim, lambda: drive.offer(PlanarTwist(-0.2, 0.0), None))
 
 
 def test_four_mecanum_wheels(assembled):
-    parts = assembled(
+    sim = assembled(
         f"{ROSMASTER}_description/urdf/robots/rosmaster_x3.urdf.xacro",
         f"{ROSMASTER}_gazebo/config/ros2_controllers.yaml",
         base="free",
         use_gazebo="true",
     )
-    name = next(name for name in parts.controllers if "mecanum" in name)
-    drive = core(parts, name)
-    run(parts, 5)
+    name = next(name for name in sim.controllers if "mecanum" in name)
+    drive = core(sim, name)
+    run(sim, 5)
     assert not drive.offer(MecanumTwist(x=0.2, y=0.1, yaw=0.3), None)
-    run(parts, 20)
-    assert_goes_on(parts, lambda: drive.offer(MecanumTwist(x=-0.2), None))
+    run(sim, 20)
+    assert_goes_on(sim, lambda: drive.offer(MecanumTwist(x=-0.2), None))
 
 
 def test_a_gripper_that_is_driven_by_effort(assembled):
-    parts = assembled(
+    sim = assembled(
         f"{DEMOS}/urdf/gripper_mimic_joint.urdf.xacro",
         f"{DEMOS}/config/gripper_controller.yaml",
         interface="effort",
     )
-    name = next(name for name in parts.controllers if "gripper" in name)
-    gripper = core(parts, name)
-    run(parts, 5)
+    name = next(name for name in sim.controllers if "gripper" in name)
+    gripper = core(sim, name)
+    run(sim, 5)
     assert gripper.offer([1.0])
-    run(parts, 20)
-    assert_goes_on(parts, lambda: gripper.offer([-1.0]))
+    run(sim, 20)
+    assert_goes_on(sim, lambda: gripper.offer([-1.0]))
 
 
 def test_a_gripper_controller_with_a_goal_and_an_integral(parts, robot):

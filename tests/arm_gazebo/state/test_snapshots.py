@@ -28,8 +28,6 @@ class Kept:
         self.snapshots = SnapshotStore(
             robot.state,
             self.editor,
-            lambda function: function(),
-            source,
             lambda: "table",
             self._count,
         )
