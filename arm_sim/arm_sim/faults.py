@@ -32,7 +32,7 @@ class SimulationFaults:
         self._run = run
         self._controllers = controllers
         self._find_camera = find_camera
-        self._injector = FaultInjector(run.physics, run.managers, run.tick, run.sensors)
+        self._injector = FaultInjector(run)
 
     def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
         """Make a joint stick where it is, whatever its drive does."""

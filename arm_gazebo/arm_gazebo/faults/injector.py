@@ -5,13 +5,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from arm_control.lifecycle import LifecycleState
-from arm_control.manager.controller_manager import ControllerManager
 from arm_gazebo.errors import FaultError
 from arm_gazebo.faults.fault import Fault, FaultKind
-from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.faults import Distortion
-from arm_gazebo.physics.physics import Physics
-from arm_gazebo.physics.tick import SimulationTick
+from arm_gazebo.run.run import SimulationRun
 from arm_node.names import listing
 
 DISTORTIONS = {
@@ -28,10 +25,7 @@ class FaultInjector:
     A fault changes the run through its inputs, so a recording of the run contains the fault.
 
     Args:
-        simulation: the physics.
-        managers: the controller managers of the robots.
-        tick: runs a control period.
-        sensors: the sensors of the robots.
+        run: the run.
         sleep: waits for some seconds of wall time.
 
     Attributes:
@@ -40,17 +34,11 @@ class FaultInjector:
 
     def __init__(
         self,
-        simulation: Physics,
-        managers: Sequence[ControllerManager],
-        tick: SimulationTick,
-        sensors: Sequence[SimulatedSensor],
+        run: SimulationRun,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self.active: list[Fault] = []
-        self._simulation = simulation
-        self._managers = tuple(managers)
-        self._tick = tick
-        self._sensors = tuple(sensors)
+        self._run = run
         self._sleep = sleep
         self._feeds: dict[Fault, _EachTick] = {}
 
@@ -58,14 +46,16 @@ class FaultInjector:
         """Raise FaultError if the simulation does not have the fault's target."""
         kind, target = fault.kind, fault.target
         if kind is FaultKind.JOINT_STALLED:
-            _find("joint", target, list(self._simulation.built.joints))
+            _find("joint", target, list(self._run.physics.built.joints))
         elif kind in DISTORTIONS:
-            channels = [name for m in self._managers for name in m.resources.state_names]
-            channels += [name for sensor in self._sensors for name in sensor.channels]
+            channels = [name for m in self._run.managers for name in m.resources.state_names]
+            channels += [name for sensor in self._run.sensors for name in sensor.channels]
             owners = dict.fromkeys(name.rpartition("/")[0] for name in channels)
             _find("joint, sensor or channel", target, [*owners, *dict.fromkeys(channels)])
         elif kind is FaultKind.CONTROLLER_RAISES:
-            _find("controller", target, [name for m in self._managers for name in m.controllers])
+            _find(
+                "controller", target, [name for m in self._run.managers for name in m.controllers]
+            )
 
     def begin(self, fault: Fault) -> None:
         """Begin a fault.
@@ -77,10 +67,10 @@ class FaultInjector:
             raise FaultError(f"the fault '{fault}' has already begun")
         self.check(fault)
         if fault.kind is FaultKind.JOINT_STALLED:
-            self._simulation.stall_joint(fault.target)
+            self._run.physics.stall_joint(fault.target)
         elif fault.kind in DISTORTIONS:
             distortion = DISTORTIONS[fault.kind].value
-            self._simulation.distort(fault.target, distortion, fault.amount, fault.seed)
+            self._run.physics.distort(fault.target, distortion, fault.amount, fault.seed)
         elif fault.kind is FaultKind.CONTROLLER_RAISES:
             self._fail(fault.target)
             self._do_each_tick(fault, lambda: self._fail(fault.target))
@@ -92,19 +82,19 @@ class FaultInjector:
         """End a fault that has begun. A controller that failed stays inactive."""
         self.active.remove(fault)
         if fault.kind is FaultKind.JOINT_STALLED:
-            self._simulation.free_joint(fault.target)
+            self._run.physics.free_joint(fault.target)
         elif fault.kind in DISTORTIONS:
-            self._simulation.read_rightly(fault.target, DISTORTIONS[fault.kind].value)
+            self._run.physics.read_rightly(fault.target, DISTORTIONS[fault.kind].value)
         else:
-            self._tick.remove_feed(self._feeds.pop(fault))
+            self._run.tick.remove_feed(self._feeds.pop(fault))
 
     def _do_each_tick(self, fault: Fault, act: Callable[[], None]) -> None:
         self._feeds[fault] = feed = _EachTick(act)
-        self._tick.add_feed(feed)
+        self._run.tick.add_feed(feed)
 
     def _fail(self, name: str) -> None:
         """Make an active controller fail; it may have been activated again."""
-        for manager in self._managers:
+        for manager in self._run.managers:
             managed = manager.controllers.get(name)
             if managed is not None and managed.state is LifecycleState.ACTIVE:
                 manager.fail_controller(name, REASON)

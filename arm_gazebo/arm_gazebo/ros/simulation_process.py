@@ -87,14 +87,9 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             for feed in _viewers(run, settings, node.get_namespace())
         ]
         cameras = [feed for feed in viewers if isinstance(feed, CameraFeed)]
-        streams = [*cameras, *_sensor_feed(run, node)]
-        run.viewers.extend(viewers)
-        for feed in [*viewers, *streams[len(cameras) :]]:
-            run.tick.add_feed(feed)
-        for stream in streams:
-            run.state.add_schedule(stream.schedule)
+        streams = _fed(run, viewers, cameras, list(_sensor_feed(run, node)))
         _follow_pace(node, process.executor, loop, nodes, ending)
-        FaultParameter(node, FaultInjector(run.physics, run.managers, run.tick, run.sensors), loop)
+        FaultParameter(node, FaultInjector(run), loop)
         ending.enter_context(_started_paused(loop))
         recording = ending.enter_context(closing(RunRecording(node, run, settings.record_run)))
         for nodes_of_robot, robot in zip(robots, run.robots, strict=True):
@@ -107,7 +102,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             feed.start(run.physics.model)
         _supervise(node, clock, loop.pacer, run, [*viewers, recording])
         statistics = SimulationStatistics(
-            run.physics, run.tick.costs, loop.pacer, [stream.counts for stream in streams]
+            run.physics, run.tick.costs, loop.pacer, [feed.counts for feed in streams]
         )
 
         def serve() -> "SimulationServer":
@@ -330,6 +325,22 @@ def _sensor_feed(run: SimulationRun, node: Node) -> Iterator[SensorFeed]:
 
         sinks = [SensorPublisher(node, sensor.description) for sensor in run.sensors]
         yield SensorFeed(run.sensors, sinks, run.physics.timing.period_s)
+
+
+def _fed(
+    run: SimulationRun,
+    viewers: Sequence[CameraFeed | WindowFeed],
+    cameras: Sequence[CameraFeed],
+    sensors: Sequence[SensorFeed],
+) -> list[CameraFeed | SensorFeed]:
+    """Connect the feeds with the run; return those with rates, which are part of its state."""
+    run.viewers.extend(viewers)
+    for feed in (*viewers, *sensors):
+        run.tick.add_feed(feed)
+    streams = [*cameras, *sensors]
+    for feed in streams:
+        run.state.add_schedule(feed.schedule)
+    return streams
 
 
 def _supervise(
