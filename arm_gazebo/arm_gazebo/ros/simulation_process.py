@@ -42,8 +42,8 @@ from arm_node.notify import notify
 from arm_node.parameter_values import read_non_negative
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
+from arm_node.workarounds.clocks import ProcessClock
 from arm_node.workarounds.discovery import first_node
-from arm_node.workarounds.process_clock import ProcessClock
 
 if TYPE_CHECKING:
     from arm_gazebo.ros.simulation_server import SimulationServer
