@@ -4,7 +4,6 @@ Nothing here sleeps: every wait is on a condition, with a generous timeout.
 """
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -17,6 +16,7 @@ from typing import TypeVar
 
 import psutil
 import pytest
+from programs import Program
 
 from launch_py.launch_description import LaunchDescription, expand_description
 from launch_py.launch_description_sources import read_launch_file
@@ -62,74 +62,6 @@ def wait_until(condition: Callable[[], T], what: str, timeout_s: float = TIMEOUT
             pytest.fail(f"{what} did not happen within {timeout_s} s")
         pause.wait(0.01)
     return result
-
-
-class Launched:
-    """A running launcher and everything that it has printed."""
-
-    def __init__(self, command: list[str], environment: dict[str, str]) -> None:
-        self.lines: list[str] = []
-        self._ended = False
-        self._changed = threading.Condition()
-        self.process = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env=environment,
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    @property
-    def pid(self) -> int:
-        return self.process.pid
-
-    @property
-    def output(self) -> str:
-        return "\n".join(self.lines)
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            with self._changed:
-                self.lines.append(line.rstrip("\n"))
-                self._changed.notify_all()
-        with self._changed:
-            self._ended = True
-            self._changed.notify_all()
-
-    def wait_for(self, pattern: str, count: int = 1) -> str:
-        """Block until `count` lines match; return the last of them."""
-        deadline_s = time.monotonic() + TIMEOUT_S
-        with self._changed:
-            while True:
-                found = [line for line in self.lines if re.search(pattern, line)]
-                if len(found) >= count:
-                    return found[count - 1]
-                left_s = deadline_s - time.monotonic()
-                if self._ended or left_s <= 0:
-                    pytest.fail(f"no line matches {pattern!r}:\n{self.output}")
-                self._changed.wait(left_s)
-
-    def signal(self, number: signal.Signals) -> None:
-        self.process.send_signal(number)
-
-    def wait(self) -> int:
-        """Block until the launcher has ended; return its exit code."""
-        code = self.process.wait(TIMEOUT_S)
-        self._reader.join(TIMEOUT_S)
-        return code
-
-    def close(self) -> None:
-        """End it, whatever state it is in."""
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait(TIMEOUT_S)
-        self._reader.join(TIMEOUT_S)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
 
 
 class Trial:
@@ -212,16 +144,16 @@ def write_launch_file(tmp_path):
 @pytest.fixture
 def launch(write_launch_file, launch_environment):
     """Launch the actions in a process of its own; ends it after the test."""
-    launched: list[Launched] = []
+    launched: list[Program] = []
 
-    def start(actions: str, *arguments: str, **environment: str) -> Launched:
+    def start(actions: str, *arguments: str, **environment: str) -> Program:
         command = [sys.executable, "-m", "launch_py", str(write_launch_file(actions)), *arguments]
-        launched.append(Launched(command, {**launch_environment, **environment}))
+        launched.append(Program(command, {**launch_environment, **environment}))
         return launched[-1]
 
     yield start
     for one in launched:
-        one.close()
+        one.close(signal.SIGKILL)
 
 
 @pytest.fixture

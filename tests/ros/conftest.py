@@ -13,102 +13,18 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 import yaml
+from programs import Program
 
-START_TIMEOUT_S = 100.0
 WAIT_TIMEOUT_S = 60.0
 QUEUE_DEPTH = 100
 """Of a subscription: with ROS's usual 10, a test that a busy machine holds up for a tenth of a
 second would lose messages of a 100 Hz topic."""
 
 
-class Launched:
-    """A running `arm launch` and its output."""
-
-    def __init__(self, arguments: list[str], environment: dict[str, str]) -> None:
-        self.lines: list[str] = []
-        self._changed = threading.Condition()
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "arm_cli", "launch", *arguments],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            env={**os.environ, **environment},
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            with self._changed:
-                self.lines.append(line.rstrip("\n"))
-                self._changed.notify_all()
-        with self._changed:
-            self.lines.append("<end of output>")
-            self._changed.notify_all()
-
-    @property
-    def output(self) -> str:
-        """The output so far."""
-        return "\n".join(self.lines)
-
-    def wait_for_line(self, text: str, timeout_s: float = START_TIMEOUT_S) -> str:
-        """Block until a line that contains `text` has been printed; return it."""
-        return self._wait_for(lambda line: text in line, f"with {text!r}", timeout_s)
-
-    def wait_until_ready(self) -> None:
-        """Block until the launcher reports that everything is ready."""
-        self._wait_for(lambda line: line.startswith("ready "), "'ready ...'", START_TIMEOUT_S)
-
-    def _wait_for(self, fits: Callable[[str], bool], what: str, timeout_s: float) -> str:
-        deadline = time.monotonic() + timeout_s
-        with self._changed:
-            while True:
-                found = next((line for line in self.lines if fits(line)), None)
-                if found is not None:
-                    return found
-                ended = bool(self.lines) and self.lines[-1] == "<end of output>"
-                left = deadline - time.monotonic()
-                if ended or left <= 0:
-                    pytest.fail(f"no line {what} was printed:\n{self.output}")
-                self._changed.wait(left)
-
-    def descendants(self) -> list[psutil.Process]:
-        """All processes below the launcher."""
-        return psutil.Process(self.process.pid).children(recursive=True)
-
-    def stop(self, number: int = signal.SIGINT, timeout_s: float = 30.0) -> int:
-        """Send a signal, wait for the end, and return the exit code."""
-        if self.process.poll() is None:
-            self.process.send_signal(number)
-        return self.wait(timeout_s)
-
-    def wait(self, timeout_s: float = START_TIMEOUT_S) -> int:
-        """Wait for the end and return the exit code."""
-        code = self.process.wait(timeout_s)
-        self._reader.join(timeout_s)
-        return code
-
-    def close(self) -> None:
-        """End the launch and remove what it leaves, whatever the test did."""
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
-            try:
-                self.process.wait(20.0)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait(10.0)
-        self._reader.join(10.0)
-        if self.process.stdout is not None:
-            self.process.stdout.close()
-
-
 @pytest.fixture
-def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
+def launch(tmp_path: Path) -> Iterator[Callable[..., Program]]:
     """Start `arm launch ARGUMENTS`, which ends with the test at the latest."""
     yield from _launcher(tmp_path)
 
@@ -116,18 +32,19 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Launched]]:
 @pytest.fixture(scope="module")
 def launch_for_file(
     tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[Callable[..., Launched]]:
+) -> Iterator[Callable[..., Program]]:
     """Start `arm launch ARGUMENTS`, which ends with the last test of the file at the latest."""
     yield from _launcher(tmp_path_factory.mktemp("launch"))
 
 
-def _launcher(folder: Path) -> Iterator[Callable[..., Launched]]:
-    started: list[Launched] = []
+def _launcher(folder: Path) -> Iterator[Callable[..., Program]]:
+    started: list[Program] = []
 
-    def start(*arguments: str, **environment: str) -> Launched:
-        launched = Launched(list(arguments), {"ROS_LOG_DIR": str(folder / "log"), **environment})
-        started.append(launched)
-        return launched
+    def start(*arguments: str, **environment: str) -> Program:
+        command = [sys.executable, "-m", "arm_cli", "launch", *arguments]
+        own = {**os.environ, "ROS_LOG_DIR": str(folder / "log"), **environment}
+        started.append(Program(command, own))
+        return started[-1]
 
     yield start
     for launched in started:

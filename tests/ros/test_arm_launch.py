@@ -44,7 +44,7 @@ def shared_memory(launched) -> set[Path]:
     But for the ports from 7000 on: they are those of other domains, too, and stay where a process
     of another one was killed.
     """
-    processes = [psutil.Process(launched.process.pid), *launched.descendants()]
+    processes = [psutil.Process(launched.process.pid), *launched.processes()]
     paths = {path for process in processes for path in mapped_files(process)}
     ports = {path: re.search(r"_port(\d+)", path.name) for path in paths}
     return {
@@ -179,7 +179,7 @@ def test_the_frames_of_the_arm_are_in_tf(launch, client):
 def test_a_stop_signal_ends_everything_with_exit_code_0(launch, number):
     launched = launch()
     launched.wait_until_ready()
-    children = launched.descendants()
+    children = launched.processes()
     assert len(children) >= 3
     files = shared_memory(launched)
     assert files
@@ -210,7 +210,7 @@ def test_a_simulation_killed_with_its_cameras_leaves_no_shared_memory(launch, cl
     files = {file for file in shared_memory(launched) if "_port" not in file.name}
     assert files
     programs = ("arm_gazebo.camera_node", "arm_gazebo_node")
-    victims = [p for p in launched.descendants() if any(n in str(p.cmdline()) for n in programs)]
+    victims = [p for p in launched.processes() if any(n in str(p.cmdline()) for n in programs)]
     assert len(victims) == 2
     for victim in victims:
         # The cameras end with the simulation, perhaps before their turn.

@@ -63,9 +63,7 @@ def test_copies_serve_goals_and_queries_without_a_busy_thread(launch, client):
 
     launched = launch("mycobot", "copies:=2")
     launched.wait_until_ready()
-    (simulation,) = [
-        p for p in launched.descendants() if "arm_gazebo_node" in " ".join(p.cmdline())
-    ]
+    (simulation,) = [p for p in launched.processes() if "arm_gazebo_node" in " ".join(p.cmdline())]
     controller = "/mycobot_280_1/arm_controller"
 
     def positions():

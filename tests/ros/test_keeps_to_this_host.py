@@ -249,7 +249,7 @@ def test_launched_processes_listen_on_loopback_only(launch) -> None:
     launched = launch("camera:=front", ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     launched.wait_until_ready()
     listeners = {one.pid: one for one in find_listeners(os.environ)}
-    children = {child.pid for child in launched.descendants()}
+    children = {child.pid for child in launched.processes()}
     launched_ones = [one for pid, one in listeners.items() if pid in children]
     assert {"arm_gazebo_node", "robot_state_publisher", "arm_controller_node"} <= {
         one.program for one in launched_ones

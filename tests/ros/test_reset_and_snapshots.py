@@ -247,7 +247,7 @@ def test_goals_that_a_snapshot_does_not_have_are_aborted(user):
 def test_many_resets_leave_nothing_behind_and_no_goal_is_missed(user, client, simulation):
     from action_msgs.msg import GoalStatus
 
-    (process,) = (p for p in simulation.descendants() if "arm_gazebo_node" in " ".join(p.cmdline()))
+    (process,) = (p for p in simulation.processes() if "arm_gazebo_node" in " ".join(p.cmdline()))
 
     def load() -> tuple[int, int, float]:
         return process.num_threads(), process.num_fds(), process.memory_info().rss / 1e6

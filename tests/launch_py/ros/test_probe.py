@@ -86,7 +86,7 @@ def segments_of(pid: int) -> set[Path]:
 def test_a_condition_is_met(launch, body, condition):
     launched = launch(f"{NODE}actions = [tested({body!r}, ready={condition})]")
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
 
 
@@ -98,7 +98,7 @@ def test_output_of_the_middleware_is_not_taken_for_an_answer(launch):
     )
     launched.wait_for("XMLPARSER")  # Fast DDS complains on stdout.
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
 
 
@@ -146,11 +146,11 @@ def test_a_killed_supervisor_leaves_nothing_in_shared_memory(launch, waiting, fr
     assert owned
     supervisor = int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
     if front_too:
-        launched.signal(signal.SIGSTOP)
+        launched.process.send_signal(signal.SIGSTOP)
     os.kill(supervisor, signal.SIGKILL)
     waiting.until(lambda: not waiting.running(pid), "the end of the node")
     if front_too:
-        launched.signal(signal.SIGKILL)
+        launched.process.send_signal(signal.SIGKILL)
     assert launched.wait() == (-signal.SIGKILL if front_too else 128 + signal.SIGKILL)
     if front_too:  # Then the next process removes it.
         assert any(path.exists() for path in owned)

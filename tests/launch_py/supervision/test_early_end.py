@@ -15,7 +15,7 @@ TIMEOUT_S = 30.0
 def test_a_stop_signal_while_the_launch_file_is_read_shows_no_traceback(launch, number):
     launched = launch("print('reading', flush=True); import signal; signal.pause(); actions = []")
     launched.wait_for("reading")
-    launched.signal(number)
+    launched.process.send_signal(number)
     assert launched.wait() == 0
     assert launched.lines[-1].endswith(": stopped before anything was started")
     assert "Traceback" not in launched.output
@@ -34,7 +34,7 @@ def test_a_stop_signal_that_other_code_turns_into_another_error_still_stops(laun
         actions = [forever('a')]
         """)
     launched.wait_for("importing")
-    launched.signal(number)
+    launched.process.send_signal(number)
     assert launched.wait() == 0
     assert launched.lines[1:] == ["launch_py: stopped before anything was started"]
 
@@ -67,7 +67,7 @@ def test_an_interrupted_listing_is_not_a_success(launch):
         "print('reading', flush=True); import signal; signal.pause(); actions = []", "--print"
     )
     launched.wait_for("reading")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 128 + signal.SIGINT
     assert "Traceback" not in launched.output
 
@@ -117,7 +117,7 @@ def test_output_of_a_process_stopped_before_it_was_ready_goes_to_its_log_only(
         """
     )
     launched.wait_for("importing")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
     assert "KeyboardInterrupt" not in launched.output
     with open(f"{launch_environment['ROS_LOG_DIR']}/latest/a.log", encoding="utf-8") as log:

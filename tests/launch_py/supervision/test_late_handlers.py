@@ -232,10 +232,10 @@ def test_a_second_ctrl_c_stops_at_once_even_if_a_function_hangs(launch, actions)
         """
     )
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     launched.wait_for("HANGING")
     while launched.process.poll() is None:  # One that comes at once counts as the first.
-        launched.signal(signal.SIGINT)
+        launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 130, launched.output
 
 
@@ -258,7 +258,7 @@ def test_a_process_that_a_function_runs_keeps_its_exit_code(launch):
         """
     )
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0, launched.output
     assert "CODES {3}" in launched.lines
 
@@ -281,6 +281,6 @@ def test_a_process_that_a_function_left_running_keeps_its_exit_code(launch):
         """
     )
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0, launched.output
     assert "CODE 3" in launched.lines

@@ -73,7 +73,7 @@ def test_starts_follow_readiness_and_the_last_line_of_the_start_up_is_ready(laun
 def test_a_stop_signal_ends_everything_in_order_with_exit_code_0(launch, number):
     launched = launch("actions = [forever('a'), forever('b', depends_on='a')]")
     launched.wait_for("^ready ")
-    launched.signal(number)
+    launched.process.send_signal(number)
     assert launched.wait() == 0
     stops = [line for line in launched.lines if line.endswith(" stopped")]
     assert stops == ["[launch] b stopped", "[launch] a stopped"]
@@ -99,7 +99,7 @@ def test_grandchildren_are_stopped_too(launch, waiting, number, code):
     launched = launch(FAMILY)
     pids = pids_of(launched.wait_for(r"^\[family\] family"))
     launched.wait_for("^ready ")
-    launched.signal(number)
+    launched.process.send_signal(number)
     assert launched.wait() == code
     waiting.until(lambda: not any(map(waiting.running, pids)), "the end of all")
 
@@ -125,7 +125,7 @@ def test_processes_left_by_a_crash_are_ended_before_the_restart(launch, waiting)
 def test_when_the_launcher_is_killed_everything_ends_in_order(launch, waiting, launch_environment):
     launched = launch("actions = [forever('a'), forever('b', depends_on='a')]")
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGKILL)
+    launched.process.send_signal(signal.SIGKILL)
     assert launched.wait() == -signal.SIGKILL
     launched.wait_for(r"^\[launch\] stopped after")
     log = log_folder(launch_environment) / "launch.log"
@@ -149,9 +149,9 @@ def test_when_both_are_killed_the_processes_still_end(launch, waiting):
     (pid,) = pids_of(launched.wait_for(r"^\[a\]"))
     launched.wait_for("^ready ")
     supervisor = parent_of(pid)
-    launched.signal(signal.SIGSTOP)
+    launched.process.send_signal(signal.SIGSTOP)
     os.kill(supervisor, signal.SIGKILL)
-    launched.signal(signal.SIGKILL)
+    launched.process.send_signal(signal.SIGKILL)
     assert launched.wait() == -signal.SIGKILL
     waiting.until(lambda: not waiting.running(pid), "the end of the process")
 
@@ -159,7 +159,7 @@ def test_when_both_are_killed_the_processes_still_end(launch, waiting):
 def test_a_hanging_process_gets_sigint_sigterm_sigkill(launch):
     launched = launch(DEAF.replace("{}", "{'sigterm_timeout': 2.0, 'sigkill_timeout': 2.0}"))
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGTERM)
+    launched.process.send_signal(signal.SIGTERM)
     assert launched.wait() == 137
     got = [line for line in launched.lines if line.startswith("[deaf] got")]
     assert got == ["[deaf] got SIGINT", "[deaf] got SIGTERM"]
@@ -169,10 +169,10 @@ def test_a_hanging_process_gets_sigint_sigterm_sigkill(launch):
 def test_a_second_ctrl_c_stops_now(launch):
     launched = launch(DEAF)
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     launched.wait_for("got SIGINT")
     while launched.process.poll() is None:  # One that comes at once counts as the first.
-        launched.signal(signal.SIGINT)
+        launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 130
     assert "got SIGTERM" not in launched.output
     assert "second Ctrl-C" in launched.lines[-1]
@@ -181,8 +181,8 @@ def test_a_second_ctrl_c_stops_now(launch):
 def test_a_signal_sent_twice_at_once_counts_once(launch):
     launched = launch("actions = [forever('a')]")
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
 
 
@@ -319,7 +319,7 @@ def test_an_http_page_is_a_readiness_condition(launch):
         """
     )
     launched.wait_for("^ready ")
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
 
 

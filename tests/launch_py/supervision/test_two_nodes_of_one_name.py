@@ -58,7 +58,7 @@ def test_a_second_node_with_the_same_name_is_not_started(launch, old):
         second.lines[-1],
     )
     assert "replace:=true" in second.lines[-1]
-    old.signal(signal.SIGINT)
+    old.process.send_signal(signal.SIGINT)
     assert old.wait() == 0
 
 
@@ -69,7 +69,7 @@ def test_replace_replaces_the_first_node(launch, old):
     assert not os.path.exists(f"/proc/{re.findall('[0-9]+', said)[0]}")
     assert old.wait() == 0
     old.wait_for("old ended with exit code 0")
-    second.signal(signal.SIGINT)
+    second.process.send_signal(signal.SIGINT)
     assert second.wait() == 0
 
 
@@ -80,7 +80,7 @@ def test_a_node_that_names_itself_is_detected_once_it_appears(launch):
     assert second.wait() == 1
     assert "/nameless is already on the ROS graph, from process" in second.lines[-1]
     second.wait_for("new stopped")
-    first.signal(signal.SIGINT)
+    first.process.send_signal(signal.SIGINT)
     assert first.wait() == 0
 
 
@@ -90,5 +90,5 @@ def test_a_node_that_crashes_beside_others_is_restarted(launch, old):
     pid = int(launched.wait_for("up as /b").split()[-1])
     os.kill(pid, signal.SIGKILL)
     launched.wait_for("up as /b", count=2)
-    launched.signal(signal.SIGINT)
+    launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 import yaml
+from programs import Program
 
 ROOT = Path(__file__).parents[3]
 TIMEOUT_S = 60.0
@@ -30,113 +31,6 @@ PARAMETERS = {
 }
 
 
-class Program:
-    """A child process whose output is read continuously."""
-
-    def __init__(self, arguments: Sequence[str], log_directory: Path) -> None:
-        self.lines: list[str] = []
-        self._changed = threading.Condition()
-        self.process = subprocess.Popen(
-            [sys.executable, *arguments],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env={
-                **os.environ,
-                "ROS_LOG_DIR": str(log_directory),
-                # Spawners lock the machine there: not that of other sessions.
-                "ROS_HOME": str(log_directory.parent),
-                "FASTRTPS_DEFAULT_PROFILES_FILE": str(ROOT / "launch_py/config/dds_profile.xml"),
-            },
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    @property
-    def output(self) -> str:
-        """All that it printed so far."""
-        with self._changed:
-            return "\n".join(self.lines)
-
-    def wait_for_line(self, text: str) -> str:
-        """Block until a line with this text was printed; return it."""
-
-        def found() -> str | None:
-            return next((line for line in self.lines if text in line), None)
-
-        with self._changed:
-            if not self._changed.wait_for(lambda: found() or self._ended(), TIMEOUT_S):
-                pytest.fail(f"no line with {text!r} within {TIMEOUT_S} s:\n" + self.output)
-            line = found()
-        if line is None:
-            pytest.fail(f"it ended without a line with {text!r}:\n" + self.output)
-        return line
-
-    def tell(self, line: str) -> None:
-        """Write a line to its standard input and wait until it has obeyed."""
-        assert self.process.stdin is not None
-        done = f"{line} done"
-        with self._changed:
-            before = self.lines.count(done)
-        self.process.stdin.write(f"{line}\n")
-        self.process.stdin.flush()
-        with self._changed:
-            # It may have been told so before.
-            obeyed = self._changed.wait_for(lambda: self.lines.count(done) > before, TIMEOUT_S)
-        assert obeyed, f"no {done!r} within {TIMEOUT_S} s:\n{self.output}"
-
-    def wait(self) -> int:
-        """Wait for its end; return the exit code."""
-        code = self.process.wait(TIMEOUT_S)
-        self._reader.join(TIMEOUT_S)
-        return code
-
-    def succeed(self) -> str:
-        """Wait for it to exit successfully; return its output."""
-        assert self.wait() == 0, self.output
-        assert "Traceback" not in self.output
-        return self.output
-
-    def fail(self, code: int = 1) -> str:
-        """Wait for its end, which must be a failure without a traceback; return its output."""
-        assert self.wait() == code, self.output
-        assert "Traceback" not in self.output
-        return self.output
-
-    def stop(self, number: int = signal.SIGTERM) -> int:
-        """Send a signal and wait for the end; return the exit code."""
-        self.process.send_signal(number)
-        return self.wait()
-
-    def close(self) -> None:
-        """Make sure that it is gone."""
-        if self.process.poll() is None:
-            self.process.terminate()
-            try:
-                self.process.wait(15.0)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait(15.0)
-        self._reader.join(TIMEOUT_S)
-        for pipe in (self.process.stdin, self.process.stdout):
-            if pipe is not None:
-                pipe.close()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            with self._changed:
-                self.lines.append(line.rstrip("\n"))
-                self._changed.notify_all()
-        with self._changed:
-            self.lines.append("<end>")
-            self._changed.notify_all()
-
-    def _ended(self) -> bool:
-        return bool(self.lines) and self.lines[-1] == "<end>"
-
-
 Run = Callable[..., Program]
 
 
@@ -146,13 +40,20 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
     programs: list[Program] = []
 
     def start(*arguments: str) -> Program:
-        program = Program(arguments, tmp_path_factory.mktemp("log"))
-        programs.append(program)
-        return program
+        log = tmp_path_factory.mktemp("log")
+        environment = {
+            **os.environ,
+            "ROS_LOG_DIR": str(log),
+            # Spawners lock the machine there: not that of other sessions.
+            "ROS_HOME": str(log.parent),
+            "FASTRTPS_DEFAULT_PROFILES_FILE": str(ROOT / "launch_py/config/dds_profile.xml"),
+        }
+        programs.append(Program([sys.executable, *arguments], environment, subprocess.PIPE))
+        return programs[-1]
 
     yield start
     for program in programs:
-        program.close()
+        program.close(signal.SIGTERM)
 
 
 @pytest.fixture(scope="module")

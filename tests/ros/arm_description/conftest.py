@@ -1,20 +1,15 @@
 """The nodes of arm_description in processes of their own, one robot for all of them."""
 
 import os
-import re
 import signal
-import subprocess
 import sys
-import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
-
-WAIT_TIMEOUT_S = 40.0
-ESCAPES = re.compile("\x1b\\[[0-9;]*m")
+from programs import Program
 
 LIMIT = "<limit lower='-3' upper='3' effort='1' velocity='1'/>"
 URDF = f"""<robot name='r'>
@@ -34,94 +29,23 @@ URDF = f"""<robot name='r'>
 </robot>"""
 
 
-class NodeProcess:
-    """A running executable and all that it printed."""
-
-    def __init__(self, module: str, arguments: list[str], log_folder: Path) -> None:
-        self._changed = threading.Condition()
-        self._output = ""
-        self._ended = False
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", f"arm_description.{module}", *arguments],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            env={**os.environ, "ROS_LOG_DIR": str(log_folder)},
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            with self._changed:
-                self._output += line
-                self._changed.notify_all()
-        with self._changed:
-            self._ended = True
-            self._changed.notify_all()
-
-    @property
-    def output(self) -> str:
-        """All that was printed so far."""
-        with self._changed:
-            return self._output
-
-    @property
-    def own_words(self) -> list[str]:
-        """The lines so far that are not Fast DDS's own, which complains on a loaded machine."""
-        return [line for line in self.output.splitlines() if "[RTPS" not in ESCAPES.sub("", line)]
-
-    def wait_for(self, text: str) -> None:
-        """Block until this text was printed."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._ended or text in self._output, WAIT_TIMEOUT_S)
-            assert text in self._output, f"{text!r} was not printed:\n{self._output}"
-
-    def stop(self, number: int) -> int:
-        """Send a signal and return the exit code."""
-        self.process.send_signal(number)
-        return self.wait()
-
-    def wait(self) -> int:
-        """Wait for the end and return the exit code."""
-        code = self.process.wait(WAIT_TIMEOUT_S)
-        self._reader.join(WAIT_TIMEOUT_S)
-        print(self.output)  # Shown if the test fails.
-        return code
-
-    def close(self) -> None:
-        """Make sure that nothing stays behind, whatever the test did."""
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-            try:
-                self.process.wait(WAIT_TIMEOUT_S)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait(WAIT_TIMEOUT_S)
-        self._reader.join(WAIT_TIMEOUT_S)
-        if self.process.stdout is not None:
-            self.process.stdout.close()
-
-
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Callable[..., NodeProcess]]:
+def start(tmp_path: Path) -> Iterator[Callable[..., Program]]:
     """Start a node by its module with command-line arguments and ROS parameters by name."""
-    started: list[NodeProcess] = []
+    started: list[Program] = []
 
-    def start_one(module: str, *arguments: str, **parameters: Any) -> NodeProcess:
+    def start_one(module: str, *arguments: str, **parameters: Any) -> Program:
         file = tmp_path / f"parameters{len(started)}.yaml"
         named = {name.replace("__", "."): value for name, value in parameters.items()}
         file.write_text(yaml.safe_dump({"/**": {"ros__parameters": named}}))
         ros = ["--ros-args", "--params-file", str(file)] if parameters else []
-        node = NodeProcess(module, [*arguments, *ros], tmp_path / "log")
-        started.append(node)
-        return node
+        command = [sys.executable, "-m", f"arm_description.{module}", *arguments, *ros]
+        started.append(Program(command, {**os.environ, "ROS_LOG_DIR": str(tmp_path / "log")}))
+        return started[-1]
 
     yield start_one
     for node in started:
-        node.close()
+        node.close(signal.SIGTERM)
 
 
 @pytest.fixture

@@ -69,7 +69,7 @@ def test_a_description_from_the_topic_starts_it_and_another_takes_its_place(
 def test_a_description_that_is_no_robot_is_ignored_with_a_warning(start, states, describe, urdf):
     node = start(MODULE)
     describe("<world/>")
-    node.wait_for('ignoring: robot_description, line 1: URDF must have a "robot" tag')
+    node.wait_for_line('ignoring: robot_description, line 1: URDF must have a "robot" tag')
     describe(urdf)
     assert states.wait_for()[0].name == ["turn", "push", "grip"]
 
@@ -111,7 +111,7 @@ def test_a_source_that_makes_no_sense_is_named_and_the_node_goes_on(
     node = start(MODULE, urdf_file, source_list=["left"])
     publisher = client.publisher(JointState, "left")
     publisher.publish(JointState(name=["turn"], position=[0.5, 2.0]))
-    node.wait_for("ignored a JointState: 1 names, but 2 positions")
+    node.wait_for_line("ignored a JointState: 1 names, but 2 positions")
     publisher.publish(JointState(name=["turn"], position=[1.0]))
     taken = states.wait_until(lambda m: bool(m) and m[-1].position[0] == 1.0, "the next one taken")
     assert {message.position[0] for message in taken} <= {0.0, 1.0}

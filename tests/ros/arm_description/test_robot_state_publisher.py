@@ -155,9 +155,9 @@ def test_a_description_that_is_no_robot_is_refused_and_the_old_one_stays(
 def test_joint_states_that_make_no_sense_are_named_and_the_node_goes_on(tf, send):
     node, collector = tf()
     send(1.0, [], turn=0.0)
-    node.wait_for("ignored a JointState about turn: it has no positions")
+    node.wait_for_line("ignored a JointState about turn: it has no positions")
     send(1.0, [1.0, 2.0], turn=0.0)
-    node.wait_for("ignored a JointState about turn: 1 names, but 2 positions")
+    node.wait_for_line("ignored a JointState about turn: 1 names, but 2 positions")
     send(1.0, turn=0.25)
     collector.wait_for()
     assert [seconds(m.transforms[0].header.stamp) for m in collector.messages] == [1.0]
@@ -166,7 +166,7 @@ def test_joint_states_that_make_no_sense_are_named_and_the_node_goes_on(tf, send
 def test_a_position_that_is_no_number_is_not_sent(tf, send):
     node, collector = tf()
     send(1.0, turn=math.nan)
-    node.wait_for("ignored a JointState about turn: a position is not a finite number")
+    node.wait_for_line("ignored a JointState about turn: a position is not a finite number")
     send(1.0, push=0.25)
     assert children(collector.wait_for()[0]) == {"slide", "finger"}
 
@@ -174,8 +174,8 @@ def test_a_position_that_is_no_number_is_not_sent(tf, send):
 def test_a_position_that_is_too_large_for_what_mimics_it_is_not_sent(tf, send):
     node, collector = tf()
     send(1.0, push=1e308)
-    node.wait_for("ignored a JointState about push: a position is not a finite number, or too")
-    node.wait_for("large for link 'finger'")
+    node.wait_for_line("ignored a JointState about push: a position is not a finite number, or too")
+    node.wait_for_line("large for link 'finger'")
     send(1.0, push=0.25)
     assert transforms(collector.wait_for()[0])["slide", "finger"][2] == 0.0
     assert "Warning" not in node.output
@@ -184,7 +184,7 @@ def test_a_position_that_is_too_large_for_what_mimics_it_is_not_sent(tf, send):
 def test_bytes_that_are_no_joint_state_are_ignored(tf, send):
     node, collector = tf()
     send(1.0, b"\x00\x01\x00\x00 nonsense, far too short to be one")
-    node.wait_for("ignored a JointState whose bytes cannot be read")
+    node.wait_for_line("ignored a JointState whose bytes cannot be read")
     send(1.0, turn=0.0)
     assert children(collector.wait_for()[0]) == {"arm"}
 
@@ -321,5 +321,5 @@ def test_a_urdf_file_as_argument_takes_the_place_of_the_parameter(
 
 def test_a_urdf_file_that_does_not_exist_is_named(start, tmp_path):
     node = start(MODULE, str(tmp_path / "robt.urdf"))
-    node.wait_for(f"Failed to open URDF file: {tmp_path}/robt.urdf: No such file or directory")
+    node.wait_for_line(f"Failed to open URDF file: {tmp_path}/robt.urdf: No such file or directory")
     assert node.process.wait(20) == 1

@@ -17,7 +17,7 @@ def received(client, start, latched):
 
     def run(*arguments: str, **parameters):
         node = start(MODULE, *arguments, **parameters)
-        node.wait_for("Spinning until stopped - publishing transform")
+        node.wait_for_line("Spinning until stopped - publishing transform")
         (transform,) = client.subscribe(TFMessage, "/tf_static", latched).wait_for()[0].transforms
         t, r = transform.transform.translation, transform.transform.rotation
         names = (transform.header.frame_id, transform.child_frame_id)
@@ -74,6 +74,6 @@ def test_parameters_say_the_same_and_arguments_win(received):
 )
 def test_wrong_arguments_get_a_sentence(start, words, said):
     node = start(MODULE, *words.split())
-    node.wait_for(said)
+    node.wait_for_line(said)
     assert node.process.wait(20) == 1
     assert "Traceback" not in node.output
