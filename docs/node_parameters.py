@@ -18,16 +18,15 @@ from ament_index_python.packages import get_package_share_directory
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from std_msgs.msg import Float64MultiArray
 
 from arm_control.manager.settings import ManagerSettings
 from arm_control.parameters import ParameterSpec, specs_of
-from arm_controller.ros.arm_controller import ArmController
-from arm_controller.ros.arm_gripper_loop_controller import ArmGripperLoopController
-from arm_controller.ros.command_sequence import CommandSequence
-from arm_controller.ros.pick_and_place import PickAndPlaceNode
-from arm_controller.ros.publisher_defined import PublisherDefined
-from arm_controller.ros.publisher_terminal import PublisherTerminal
+from arm_controller.arm_controller_node import ArmController
+from arm_controller.arm_gripper_loop_controller_node import ArmGripperLoopController
+from arm_controller.command_sequence_node import gripper_example
+from arm_controller.pick_and_place_node import PickAndPlaceNode
+from arm_controller.publisher_defined_node import PublisherDefined
+from arm_controller.publisher_terminal_node import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_gazebo.ros.fault_parameter import declare_faults
@@ -88,14 +87,12 @@ NODES: tuple[tuple[Callable[[], Node], str], ...] = (
     (lambda: PublisherTerminal(_PROCESS), "Sends the poses that the user types."),
     (lambda: PublisherDefined(_PROCESS), "Sends the poses of a file, one after the other."),
     (
-        ArmGripperLoopController,
+        lambda: ArmGripperLoopController(_PROCESS),
         "Moves the myCobot back and forth, and its gripper.",
     ),
-    (PickAndPlaceNode, "Picks the red cylinder up and puts it back."),
+    (lambda: PickAndPlaceNode(_PROCESS), "Picks the red cylinder up and puts it back."),
     (
-        lambda: CommandSequence(
-            _PROCESS, "gripper_test_node", "commands", Float64MultiArray, iter(()), 1.0
-        ),
+        lambda: gripper_example(_PROCESS),
         "Closes the gripper of the demo. `diff_drive_test_node`, which drives the demo on two "
         "wheels, has the same parameter.",
     ),

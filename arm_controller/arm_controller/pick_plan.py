@@ -12,9 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_controller.errors import PlanError
-from arm_controller.joint_path import JointPath, path_to, reversed_path, straight_path
-from arm_controller.mycobot import GRASP_CENTRE, HAND, HOME, prefixed_joints
+from arm_controller.pose import ArmControllerError
 from arm_description.errors import KinematicsError
 from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.transforms import transform
@@ -22,6 +20,22 @@ from arm_description.urdf.robot import Robot
 
 Array = NDArray[np.float64]
 
+JOINTS = (
+    "link1_to_link2",
+    "link2_to_link3",
+    "link3_to_link4",
+    "link4_to_link5",
+    "link5_to_link6",
+    "link6_to_link6_flange",
+)
+"""The joints of the myCobot 280, without prefix."""
+HOME = (0.0,) * len(JOINTS)
+HAND = "gripper_base"
+"""The link that carries the fingers: x sideways, y forward, z up."""
+GRASP_CENTRE = (0.0, 0.069, -0.01)
+"""The centre between the pads, 30 mm apart, in the frame of the hand (m)."""
+WIDE_OPEN, OPEN, CLOSED = 0.15, 0.0, -0.7
+"""Positions of the gripper (rad): 43 mm, 39 mm and 6 mm between the pads."""
 HEADINGS_DEG = (-40.0, -30.0, -50.0, 25.0, 35.0, 15.0, 45.0, -20.0, 0.0)
 """Directions of the fingers relative to the direction of the object, the best first."""
 POSTURES = (
@@ -33,6 +47,87 @@ POSTURES = (
 APPROACH_M = 0.07
 """Length of the straight approach, which starts clear of the object."""
 SWING_S, STRAIGHT_S = 3.0, 2.0
+POINTS_PER_S = 10
+MAX_STEP = 0.3
+"""Between two points, rad or m; a larger step means that a joint passes a singularity."""
+
+
+class PlanError(ArmControllerError):
+    """The arm has no path for the task; the message says why."""
+
+
+def prefixed_joints(prefix: str) -> list[str]:
+    """Return the arm's joints, with the prefix before the names of both links of each joint."""
+    return [prefix + name.replace("_to_", f"_to_{prefix}") for name in JOINTS]
+
+
+@dataclass(frozen=True, slots=True)
+class PathPoint:
+    """Positions (rad or m) and velocities (per second) of the joints at a time.
+
+    Attributes:
+        time_s: time since the start of the path.
+        positions: shape (n,).
+        velocities: shape (n,), or empty: then the joints move at constant speed.
+    """
+
+    time_s: float
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...]
+
+
+JointPath = tuple[PathPoint, ...]
+"""Does not contain the start: an arm starts at its current position."""
+
+
+def path_to(positions: Sequence[float], duration_s: float) -> JointPath:
+    """Return a path from anywhere to these positions, which it reaches at rest."""
+    return (PathPoint(duration_s, tuple(positions), (0.0,) * len(positions)),)
+
+
+def reversed_path(path: JointPath, start: Sequence[float]) -> JointPath:
+    """Return a path in reverse; `start` are the positions before its first point."""
+    duration_s = path[-1].time_s
+    back = [
+        PathPoint(duration_s - point.time_s, point.positions, tuple(-v for v in point.velocities))
+        for point in reversed(path[:-1])
+    ]
+    return (*back, *path_to(start, duration_s))
+
+
+def straight_path(
+    kinematics: InverseKinematics, start: Sequence[float], target: Array, duration_s: float
+) -> JointPath:
+    """Return the path on which a link moves along a straight line without rotating.
+
+    Args:
+        kinematics: inverse kinematics of the link.
+        start: positions of the joints at the start, shape (n,).
+        target: the link's pose at the end, with the same orientation as at the start, shape (4, 4).
+        duration_s: duration of the minimum-jerk motion.
+
+    Raises:
+        KinematicsError: a point of the line is out of reach.
+        PlanError: the line passes a singularity.
+    """
+    count = max(2, round(duration_s * POINTS_PER_S))
+    times = np.linspace(0.0, 1.0, count + 1)
+    shares = times**3 * (10.0 + times * (6.0 * times - 15.0))
+    pose = kinematics.pose(start)
+    along = target[:3, 3] - pose[:3, 3]
+    joints = [np.asarray(start, dtype=float)]
+    for share in shares[1:]:
+        place = target.copy()
+        place[:3, 3] = pose[:3, 3] + share * along
+        joints.append(kinematics.solve(place, joints[-1]))
+    if np.abs(np.diff(joints, axis=0)).max() > MAX_STEP:
+        raise PlanError("the straight line passes a singularity")
+    velocities = np.gradient(np.array(joints), duration_s / count, axis=0)
+    velocities[-1] = 0.0
+    return tuple(
+        PathPoint(float(time * duration_s), tuple(q.tolist()), tuple(v.tolist()))
+        for time, q, v in zip(times[1:], joints[1:], velocities[1:], strict=True)
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,20 +12,23 @@ from pathlib import Path
 
 import yaml
 
-from arm_controller.errors import PoseError, PoseFileError
-from arm_controller.joint_pose import JointPose
+from arm_controller.pose import ArmControllerError, Pose, PoseError, read_pose
 from arm_node.limited_yaml import YamlError, compose_yaml
 from arm_node.user_file import read_text
 
 POSES_KEY = "poses"
 
 
-def read_pose_file(path: Path, joint_names: Sequence[str]) -> tuple[JointPose, ...]:
+class PoseFileError(ArmControllerError):
+    """A file of poses is missing, unreadable or invalid; the message names file and line."""
+
+
+def read_pose_file(path: Path, joints: Sequence[str]) -> tuple[Pose, ...]:
     """Return the poses of a file, at least one.
 
     Args:
         path: the YAML file.
-        joint_names: the joints of each pose, in its order.
+        joints: the joints of each pose, in its order.
 
     Raises:
         PoseFileError: the file is missing, not YAML, or not a list of poses; the message names the
@@ -41,7 +44,7 @@ def read_pose_file(path: Path, joint_names: Sequence[str]) -> tuple[JointPose, .
         root = compose_yaml(text)
     except YamlError as error:
         raise PoseFileError(f"{path} is not YAML: {error}") from error
-    return tuple(_pose(item, path, joint_names) for item in _pose_items(root, path))
+    return tuple(_pose(item, path, joints) for item in _pose_items(root, path))
 
 
 def _pose_items(root: yaml.Node | None, path: Path) -> list[yaml.Node]:
@@ -61,14 +64,14 @@ def _pose_items(root: yaml.Node | None, path: Path) -> list[yaml.Node]:
     return items
 
 
-def _pose(item: yaml.Node, path: Path, joint_names: Sequence[str]) -> JointPose:
+def _pose(item: yaml.Node, path: Path, joints: Sequence[str]) -> Pose:
     if not isinstance(item, yaml.SequenceNode):
         raise PoseFileError(
-            f"{_place(item, path)}: a pose is a list of {len(joint_names)} numbers, "
-            f"such as [{', '.join('0.0' for _ in joint_names)}]"
+            f"{_place(item, path)}: a pose is a list of {len(joints)} numbers, "
+            f"such as [{', '.join('0.0' for _ in joints)}]"
         )
     try:
-        return JointPose.of(joint_names, [_number(value, path) for value in item.value])
+        return read_pose([_number(value, path) for value in item.value], joints)
     except PoseError as error:
         raise PoseFileError(f"{_place(item, path)}: {error}") from error
 

@@ -171,11 +171,11 @@ class FakeRobot:
 class Program:
     """A running executable, and what it printed."""
 
-    def __init__(self, module: str, arguments: list[str], log_folder: Path) -> None:
+    def __init__(self, name: str, arguments: list[str], log_folder: Path) -> None:
         self._lock = threading.Condition()
         self._output = ""
         self.process = subprocess.Popen(
-            [sys.executable, "-m", module, *arguments],
+            [Path(sys.executable).with_name(name), *arguments],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -250,16 +250,12 @@ def robot() -> Iterator[FakeRobot]:
 
 @pytest.fixture
 def run(tmp_path: Path) -> Iterator[Callable[..., Program]]:
-    """Start an executable of arm_controller by its module's name, with ROS parameters."""
+    """Start an executable of arm_controller by its name, with ROS parameters."""
     started: list[Program] = []
 
-    def start(module: str, *arguments: str, **parameters: object) -> Program:
-        options = [x for name, value in parameters.items() for x in ("-p", f"{name}:={value}")]
-        program = Program(
-            f"arm_controller.{module}",
-            [*arguments, "--ros-args", *options],
-            tmp_path / "log",
-        )
+    def start(name: str, *arguments: str, **parameters: object) -> Program:
+        options = [x for key, value in parameters.items() for x in ("-p", f"{key}:={value}")]
+        program = Program(name, [*arguments, "--ros-args", *options], tmp_path / "log")
         started.append(program)
         return program
 

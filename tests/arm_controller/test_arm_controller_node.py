@@ -5,13 +5,35 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from ament_index_python.packages import get_package_share_directory
 
 pytestmark = pytest.mark.ros
 
-MODULE = "arm_controller_node"
+NAME = "arm_controller_node"
 CONFIG = Path(get_package_share_directory("arm_controller")) / "config"
 DEFAULT_POSE = [0.4, -0.1, 0.5, 0.4]
+PARAMETERS = {
+    "params.yaml": {"desired_param": DEFAULT_POSE, "print_period": 1.0},
+    "params_left_bent.yaml": {"desired_param": [1.0, 0.5, 0.1, 0.5]},
+    "params_left_straight.yaml": {"desired_param": [1.0, 0.5, 0.0, 0.0]},
+    "params_right_folded.yaml": {"desired_param": [-2.57, 0.5, -1.2, -1.0]},
+    "params_ros1.yaml": {
+        "command_topic": "{joint}p_controller/command",
+        "desired_param": [-5.0, 0.5, -1.2, -1.0],
+        "check_limits": False,
+        "publish_rate": 10.0,
+        "print_period": 1.0,
+    },
+}
+
+
+def test_the_parameter_files_hold_the_poses_of_the_originals():
+    found = {path.name: yaml.safe_load(path.read_text()) for path in CONFIG.glob("params*.yaml")}
+    names = {name: next(iter(sections)) for name, sections in found.items()}
+    assert {name: s[names[name]]["ros__parameters"] for name, s in found.items()} == PARAMETERS
+    assert names.pop("params_ros1.yaml") == "/arm/arm_controller_node"
+    assert set(names.values()) == {"arm_controller_node"}
 
 
 @pytest.fixture
@@ -50,7 +72,7 @@ def test_publishes_the_pose_of_its_file_exactly_once(robot, run, until):
     commands = robot.listen()
     robot.describe()
     robot.broadcast()
-    program = run(MODULE, "--ros-args", "--params-file", str(CONFIG / "params.yaml"))
+    program = run(NAME, "--ros-args", "--params-file", str(CONFIG / "params.yaml"))
     program.wait_for("Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]")
     # Two prints of the joint states later it would have been published again, if ever.
     until(lambda: program.output.count("Joint State: 'j3'") >= 3, "three prints")
@@ -63,7 +85,7 @@ def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
     commands = robot.listen()
     robot.positions.update(j0=0.1, j1=-0.2, j2=0.3, j3=1.5)
     robot.broadcast()
-    program = run(MODULE, print_period=0.2)
+    program = run(NAME, print_period=0.2)
     program.wait_for("Joint State: 'j3'")
     for name, position in robot.positions.items():
         assert (
@@ -77,7 +99,7 @@ def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
 def test_publishes_repeatedly_at_a_rate_and_logs_it_once(robot, run, until):
     commands = robot.listen()
     robot.describe()
-    program = run(MODULE, publish_rate=50, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(NAME, publish_rate=50, desired_param="[0.1, 0.2, 0.3, 0.4]")
     until(lambda: len(commands) >= 10, "ten commands")
     assert commands[9] == [0.1, 0.2, 0.3, 0.4]
     assert program.output.count("Publishing positions") == 1
@@ -87,7 +109,7 @@ def test_logs_each_publication_if_told_to(robot, run, until):
     commands = robot.listen()
     robot.describe()
     program = run(
-        MODULE, publish_rate=20, log_each_publication=True, desired_param="[0.1, 0.2, 0.3, 0.4]"
+        NAME, publish_rate=20, log_each_publication=True, desired_param="[0.1, 0.2, 0.3, 0.4]"
     )
     line = "Publishing positions: [0.100000, 0.200000, 0.300000, 0.400000]"
     until(lambda: program.output.count(line) >= 3, "three lines")
@@ -100,7 +122,7 @@ def test_prints_the_header_and_the_lines_of_its_format(robot, run, until):
     robot.positions.update(j0=0.1, j1=-0.2)
     robot.broadcast()
     program = run(
-        MODULE,
+        NAME,
         print_period=0.1,
         print_header="'Joint States:'",
         print_format="'{name} ({index}): {position}'",
@@ -123,7 +145,7 @@ def test_prints_the_header_and_the_lines_of_its_format(robot, run, until):
 def test_a_course_has_its_own_pose_and_prints(robot, run, until, course, pose, lines):
     robot.positions.update(j0=0.1)
     robot.broadcast()
-    program = run(MODULE, course=course)
+    program = run(NAME, course=course)
     for line in lines:
         program.wait_for(line)
     commands = robot.listen()
@@ -136,7 +158,7 @@ def test_a_course_has_its_own_pose_and_prints(robot, run, until, course, pose, l
 
 def test_course_s2_logs_each_publication(robot, run, until):
     robot.listen()
-    program = run(MODULE, course="S2")
+    program = run(NAME, course="S2")
     line = "Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]"
     until(lambda: program.output.count(line) >= 2, "two publications")
     assert program.interrupt() == 0
@@ -144,7 +166,7 @@ def test_course_s2_logs_each_publication(robot, run, until):
 
 def test_course_s0_prints_thirty_times_a_second(robot, run, until):
     robot.broadcast()
-    program = run(MODULE, course="S0")
+    program = run(NAME, course="S0")
     until(lambda: program.output.count("Joint States:") >= 31, "a second of prints")
     lines = [line for line in program.output.splitlines() if line.endswith("Joint States:")]
     stamps = [float(line.split("[")[2].partition("]")[0]) for line in lines[:31]]
@@ -154,7 +176,7 @@ def test_course_s0_prints_thirty_times_a_second(robot, run, until):
 def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pose):
     commands = robot.listen()
     robot.describe()
-    run(MODULE, print_period=0)
+    run(NAME, print_period=0)
     assert set_pose(until, double_array_value=[0.1, 0.2, 0.3, 0.4]).successful
     until(lambda: len(commands) == 1, "the first pose")
     assert set_pose(until, integer_array_value=[1, 0, 0, -1]).successful
@@ -167,7 +189,7 @@ def test_each_setting_of_the_parameter_publishes_once(robot, run, until, set_pos
 def test_refuses_poses_with_a_reason_and_keeps_the_old_one(robot, run, until, set_pose):
     commands = robot.listen()
     robot.describe()
-    program = run(MODULE, print_period=0, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(NAME, print_period=0, desired_param="[0.1, 0.2, 0.3, 0.4]")
     # Once this is published, the description is known.
     until(lambda: len(commands) == 1, "the first pose")
     refusals = [
@@ -188,7 +210,7 @@ def test_refuses_poses_with_a_reason_and_keeps_the_old_one(robot, run, until, se
 def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
     commands = robot.listen()
     robot.describe()
-    program = run(MODULE, print_period=0, desired_param="[-5.0, 0.5, -1.2, -1.0]")
+    program = run(NAME, print_period=0, desired_param="[-5.0, 0.5, -1.2, -1.0]")
     program.wait_for(
         "Not publishing [-5.000000, 0.500000, -1.200000, -1.000000]: joint 'j0' cannot go to "
         "-5 rad: its limits are -2.57 to 2.57 rad"
@@ -198,7 +220,7 @@ def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
 
 
 def test_warns_without_a_subscriber_and_publishes_when_the_controller_comes(robot, run, until):
-    program = run(MODULE, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(NAME, desired_param="[0.1, 0.2, 0.3, 0.4]")
     program.wait_for("is the position_controller active?")
     assert "nobody listens on /position_controller/commands" in program.output
     program.wait_for("/joint_states has been silent for 5 s")
@@ -208,7 +230,7 @@ def test_warns_without_a_subscriber_and_publishes_when_the_controller_comes(robo
 
 
 def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
-    program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(NAME, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
     # As `ros2 param set ... "[]"` sends it: an empty list has no type of its own.
     assert set_pose(until, bool_array_value=[]).successful
     robot.broadcast()
@@ -220,7 +242,7 @@ def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
 
 def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until):
     seen = robot.listen("recorder")
-    program = run(MODULE, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
+    program = run(NAME, print_period=0.1, desired_param="[0.1, 0.2, 0.3, 0.4]")
     until(lambda: robot.sees("arm_controller_node"), "the node")
     commands = robot.listen("position_controller")
     until(lambda: commands and seen, "the pose at both")
@@ -232,6 +254,7 @@ def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until
     ("parameters", "sentence"),
     [
         ({"desired_param": "[0.1, 0.2]"}, "parameter desired_param: a pose is 4 numbers"),
+        ({"desired_param": "home"}, "desired_param: must be a list of 4 numbers, not 'home'"),
         ({"desired_param": "[.nan, 0.0, 0.0, 0.0]"}, "joint 'j0' cannot go to nan"),
         (
             {"print_period": "-1"},
@@ -251,7 +274,7 @@ def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until
     ],
 )
 def test_a_start_with_nonsense_ends_with_a_sentence(run, parameters, sentence):
-    program = run(MODULE, **parameters)
+    program = run(NAME, **parameters)
     assert program.wait() == 1
     assert sentence in program.output
     assert "Traceback" not in program.output

@@ -2,10 +2,11 @@
 
 import asyncio
 import logging
+from types import SimpleNamespace
 
 import pytest
 
-from arm_controller.arm_gripper_loop import CLOSED, HOME, OPEN, TARGET, run_once
+from arm_controller.arm_gripper_loop_controller_node import CLOSED, HOME, OPEN, TARGET, run_once
 
 
 class FakeRobot:
@@ -18,18 +19,20 @@ class FakeRobot:
     async def connect(self) -> None:
         self.did.append("connect")
 
-    async def move_arm(self, positions: tuple[float, ...]) -> str | None:
-        return self._move(positions)
+    async def follow(self, path) -> str | None:
+        (point,) = path
+        assert (point.time_s, point.velocities) == (2.0, ())
+        self.did.append(point.positions)
+        return "a wall is there" if point.positions in self._blocked else None
 
-    async def move_gripper(self, position: float) -> str | None:
-        return self._move(position)
+    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
+        assert max_effort == 5.0
+        self.did.append(position)
+        is_blocked = position in self._blocked
+        return SimpleNamespace(position=-0.3, reached_goal=not is_blocked, stalled=is_blocked)
 
     async def pause(self, seconds: float) -> None:
         self.did.append("pause")
-
-    def _move(self, to: object) -> str | None:
-        self.did.append(to)
-        return "a wall is there" if to in self._blocked else None
 
 
 @pytest.fixture
@@ -38,7 +41,7 @@ def told(caplog):
 
     def run(robot: FakeRobot) -> list[tuple[str, str]]:
         with caplog.at_level(logging.INFO):
-            asyncio.run(run_once(robot))
+            asyncio.run(run_once(robot, logging.getLogger(), 2.0, 5.0))
         return [(record.levelname, record.getMessage()) for record in caplog.records]
 
     return run
@@ -65,6 +68,7 @@ def test_a_position_that_was_not_reached_is_logged_and_the_loop_goes_on(told):
     robot = FakeRobot(TARGET, CLOSED)
     said = told(robot)
     assert ("ERROR", "Target position not reached: a wall is there") in said
-    assert ("WARNING", "Closing gripper: a wall is there") in said
+    stopped = "Closing gripper: stopped at -0.300 rad, something is in the way"
+    assert ("WARNING", stopped) in said
     assert not any("Reached target" in text for _, text in said)
     assert ("INFO", "Reached home position - Pausing") in said

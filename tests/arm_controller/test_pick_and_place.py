@@ -4,25 +4,34 @@ import asyncio
 import logging
 
 import pytest
+from control_msgs.action import GripperCommand
 
-from arm_controller.errors import PickError
-from arm_controller.joint_path import JointPath, path_to
-from arm_controller.mycobot import CLOSED, WIDE_OPEN
-from arm_controller.pick_and_place import Grip, PickAndPlace
-from arm_controller.pick_plan import PickPlan, PickTask
+from arm_controller.pick_and_place_node import PickAndPlace, PickError
+from arm_controller.pick_plan import CLOSED, WIDE_OPEN, JointPath, PickPlan, PickTask, path_to
 
 NAMES = ("to_object", "approach", "up", "down", "away", "home")
 PLAN = PickPlan(
     PickTask(max_effort=2.0), **{name: path_to((float(n),), 1.0) for n, name in enumerate(NAMES)}
 )
-HELD = Grip(-0.25, reached=False, stalled=True)
-OPEN = Grip(WIDE_OPEN, reached=True, stalled=False)
+
+
+def result(position: float, reached: bool, stalled: bool) -> GripperCommand.Result:
+    return GripperCommand.Result(position=position, reached_goal=reached, stalled=stalled)
+
+
+HELD = result(-0.25, reached=False, stalled=True)
+OPEN = result(WIDE_OPEN, reached=True, stalled=False)
 
 
 class FakeRobot:
     """Records its calls; `grips` are the results of closing, one after the other."""
 
-    def __init__(self, *grips: Grip | str, blocked: str = "", opening: Grip | str = OPEN) -> None:
+    def __init__(
+        self,
+        *grips: GripperCommand.Result | str,
+        blocked: str = "",
+        opening: GripperCommand.Result | str = OPEN,
+    ) -> None:
         self.did: list[object] = []
         self._grips = list(grips)
         self._blocked = blocked
@@ -36,7 +45,7 @@ class FakeRobot:
         self.did.append(name)
         return "a wall is there" if name == self._blocked else None
 
-    async def grip(self, position: float, max_effort: float) -> Grip | str:
+    async def grip(self, position: float, max_effort: float) -> GripperCommand.Result | str:
         assert max_effort == 2.0
         self.did.append(position)
         return self._opening if position == WIDE_OPEN else self._grips.pop(0)
@@ -46,7 +55,7 @@ class FakeRobot:
 
 
 def run(robot: FakeRobot) -> None:
-    asyncio.run(PickAndPlace(robot, PLAN).run())
+    asyncio.run(PickAndPlace(robot, PLAN, logging.getLogger()).run())
 
 
 def test_the_object_is_picked_held_and_put_back(caplog):
@@ -71,11 +80,11 @@ def test_the_object_is_picked_held_and_put_back(caplog):
     ("robot", "message", "last"),
     [
         (FakeRobot(HELD, blocked="up"), "could not move up by 0.1 m: a wall is there", "up"),
-        (FakeRobot(Grip(CLOSED, True, False)), "nothing between the fingers", CLOSED),
-        (FakeRobot(HELD, Grip(CLOSED, True, False)), "nothing between the fingers", CLOSED),
-        (FakeRobot(Grip(-0.1, False, False)), "the grip ended at -0.100 rad", CLOSED),
+        (FakeRobot(result(CLOSED, True, False)), "nothing between the fingers", CLOSED),
+        (FakeRobot(HELD, result(CLOSED, True, False)), "nothing between the fingers", CLOSED),
+        (FakeRobot(result(-0.1, False, False)), "the grip ended at -0.100 rad", CLOSED),
         (FakeRobot("its action server is gone"), "did not move: its action server", CLOSED),
-        (FakeRobot(opening=Grip(0.02, False, True)), "did not open: it is at 0.020", WIDE_OPEN),
+        (FakeRobot(opening=result(0.02, False, True)), "did not open: it is at 0.020", WIDE_OPEN),
     ],
 )
 def test_a_failed_step_is_the_last_and_is_reported(robot, message, last):

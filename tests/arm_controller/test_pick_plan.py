@@ -5,10 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from arm_controller.errors import PlanError
-from arm_controller.joint_path import PathPoint, path_to, reversed_path, straight_path
-from arm_controller.mycobot import GRASP_CENTRE, HOME, JOINTS
-from arm_controller.pick_plan import PickPlan, PickTask, plan_pick
+from arm_controller.pick_plan import (
+    GRASP_CENTRE,
+    HOME,
+    JOINTS,
+    PathPoint,
+    PickPlan,
+    PickTask,
+    PlanError,
+    path_to,
+    plan_pick,
+    reversed_path,
+    straight_path,
+)
 from arm_description.errors import UrdfError
 from arm_description.kinematics.forward import forward_kinematics
 from arm_description.kinematics.inverse import InverseKinematics

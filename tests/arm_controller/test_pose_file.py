@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
+from ament_index_python.packages import get_package_share_directory
 
-from arm_controller.errors import PoseFileError
-from arm_controller.pose_file import read_pose_file
+from arm_controller.pose_file import PoseFileError, read_pose_file
 
 JOINTS = ("j0", "j1")
 
@@ -15,7 +15,7 @@ def poses_in(tmp_path):
     def read(text: str):
         path = tmp_path / "poses.yaml"
         path.write_text(text)
-        return [pose.positions for pose in read_pose_file(path, JOINTS)]
+        return list(read_pose_file(path, JOINTS))
 
     return read
 
@@ -58,3 +58,14 @@ def test_names_a_missing_file():
 def test_names_a_file_that_cannot_be_read(tmp_path):
     with pytest.raises(PoseFileError, match=f"cannot read the pose file {tmp_path}"):
         read_pose_file(tmp_path, JOINTS)
+
+
+def test_the_defined_poses_are_the_five_of_the_original():
+    file = Path(get_package_share_directory("arm_controller")) / "config/poses.yaml"
+    assert read_pose_file(file, ("j0", "j1", "j2", "j3")) == (
+        (0.5, 0.5, 0.5, 0.5),
+        (0.7, 1.4, 0.5, 0.5),
+        (0.5, 1.0, 0.6, 0.6),
+        (0.3, 0.6, 0.3, 0.3),
+        (0.0, 0.0, 0.0, 0.0),
+    )

@@ -4,7 +4,7 @@ import pytest
 
 pytestmark = pytest.mark.ros
 
-MODULE = "publisher_defined_node"
+NAME = "publisher_defined"
 FIVE_POSES = [
     [0.5, 0.5, 0.5, 0.5],
     [0.7, 1.4, 0.5, 0.5],
@@ -28,7 +28,7 @@ def test_goes_through_the_five_poses_and_ends(robot, run):
     commands = robot.listen()
     robot.describe()
     robot.broadcast()
-    program = run(MODULE)
+    program = run(NAME)
     assert program.wait() == 0
     assert commands == FIVE_POSES
     assert "Pose 5 of 5 reached after" in program.output
@@ -40,7 +40,7 @@ def test_poses_are_a_pause_apart(robot, run, poses_file):
     robot.describe()
     robot.broadcast()
     poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
-    program = run(MODULE, poses_file=poses, pause=2)
+    program = run(NAME, poses_file=poses, pause=2)
     assert program.wait() == 0
     first_ns, second_ns = robot.sent_ns
     assert len(commands) == 2
@@ -54,7 +54,7 @@ def test_course_s0_sends_poses_ten_seconds_apart_though_one_is_not_reached(robot
     robot.tick()  # Ten times as fast as time passes.
     robot.stuck.add("j2")
     poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
-    program = run(MODULE, poses_file=poses, course="S0", use_sim_time="true")
+    program = run(NAME, poses_file=poses, course="S0", use_sim_time="true")
     assert program.wait() == 1
     assert "Pose 1 of 2 not reached within 10 s" in program.output
     assert commands == [[0.1, 0.1, 0.4, 0.1], [0.2, 0.2, 0.0, 0.2]]
@@ -66,7 +66,7 @@ def test_a_joint_that_stays_behind_is_named_and_the_next_pose_comes(robot, run, 
     robot.broadcast()
     robot.stuck.add("j2")
     poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
-    program = run(MODULE, poses_file=poses, timeout=3)
+    program = run(NAME, poses_file=poses, timeout=3)
     assert program.wait() == 1
     assert (
         "Pose 1 of 2 not reached within 3 s: joint 'j2' is at 0.0000, 0.4000 rad from 0.4000"
@@ -83,7 +83,7 @@ def test_joints_too_slow_for_the_time_out_are_reported_before_and_after(robot, r
     robot.broadcast()
     robot.stuck.update({"j0", "j1"})
     poses = poses_file("poses:\n  - [1.0, 0.2, 0.0, 0.0]\n")
-    program = run(MODULE, poses_file=poses, timeout=0.5)
+    program = run(NAME, poses_file=poses, timeout=0.5)
     assert program.wait() == 1
     sentence = "joint 'j0' needs at least 10.0 s at its velocity limit of 0.1 rad/s"
     assert f"Pose 1 of 1 cannot be reached in time: {sentence}" in program.output
@@ -95,7 +95,7 @@ def test_a_pose_beyond_the_limits_is_left_out(robot, run, poses_file):
     robot.describe()
     robot.broadcast()
     poses = poses_file("poses:\n  - [0.0, 0.0, 0.0, -5]\n  - [0.1, 0.0, 0.0, 0.0]\n")
-    program = run(MODULE, poses_file=poses)
+    program = run(NAME, poses_file=poses)
     assert program.wait() == 1
     assert "is skipped: joint 'j3' cannot go to -5 rad" in program.output
     assert commands == [[0.1, 0.0, 0.0, 0.0]]
@@ -108,7 +108,7 @@ def test_the_time_out_is_of_the_simulations_clock(robot, run, poses_file):
     robot.tick()
     robot.stuck.add("j0")
     program = run(
-        MODULE, poses_file=poses_file("poses: [[1, 0, 0, 0]]"), use_sim_time=True, timeout=10
+        NAME, poses_file=poses_file("poses: [[1, 0, 0, 0]]"), use_sim_time=True, timeout=10
     )
     # Ten seconds of a clock that runs ten times as fast.
     assert program.wait() == 1
@@ -119,7 +119,7 @@ def test_says_that_the_simulations_clock_is_silent(robot, run):
     robot.listen()
     robot.describe()
     robot.broadcast()
-    program = run(MODULE, use_sim_time=True, match_timeout=5)
+    program = run(NAME, use_sim_time=True, match_timeout=5)
     assert program.wait() == 1
     assert "use_sim_time is true and /clock is silent" in program.output
 
@@ -127,13 +127,13 @@ def test_says_that_the_simulations_clock_is_silent(robot, run):
 def test_says_that_joint_states_are_silent(robot, run, poses_file):
     robot.listen()
     robot.describe()
-    program = run(MODULE, poses_file=poses_file("poses: [[1, 0, 0, 0]]"), timeout=0.5)
+    program = run(NAME, poses_file=poses_file("poses: [[1, 0, 0, 0]]"), timeout=0.5)
     assert program.wait() == 1
     assert "/joint_states is silent: is the joint_state_broadcaster active?" in program.output
 
 
 def test_gives_up_without_a_subscriber(run):
-    program = run(MODULE, match_timeout=1)
+    program = run(NAME, match_timeout=1)
     assert program.wait() == 1
     assert "nobody listens on /position_controller/commands" in program.output
     assert "5 of 5 poses not reached" in program.output
@@ -141,7 +141,7 @@ def test_gives_up_without_a_subscriber(run):
 
 def test_an_invalid_file_is_reported_with_name_and_line(run, poses_file):
     path = poses_file("poses:\n  - [0, 0, 0]\n")
-    program = run(MODULE, poses_file=path)
+    program = run(NAME, poses_file=path)
     assert program.wait() == 1
     assert f"{path}, line 2: a pose is 4 numbers" in program.output
     assert "Traceback" not in program.output
@@ -152,6 +152,6 @@ def test_ctrl_c_during_the_work_ends_it(robot, run):
     robot.describe()
     robot.broadcast()
     robot.stuck.add("j0")
-    program = run(MODULE)
+    program = run(NAME)
     program.wait_for("Pose 1 of 5: publishing positions")
     assert program.interrupt() == 0

@@ -6,7 +6,7 @@ import pytest
 
 pytestmark = pytest.mark.ros
 
-MODULE = "publisher_terminal_node"
+NAME = "publisher_terminal"
 PROMPT = "Enter the 4 Joint Variables to send (separated by spaces): "
 
 
@@ -14,7 +14,7 @@ def test_sends_every_line_of_a_pipe_and_ends_with_it(robot, run, until):
     # Deeper than the controller's, for a robot that is held up; the publisher's pace is seen below.
     commands = robot.listen(depth=10)
     robot.describe()
-    program = run(MODULE)
+    program = run(NAME)
     wanted = [[0.1 * step, 0.0, -0.1 * step, 1.0] for step in range(1, 11)]
     program.type("".join(" ".join(map(repr, pose)) + "\n" for pose in wanted))
     program.end_of_input()
@@ -28,7 +28,7 @@ def test_sends_every_line_of_a_pipe_and_ends_with_it(robot, run, until):
 def test_answers_each_typed_line(robot, run, until):
     commands = robot.listen()
     robot.describe()
-    program = run(MODULE)
+    program = run(NAME)
     program.wait_for(PROMPT)
     program.type("0.4 -0.1 0.5 0.4\n")
     program.wait_for("Publishing: [0.400000, -0.100000, 0.500000, 0.400000]")
@@ -43,21 +43,21 @@ def test_answers_each_typed_line(robot, run, until):
 
 
 def test_ctrl_c_at_the_prompt_ends_it(run):
-    program = run(MODULE)
+    program = run(NAME)
     program.wait_for(PROMPT)
     assert program.interrupt() == 0
     assert "Traceback" not in program.output
 
 
 def test_ctrl_c_while_a_line_waits_ends_it(run):
-    program = run(MODULE)
+    program = run(NAME)
     program.type("0 0 0 0\n")
     program.wait_for(PROMPT)
     assert program.interrupt() == 0
 
 
 def test_a_line_without_a_subscriber_fails_with_a_sentence(run):
-    program = run(MODULE, match_timeout=1)
+    program = run(NAME, match_timeout=1)
     program.type("0 0 0 0\n")
     program.end_of_input()
     assert program.wait() == 1

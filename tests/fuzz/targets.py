@@ -13,7 +13,7 @@ import seeds
 
 from arm_cli.errors import ArmCliError
 from arm_control.errors import ArmControlError
-from arm_controller.errors import PoseFileError
+from arm_controller.pose_file import PoseFileError
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError
 from launch_py.errors import LaunchError

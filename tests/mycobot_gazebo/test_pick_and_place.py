@@ -5,19 +5,18 @@ is what its pose shows.
 """
 
 import asyncio
+import logging
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from arm_control.controllers.goals import GoalOutcome
-from arm_controller.arm_gripper_loop import run_once
-from arm_controller.errors import PickError
-from arm_controller.joint_path import JointPath, PathPoint
-from arm_controller.mycobot import JOINTS
-from arm_controller.pick_and_place import Grip, PickAndPlace
-from arm_controller.pick_plan import PickPlan, PickTask, plan_pick
+from arm_controller.arm_gripper_loop_controller_node import run_once
+from arm_controller.pick_and_place_node import PickAndPlace, PickError
+from arm_controller.pick_plan import JOINTS, JointPath, PickPlan, PickTask, plan_pick
 from arm_description import Robot, expand_xacro, parse_urdf, resolve_uri
 from arm_sim import NAMED_ROBOTS, Goal, JointTrajectory, Simulation
 
@@ -30,6 +29,7 @@ SEED = 280
 LONGEST_S = 30.0
 LOOP_S = 2.0
 PADS = {"gripper_left1", "gripper_right1"}
+LOGGER = logging.getLogger("robot")
 ARM, GRIPPER = "arm_controller", "gripper_action_controller"
 
 
@@ -65,7 +65,7 @@ class Track:
 
 
 class SteppedRobot:
-    """A `PickingRobot`, and an `ArmWithGripper`, in the simulation; time passes while it moves.
+    """Stands for `ArmActions`, in the simulation; time passes while it moves.
 
     Args:
         links: the robot's links.
@@ -120,16 +120,11 @@ class SteppedRobot:
         end = self._ended(goal)
         return None if end.outcome is GoalOutcome.SUCCEEDED else end.message
 
-    async def grip(self, position: float, max_effort: float) -> Grip | str:
+    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
         end = self._ended(self.sim[GRIPPER].grip(position, max_effort))
-        return Grip(end.state.position, end.reached_goal, end.stalled)
-
-    async def move_arm(self, positions: tuple[float, ...]) -> str | None:
-        return await self.follow((PathPoint(LOOP_S, positions, ()),))
-
-    async def move_gripper(self, position: float) -> str | None:
-        grip = await self.grip(position, 5.0)
-        return None if isinstance(grip, Grip) and grip.reached else f"stopped: {grip}"
+        return SimpleNamespace(
+            position=end.state.position, reached_goal=end.reached_goal, stalled=end.stalled
+        )
 
     async def pause(self, seconds: float) -> None:
         before = len(self.track.heights)
@@ -166,36 +161,36 @@ def assert_held_and_put_back(robot: SteppedRobot, task: PickTask) -> None:
 @pytest.mark.parametrize("offset", offsets(), ids=lambda o: f"{o[0] * 1e3:.1f}_{o[1] * 1e3:.1f}mm")
 def test_the_cylinder_is_lifted_held_and_put_back_wherever_it_stands(links, plan, offset):
     robot = SteppedRobot(links, offset)
-    asyncio.run(PickAndPlace(robot, plan).run())
+    asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
     assert_held_and_put_back(robot, plan.task)
 
 
 def test_a_hard_grip_holds_as_well(links, plan):
     robot = SteppedRobot(links, (0.003, -0.004))
     hard = replace(plan, task=replace(plan.task, max_effort=8.0))
-    asyncio.run(PickAndPlace(robot, hard).run())
+    asyncio.run(PickAndPlace(robot, hard, LOGGER).run())
     assert_held_and_put_back(robot, plan.task)
 
 
 def test_nothing_but_friction_lifts_it(links, plan):
     robot = SteppedRobot(links)
     robot.sim.parts.physics.model.geom_friction[:, 0] = 0.01
-    asyncio.run(PickAndPlace(robot, plan).run())
+    asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
     assert max(robot.track.heights) < 0.01
 
 
 def test_an_object_that_is_not_there_is_missed(links, plan):
     robot = SteppedRobot(links, (0.0, -0.4))
     with pytest.raises(PickError, match="nothing between the fingers: they closed all the way"):
-        asyncio.run(PickAndPlace(robot, plan).run())
+        asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
     assert max(map(abs, robot.track.heights)) < 1e-3
 
 
 def test_the_loop_of_arm_and_gripper_touches_nothing(links, caplog):
     robot = SteppedRobot(links)
     caplog.clear()
-    asyncio.run(run_once(robot))
-    asyncio.run(run_once(robot))
+    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
+    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
     assert caplog.messages == [], "every place was reached"
     assert robot.track.touched == set()
     assert robot.moved() == set()
@@ -203,5 +198,5 @@ def test_the_loop_of_arm_and_gripper_touches_nothing(links, caplog):
 
 def test_a_thing_in_the_way_of_the_loop_is_seen_to_be_hit(links):
     robot = SteppedRobot(links, (-0.48, -0.03))
-    asyncio.run(run_once(robot))
+    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
     assert robot.moved() == {OBJECT}

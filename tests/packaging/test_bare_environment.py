@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -11,7 +12,7 @@ pytestmark = pytest.mark.ros
 
 def test_runs_without_home_and_without_any_ros_variable(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "arm_controller.publisher_terminal_node"],
+        [Path(sys.executable).with_name("publisher_terminal")],
         env={"ROS_DOMAIN_ID": os.environ["ROS_DOMAIN_ID"], "TMPDIR": str(tmp_path)},
         cwd=tmp_path,
         stdin=subprocess.DEVNULL,

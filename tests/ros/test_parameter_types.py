@@ -14,18 +14,17 @@ import yaml
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
-from std_msgs.msg import Float64MultiArray
 
 from arm_control.controllers.controller import ControllerContext
 from arm_control.manager.registry import controller_class
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
 from arm_control.manager.ros.controller_node import ControllerNode
-from arm_controller.ros.arm_controller import ArmController
-from arm_controller.ros.arm_gripper_loop_controller import ArmGripperLoopController
-from arm_controller.ros.command_sequence import CommandSequence
-from arm_controller.ros.pick_and_place import PickAndPlaceNode
-from arm_controller.ros.publisher_defined import PublisherDefined
-from arm_controller.ros.publisher_terminal import PublisherTerminal
+from arm_controller.arm_controller_node import ArmController
+from arm_controller.arm_gripper_loop_controller_node import ArmGripperLoopController
+from arm_controller.command_sequence_node import gripper_example
+from arm_controller.pick_and_place_node import PickAndPlaceNode
+from arm_controller.publisher_defined_node import PublisherDefined
+from arm_controller.publisher_terminal_node import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_description.static_transform_publisher_node import _node as static_transform
@@ -82,11 +81,9 @@ MAKERS: dict[str, Callable[[], Node]] = {
     "ArmController": ArmController,
     "PublisherTerminal": lambda: PublisherTerminal(PROCESS),
     "PublisherDefined": lambda: PublisherDefined(PROCESS),
-    "ArmGripperLoopController": ArmGripperLoopController,
-    "PickAndPlaceNode": PickAndPlaceNode,
-    "CommandSequence": lambda: CommandSequence(
-        PROCESS, "gripper_test_node", "commands", Float64MultiArray, iter(()), 1.0
-    ),
+    "ArmGripperLoopController": lambda: ArmGripperLoopController(PROCESS),
+    "PickAndPlaceNode": lambda: PickAndPlaceNode(PROCESS),
+    "CommandSequence": lambda: gripper_example(PROCESS),
     "ControllerManagerNode": lambda: ControllerManagerNode(["manager", *given_arguments()]),
     "arm_gazebo": simulation_node,
     "static_transform_publisher": lambda: static_transform(

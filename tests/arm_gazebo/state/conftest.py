@@ -1,8 +1,10 @@
 """Robots whose runs are saved and restored: all that the node runs, without ROS."""
 
 import asyncio
+import logging
 from collections.abc import Callable, Mapping
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,9 +17,8 @@ from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoin
 from arm_control.hardware.info import parse_hardware_info
 from arm_control.manager.registry import controller_class
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
-from arm_controller.mycobot import JOINTS
-from arm_controller.pick_and_place import Grip, PickAndPlace
-from arm_controller.pick_plan import PickTask, plan_pick
+from arm_controller.pick_and_place_node import PickAndPlace
+from arm_controller.pick_plan import JOINTS, PickTask, plan_pick
 from arm_description.resources import resolve_uri
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Pose
@@ -34,6 +35,7 @@ from arm_gazebo.sensors.reader import parse_link_sensors
 from arm_gazebo.state.complete_state import CompleteState
 
 RATE_HZ = 100
+LOGGER = logging.getLogger("pick")
 IMU = """<gazebo reference="{link}"><sensor name="imu" type="imu"><update_rate>40</update_rate>
   <topic>imu</topic><imu><angular_velocity><x><noise type="gaussian"><stddev>0.01</stddev>
   <bias_stddev>0.01</bias_stddev></noise></x></angular_velocity></imu></sensor></gazebo>"""
@@ -178,7 +180,7 @@ class Reached(Exception):
 
 
 class Picking:
-    """A `PickingRobot` that runs up to a tick. Its goals are those of a pick."""
+    """Stands for `ArmActions`, and runs up to a tick. Its goals are those of a pick."""
 
     def __init__(self, robot: RunningRobot, ticks: int) -> None:
         self._robot = robot
@@ -194,11 +196,15 @@ class Picking:
         result = self._carry_out("arm", lambda goal: GoalRequest(goal, request))
         return None if result.outcome is GoalOutcome.SUCCEEDED else result.message
 
-    async def grip(self, position: float, max_effort: float) -> Grip | str:
+    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
         result = self._carry_out(
             "gripper", lambda goal: GripperRequest(goal, [position], [max_effort])
         )
-        return Grip(result.state.position, result.reached_goal, result.stalled)
+        return SimpleNamespace(
+            position=result.state.position,
+            reached_goal=result.reached_goal,
+            stalled=result.stalled,
+        )
 
     async def pause(self, seconds: float) -> None:
         self._run(round(seconds * RATE_HZ))
@@ -226,7 +232,7 @@ def pick() -> Callable[[RunningRobot, int], None]:
 
     def run(robot: RunningRobot, ticks: int) -> None:
         with pytest.raises(Reached):
-            asyncio.run(PickAndPlace(Picking(robot, ticks), plan).run())
+            asyncio.run(PickAndPlace(Picking(robot, ticks), plan, LOGGER).run())
 
     return run
 

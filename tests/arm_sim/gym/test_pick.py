@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from arm_controller.joint_path import JointPath
-from arm_controller.mycobot import CLOSED, WIDE_OPEN
-from arm_controller.pick_plan import PickTask, plan_pick
+from arm_controller.pick_plan import CLOSED, WIDE_OPEN, JointPath, PickTask, plan_pick
 from arm_description.urdf.parser import parse_urdf
 from arm_sim.gym import ArmPick, BatchEnv
 

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -54,7 +55,7 @@ def pick(*parameters: str) -> subprocess.CompletedProcess[str]:
     """Run the node until it ends."""
     words = [word for parameter in parameters for word in ("-p", parameter)]
     return subprocess.run(
-        [sys.executable, "-m", "arm_controller.pick_and_place_node", "--ros-args", *words],
+        [Path(sys.executable).with_name("mycobot_pick_and_place"), "--ros-args", *words],
         env=os.environ,
         capture_output=True,
         text=True,

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_controller.joint_path import PathPoint
+from arm_controller.pick_plan import PathPoint
 
 ARM_ACTION = "arm_controller/follow_joint_trajectory"
 GRIPPER_ACTION = "gripper_action_controller/gripper_cmd"
@@ -35,6 +35,7 @@ class ArmActions:
     def __init__(self, node: Node, joints: Sequence[str]) -> None:
         self._node = node
         self._joints = list(joints)
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._arm = ActionClient(node, FollowJointTrajectory, ARM_ACTION)
         self._gripper = ActionClient(node, GripperCommand, GRIPPER_ACTION)
         self._running_goal: ClientGoalHandle | None = None
@@ -47,16 +48,16 @@ class ArmActions:
         logger.info("Waiting for action servers...")
         polls = 0
         while missing := self._missing():
-            await self.wait(POLL_S, Clock(clock_type=ClockType.STEADY_TIME))
+            await self.pause(POLL_S, self._steady)
             polls += 1
             if polls % round(REMINDER_S / POLL_S) == 0:
                 names = " and ".join(missing)
                 logger.warning(f"no action server for {names}: does the robot run?")
         logger.info("Action servers connected!")
 
-    async def follow(self, points: Sequence[PathPoint]) -> str | None:
+    async def follow(self, path: Sequence[PathPoint]) -> str | None:
         """Move the arm; return why it did not reach its goal, or None."""
-        trajectory = JointTrajectory(joint_names=self._joints, points=list(map(_message, points)))
+        trajectory = JointTrajectory(joint_names=self._joints, points=list(map(_message, path)))
         result = await self._carry_out(self._arm, FollowJointTrajectory.Goal(trajectory=trajectory))
         if isinstance(result, str):
             return result
@@ -70,10 +71,12 @@ class ArmActions:
         goal.command.position, goal.command.max_effort = position, max_effort
         return await self._carry_out(self._gripper, goal)
 
-    async def wait(self, seconds: float, clock: Clock) -> None:
-        """Return after a time on a clock."""
+    async def pause(self, seconds: float, clock: Clock | None = None) -> None:
+        """Return after a time on a clock, by default the node's."""
         over = Future(executor=self._node.executor)
-        timer = self._node.create_timer(seconds, lambda: over.set_result(None), clock=clock)
+        timer = self._node.create_timer(
+            seconds, lambda: over.set_result(None), clock=clock or self._node.get_clock()
+        )
         await over
         self._node.destroy_timer(timer)
 
@@ -110,7 +113,7 @@ class ArmActions:
         while not future.done():
             if not client.server_is_ready():
                 return None
-            await self.wait(POLL_S, Clock(clock_type=ClockType.STEADY_TIME))
+            await self.pause(POLL_S, self._steady)
         return future.result()
 
 
