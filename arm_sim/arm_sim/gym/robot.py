@@ -1,14 +1,12 @@
 """A simulated robot for environments: the joints with one command interface, one controller."""
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import fspath
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from arm_control.hardware.info import parse_hardware_info
@@ -81,13 +79,11 @@ class CommandedRobot:
         """
         self.periods = options.periods()
         names = _commanded(options, interface)
-        with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, "controllers.yaml")
-            with open(file, "w", encoding="utf-8") as stream:
-                yaml.safe_dump(_controllers(names, interface, options.control_rate_hz), stream)
-            self.simulation = Simulation(
-                options.description, controllers=file, **options.simulation
-            )
+        self.simulation = Simulation(
+            options.description,
+            controllers=_controllers(names, interface, options.control_rate_hz),
+            **options.simulation,
+        )
         physics = self.simulation.parts.physics
         self.joints: tuple[RobotJoint, ...] = tuple(physics.built.joints[name] for name in names)
         driven = [joint.name for joint in physics.servo.joints]
