@@ -1,14 +1,17 @@
-"""viser's server, restricted to this machine: its address, its request gate, start and end."""
+"""viser's server, restricted to this machine: address, request gate, start and end."""
 
 import errno
 import http
 import logging
 import os
+import re
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
+from importlib.resources import files
 from typing import Any
+from urllib.parse import quote, urlsplit
 
 import rich
 import viser
@@ -19,8 +22,6 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from arm_viewer.errors import PageError
-from arm_viewer.front.served_page import served_page
-from arm_viewer.request_gate import SECURITY_HEADERS, reason_to_refuse
 from arm_viewer.typed_numbers import PATH, Take, serve_typed_numbers
 
 HOST = "127.0.0.1"
@@ -207,3 +208,83 @@ def _answer(inner: Answer, connection: ServerConnection, request: Request) -> Re
         response.headers.update(SECURITY_HEADERS)
         response.headers[OWNER_HEADER] = f"{os.getuid()} {os.environ.get('ROS_DOMAIN_ID') or 0}"
     return response
+
+
+LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
+
+SECURITY_HEADERS = {
+    # All content comes from the page itself, and no site may embed it in a frame (clickjacking).
+    "Content-Security-Policy": (
+        "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "
+        "connect-src 'self' data: blob:; frame-ancestors 'none'"
+    ),
+    "X-Frame-Options": "DENY",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+"""Headers of every response."""
+
+
+def reason_to_refuse(hosts: list[str], origins: list[str]) -> str | None:
+    """Return why a request is refused, in a sentence, or None to accept it.
+
+    The page drives an arm, and every web site that the user visits could open connections to this
+    machine. Two headers that a site's scripts cannot change identify such a site. A browser sends
+    the Origin with every WebSocket request, and it must be the page's own. A site may also point
+    its own name to this machine ("DNS rebinding") and so become the same origin. Its name is then
+    in the Host header, so Host must be a name of this machine. Other programs are accepted.
+
+    The port is not compared with the server's, because a tunnel (`ssh -L`) may have another one at
+    the user's end.
+
+    Args:
+        hosts: values of the request's Host headers.
+        origins: values of the request's Origin headers.
+    """
+    if len(hosts) != 1 or not _is_loopback(hosts[0]):
+        return (
+            f"this page is only for this machine, not for {_listed(hosts)}; "
+            "open it as http://127.0.0.1 or http://localhost with its port"
+        )
+    if any(origin != f"http://{hosts[0]}" for origin in origins):
+        return f"a page of {_listed(origins)} may not use this one, which is http://{hosts[0]}"
+    return None
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return urlsplit(f"//{host}").hostname in LOOPBACK_NAMES
+    except ValueError:
+        return False
+
+
+def _listed(values: list[str]) -> str:
+    return ", ".join(map(repr, values)) or "an unnamed host"
+
+
+TITLE = "Arm suite"
+SCRIPTS = ("typed_numbers.js", "quiet.js")
+_ICON = re.compile(r'<link\s+rel="icon"\s[^>]*>', re.DOTALL)
+_TITLE = re.compile(r"<title>[^<]*</title>")
+_HEAD_END = "</head>"
+
+
+@cache
+def served_page(html: str) -> str:
+    """Return viser's page with the project's additions.
+
+    Args:
+        html: viser's index.html.
+    """
+    icon = f'<link rel="icon" href="data:image/svg+xml,{quote(_read_asset("icon.svg"))}" />'
+    scripts = "".join(f"<script>{_read_asset(name)}</script>" for name in SCRIPTS)
+    own = f"<style>{_read_asset('page.css')}</style>{scripts}"
+    # A function, because `sub` would interpret backslashes in a replacement string.
+    html = _ICON.sub(lambda _: icon, html, count=1)
+    html = _TITLE.sub(lambda _: f"<title>{TITLE}</title>", html, count=1)
+    head, end, rest = html.partition(_HEAD_END)
+    return f"{head}{own}{end}{rest}"
+
+
+def _read_asset(name: str) -> str:
+    return files("arm_viewer.front").joinpath(name).read_text(encoding="utf-8")

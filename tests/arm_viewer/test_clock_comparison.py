@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_viewer.clock_comparison import ClockComparison
+from arm_viewer.ros.clock_observer import ClockComparison
 
 
 def compare(readings):

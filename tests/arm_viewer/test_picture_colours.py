@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arm_viewer.errors import PictureError
-from arm_viewer.picture_colours import MAX_PIXELS_WIDE, colours
+from arm_viewer.panels.camera_panel import MAX_PIXELS_WIDE, colours
 from arm_viewer.snapshot import Picture
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_viewer.request_gate import reason_to_refuse
+from arm_viewer.page_server import reason_to_refuse
 
 PAGE = "127.0.0.1:8080"
 

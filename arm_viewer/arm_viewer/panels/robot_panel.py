@@ -10,8 +10,7 @@ from arm_node.names import listing
 from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.first_view import Contents, FirstView
-from arm_viewer.scene.frame_poses import assumed_transforms, unknown_joints
-from arm_viewer.scene.frames import Frames, node_name
+from arm_viewer.scene.frames import Frames, assumed_transforms, node_name, unknown_joints
 from arm_viewer.scene.markers import Markers
 from arm_viewer.scene.robot_model import COLLISION, INERTIA, MASS, VISUAL, RobotModel
 from arm_viewer.snapshot import Description, Snapshot, Transform, frame_name

@@ -1,4 +1,4 @@
-"""Move joints through their active controllers."""
+"""Move joints through their active controllers, or publish them if no robot is running."""
 
 import uuid
 from collections.abc import Callable
@@ -12,11 +12,13 @@ from std_msgs.msg import Float64, Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from unique_identifier_msgs.msg import UUID
 
+from arm_description.publishers.joint_state_merge import JointStateMerge
+from arm_description.publishers.settings import JointPublisherSettings
 from arm_viewer.joint_move import DriveKind, JointDrive, JointMove, joint_drives, plan_moves
 from arm_viewer.requests import MoveJoints
 from arm_viewer.ros.observer import TopicTypes, type_name, used_types
 from arm_viewer.ros.service_caller import ServiceCaller
-from arm_viewer.snapshot import Snapshot
+from arm_viewer.snapshot import Description, Snapshot
 
 MESSAGES = {
     DriveKind.POSITIONS: Float64MultiArray,
@@ -147,3 +149,50 @@ class JointCommander:
 
 def _sender(node: Node, drive: JointDrive) -> _PositionPublisher | _GripperGoals:
     return (_GripperGoals if drive.kind in ACTIONS else _PositionPublisher)(node, drive)
+
+
+PERIOD_S = 0.1
+
+
+class JointStateSource:
+    """Replaces joint_state_publisher_gui in its node's namespace.
+
+    It publishes ten times a second, and immediately when a slider moves. Use it only in the
+    executor's thread.
+    """
+
+    def __init__(self, node: Node, latest: Callable[[], Snapshot]) -> None:
+        """Publish for the snapshot's robot in the node's namespace."""
+        self.namespace = node.get_namespace().rstrip("/")
+        self._node = node
+        self._latest = latest
+        self._described: Description | None = None
+        self._merge: JointStateMerge | None = None
+        self._publisher = node.create_publisher(JointState, "joint_states", _QUEUE)
+        node.create_timer(PERIOD_S, self._publish)
+
+    def move(self, request: MoveJoints) -> None:
+        """Take new positions, and publish them."""
+        if self._merge is not None and request.namespace == self.namespace:
+            self._merge.merge(list(request.positions), list(request.positions.values()), (), ())
+            self._publish()
+
+    def _publish(self) -> None:
+        self._renew()
+        if self._merge is None:
+            return
+        state = self._merge.state()
+        if not state.names:
+            return
+        message = JointState(name=list(state.names), position=list(state.positions))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._publisher.publish(message)
+
+    def _renew(self) -> None:
+        described = self._latest().descriptions.get(f"{self.namespace}/robot_description")
+        if described is self._described:
+            return
+        self._described = described
+        self._merge = None
+        if described is not None and described.robot is not None:
+            self._merge = JointStateMerge(described.robot.joints, JointPublisherSettings())

@@ -24,15 +24,12 @@ from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver, ManagerCaller
-from arm_viewer.ros.description_observer import DescriptionObserver
 from arm_viewer.ros.graph_observer import NodeObserver, TopicObserver
-from arm_viewer.ros.hardware_observer import HardwareObserver
-from arm_viewer.ros.joint_commander import JointCommander
-from arm_viewer.ros.joint_state_observer import JointStateObserver
-from arm_viewer.ros.joint_state_source import JointStateSource
+from arm_viewer.ros.joint_commander import JointCommander, JointStateSource
+from arm_viewer.ros.joint_observer import HardwareObserver, JointStateObserver
 from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.observer import Observer
-from arm_viewer.ros.transform_observer import TransformObserver
+from arm_viewer.ros.robot_observer import DescriptionObserver, TransformObserver
 from arm_viewer.snapshot import ListedController, Snapshot
 
 TICK_S = 1.0 / 30.0

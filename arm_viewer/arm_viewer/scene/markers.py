@@ -12,8 +12,8 @@ from arm_description.mesh.data import MeshData, merged
 from arm_description.urdf.robot import Box, Cylinder, Mesh, Sphere
 from arm_description.view_fitting import Body, body_of
 from arm_node.rigid_transform import RigidTransform, rotated
+from arm_viewer.scene.first_view import Obstacles
 from arm_viewer.scene.frames import Frames, node_name
-from arm_viewer.scene.obstacles import Obstacles
 from arm_viewer.scene.triangles import smooth, triangles
 from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from arm_description.view_fitting import Body, View
-from arm_viewer.scene.first_view import Contents, FirstView
-from arm_viewer.scene.obstacles import Obstacles
+from arm_viewer.scene.first_view import Contents, FirstView, Obstacles
 
 NOTHING = Obstacles(np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, 3)), [])
 ROBOT = Body((-0.5, -0.5, 0.0), (0.5, 0.5, 0.5))
