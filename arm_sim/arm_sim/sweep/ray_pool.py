@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from tempfile import TemporaryDirectory
+from threading import Thread
 from typing import Any
 
 from arm_gazebo.state.made_with import made_with
@@ -68,9 +69,10 @@ class RayPool:
         self._none_since_s = time.monotonic()
         self._sized_s = -math.inf
         self._size = 0
+        self._sizing = Thread()
 
     def size(self) -> int:
-        """Return how many processors the cluster has now, or the given limit.
+        """Return how many processors the cluster had lately, or the given limit; 0 at first.
 
         Raises:
             StudyError: the head of the cluster has gone.
@@ -78,10 +80,16 @@ class RayPool:
         self._news.head.check()
         if not self._news.head.answers():
             return 0
-        if time.monotonic() - self._sized_s > SIZE_EVERY_S:
+        if not self._sizing.is_alive() and time.monotonic() - self._sized_s > SIZE_EVERY_S:
+            # In a thread of its own: the call waits for a head that goes meanwhile.
+            self._sizing = Thread(target=self._ask_size, daemon=True)
+            self._sizing.start()
+        return self._size
+
+    def _ask_size(self) -> None:
+        with suppress(RayError):
             self._size = int(min(ray.cluster_resources().get("CPU", 0), self._most))
             self._sized_s = time.monotonic()
-        return self._size
 
     def add(self) -> "_RayWorker":
         """Start a worker; the cluster does so as soon as one of its processors is free."""
@@ -113,6 +121,8 @@ class RayPool:
     def close(self) -> None:
         """Leave the cluster, which ends all workers."""
         if self._news.head.answers(looks_now=True):
+            if self._sizing.is_alive():
+                self._sizing.join()
             ray.shutdown()
         else:
             atexit.register(_exit_at_once)
