@@ -11,7 +11,7 @@ from arm_sim.sweep.ray_pool import RayPool
 
 
 class Cluster:
-    """Stands for Ray: its call ends when the test says so, as Ray's waits for a head that has gone."""
+    """Stands for Ray, whose calls wait for a head that has gone; here until the test answers."""
 
     def __init__(self) -> None:
         self.asked, self.answers = Event(), Event()
