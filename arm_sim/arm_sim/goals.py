@@ -4,11 +4,30 @@ from collections.abc import Iterator, Mapping
 from itertools import count
 from typing import Any, Generic, Protocol, TypeVar
 
-from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
+from arm_control.controllers.goals import GoalEnd, GoalOutcome
 from arm_sim.errors import CallError, GoalError
 from arm_sim.user_traceback import ends_at_the_caller
 
 ResultT = TypeVar("ResultT", bound=GoalEnd)
+
+
+class GoalServer(Protocol):
+    """A controller's core that starts goals and reports their ends to a sink."""
+
+    name: str
+    sink: Any
+
+    def submit_goal(self, goal: Any, /) -> Any:
+        """Start an accepted goal; return its result if it has ended already."""
+        ...
+
+    def cancel_goal(self, goal_id: object) -> None:
+        """Cancel a goal and stop; any thread."""
+        ...
+
+    def serve_requests(self) -> None:
+        """Process the clients' requests; loop thread."""
+        ...
 
 
 @ends_at_the_caller
@@ -21,7 +40,7 @@ class Goal(Generic[ResultT]):
         feedback: the latest feedback of a trajectory; None before the first.
     """
 
-    def __init__(self, controller: GoalController, goal_id: int) -> None:
+    def __init__(self, controller: GoalServer, goal_id: int) -> None:
         self.controller = controller.name
         self.end: ResultT | None = None
         self.feedback: Any = None
@@ -53,16 +72,6 @@ class Goal(Generic[ResultT]):
         """Cancel it, and let the controller stop the motion; has no effect if it has ended."""
         self._core.cancel_goal(self._id)
         self._core.serve_requests()
-
-
-class GoalServer(GoalController, Protocol):
-    """A controller's core that starts goals and reports their ends to a sink."""
-
-    sink: Any
-
-    def submit_goal(self, goal: Any, /) -> Any:
-        """Start an accepted goal; return its result if it has ended already."""
-        ...
 
 
 class RunningGoals:
