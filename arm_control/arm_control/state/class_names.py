@@ -17,6 +17,7 @@ _SENSORS = f"{_CONTROLLERS}.sensor_broadcasters"
 
 EARLIER_NAMES: dict[str, str] = {
     f"{_CONTROLLERS}.diff_drive.speed_limits": f"{_CONTROLLERS}.diff_drive.parameters",
+    f"{_CONTROLLERS}.pid_controller.parameters": f"{_CONTROLLERS}.pid_controller.controller",
     f"{_TRAJECTORY}.goals:TrajectoryRequest": f"{_TRAJECTORY}.trajectory:TrajectoryRequest",
     f"{_TRAJECTORY}.goals:WayPoints": f"{_TRAJECTORY}.trajectory:WayPoints",
     f"{_TRAJECTORY}.tolerances": f"{_TRAJECTORY}.goals",

@@ -11,8 +11,12 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
 from std_srvs.srv import SetBool
 
-from arm_control.controllers.pid_controller.controller import STATE_FIELDS, PidController, PidTerms
-from arm_control.controllers.pid_controller.parameters import PidControllerParameters
+from arm_control.controllers.pid_controller.controller import (
+    STATE_FIELDS,
+    PidController,
+    PidControllerParameters,
+    PidTerms,
+)
 from arm_control.controllers.ros_adapter import ControllerAdapter, duration_message, time_message
 from arm_node.names import as_node_name
 from arm_node.workarounds.message_template import MessageTemplate
