@@ -159,6 +159,11 @@ def settings_of(cls: type[Any]) -> tuple[Setting, ...]:
     )
 
 
+def setting_of(cls: type[Any], attribute: str) -> Setting:
+    """Return the setting that a field of a dataclass declares."""
+    return next(each for each in settings_of(cls) if each.attribute == attribute)
+
+
 def read_settings(
     cls: type[SettingsT], parameters: Parameters, prefix: str = "", **others: object
 ) -> SettingsT:

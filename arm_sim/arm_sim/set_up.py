@@ -1,7 +1,7 @@
 """Converts a program's arguments to the settings of the simulation."""
 
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from os import fspath, pathsep
 from typing import Any
@@ -14,6 +14,7 @@ from arm_gazebo.run.robot import ManagedRobot
 from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.run.settings import SimulationSettings, simulation_settings
 from arm_node.setting import given_values
+from arm_sim.arguments import SimulationArguments
 from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
 
 
@@ -47,43 +48,26 @@ class SimulationSetup:
         return run, starter
 
 
-def set_up(
-    description: AnyPath,
-    controllers: AnyPath | Mapping[str, Any] | None,
-    arguments: Mapping[str, object],
-    spawn: Iterable[str] | None,
-    package_path: Iterable[AnyPath],
-    settings: Mapping[str, object],
-) -> SimulationSetup:
+def set_up(given: SimulationArguments) -> SimulationSetup:
     """Read the robot, and add the defaults that the launch files add.
-
-    Args:
-        description: URDF or xacro file, as a path or a URI; the text of a URDF; or a name of
-            `NAMED_ROBOTS`.
-        controllers: parameter file, or its content; None for the named robot's, or the default
-            controllers.
-        arguments: xacro arguments.
-        spawn: controllers to start; None for the named robot's, or all that can start together.
-        package_path: folders for package:// and model://.
-        settings: parameters of the simulation node by name; None for the default.
 
     Raises:
         SimSettingsError, DescriptionError, ParameterError, ParameterValueError: an argument is
             invalid.
     """
-    named = NAMED_ROBOTS.get(fspath(description))
-    robot = named or NamedRobot(fspath(description), "", ())
-    own_spawn = robot.spawn if named and controllers is None else None
-    names = own_spawn if spawn is None else spawn
+    named = NAMED_ROBOTS.get(fspath(given.description))
+    robot = named or NamedRobot(fspath(given.description), "", ())
+    own_spawn = robot.spawn if named and given.controllers is None else None
+    names = own_spawn if given.spawn is None else given.spawn
     setup = set_up_robot(
         robot.model,
-        assignments({**robot.arguments, **arguments}),
-        _controllers(robot, controllers),
+        assignments({**robot.arguments, **(given.arguments or {})}),
+        _controllers(robot, given.controllers),
         SPAWN_AUTO if names is None else ",".join(names),
-        pathsep.join(fspath(folder) for folder in package_path),
+        pathsep.join(fspath(folder) for folder in given.package_path),
     )
     return SimulationSetup(
-        simulation_settings(given_values(_values(setup, robot, settings))),
+        simulation_settings(given_values(_values(setup, robot, given))),
         ParametersByNode(read_controllers(setup.controllers), _source(setup)),
         setup.remarks,
         setup.left_out,
@@ -99,10 +83,10 @@ def _controllers(
 
 
 def _values(
-    setup: RobotSetup, robot: NamedRobot, settings: Mapping[str, object]
+    setup: RobotSetup, robot: NamedRobot, arguments: SimulationArguments
 ) -> dict[str, object]:
     """Return the values of the simulation node's parameters."""
-    given = {name: value for name, value in settings.items() if value is not None}
+    given = {name: value for name, value in arguments.parameters().items() if value is not None}
     return {"world": robot.world, "pose": robot.pose, **given, **setup.parameters()}
 
 

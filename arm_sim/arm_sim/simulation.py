@@ -81,14 +81,7 @@ class Simulation:
         # Imported here, because it takes long, and a program may never build a simulation.
         from arm_sim.set_up import set_up
 
-        setup = set_up(
-            arguments.description,
-            arguments.controllers,
-            arguments.arguments or {},
-            arguments.spawn,
-            arguments.package_path,
-            arguments.parameters(),
-        )
+        setup = set_up(arguments)
         for remark in setup.remarks:
             logger.info("%s", remark)
         if setup.left_out:

@@ -14,8 +14,8 @@ FIELD = """\
         name="gravity",
     )
 """
-BUILT = "    simulation = "
-ACTS = "    built.model.opt.gravity[2] = -settings.gravity_m_s2\n"
+BUILT = "        return cls(simulated, physics, "
+ACTS = "        physics.model.opt.gravity[2] = -settings.gravity_m_s2\n"
 
 IN_A_PROGRAM = """\
 import inspect, json
@@ -67,7 +67,7 @@ print(node_parameters_page())
 def test_a_setting_is_added_through_the_files_of_its_recipe(tmp_path):
     checkout = Checkout(tmp_path, "A setting")
     checkout.insert("arm_gazebo/arm_gazebo/run/settings.py", (FIRST, FIELD + FIRST))
-    checkout.insert("arm_gazebo/arm_gazebo/run/world.py", (BUILT, ACTS + BUILT))
+    checkout.insert("arm_gazebo/arm_gazebo/run/run.py", (BUILT, ACTS + BUILT))
     help_text = "how strongly things fall, in m/s^2; 0 for space"
 
     arguments = checkout.run_module(

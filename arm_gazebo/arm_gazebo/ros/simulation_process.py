@@ -30,18 +30,18 @@ from arm_gazebo.hardware.simulated_sensors import SensorFeed
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
 from arm_gazebo.ros.fault_parameter import FaultParameter
-from arm_gazebo.ros.live_parameters import follow_parameter
+from arm_gazebo.ros.live_parameters import follow_setting
 from arm_gazebo.ros.run_recording import RunRecording
 from arm_gazebo.run.robot import ManagedRobot, SimulatedRobot
 from arm_gazebo.run.robot_settings import RobotSettings
 from arm_gazebo.run.run import SimulationRun
-from arm_gazebo.run.settings import SimulationSettings, read_above_zero, simulation_settings
+from arm_gazebo.run.settings import SimulationSettings, simulation_settings
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.feed import WindowFeed
 from arm_node.notify import notify
-from arm_node.parameter_values import read_non_negative
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess
+from arm_node.setting import setting_of
 from arm_node.workarounds.clocks import ProcessClock
 from arm_node.workarounds.discovery import first_node
 
@@ -269,14 +269,15 @@ def _follow_partners(
     def set_timeout(timeout_s: float) -> None:
         loop.call(lambda: lock_step.set_timeout(timeout_s))
 
-    follow_parameter(node, "lockstep_timeout", read_above_zero, set_timeout)
+    follow_setting(node, setting_of(SimulationSettings, "lockstep_timeout_s"), set_timeout)
 
 
 def _follow_pace(
     node: Node, executor: Executor, loop: ControlLoop, nodes: ExitStack, ending: ExitStack
 ) -> None:
     """Let clients change the pace, and with a lock-step its partners."""
-    follow_parameter(node, "real_time_factor", read_non_negative, partial(_set_speed, loop))
+    factor = setting_of(SimulationSettings, "real_time_factor")
+    follow_setting(node, factor, partial(_set_speed, loop))
     if loop.lock_step is not None:
         _follow_partners(node, executor, loop, loop.lock_step, nodes, ending)
 

@@ -13,7 +13,7 @@ from arm_node.parameter_values import (
 )
 from arm_node.setting import Parameters, read_settings, setting
 
-read_above_zero = NumberReader("a finite number above 0", least=0.0, above=True)
+_read_above_zero = NumberReader("a finite number above 0", least=0.0, above=True)
 _read_gain = NumberReader("a number from 0 to 1", least=0.0, most=1.0)
 _SWITCH = ("true", "false")
 
@@ -78,7 +78,7 @@ class SimulationSettings(PhysicsSettings):
     lockstep_timeout_s: float = setting(
         10.0,
         "wall time without an answer that pauses the simulation",
-        read_above_zero,
+        _read_above_zero,
         unit="s",
         name="lockstep_timeout",
         changes=True,
