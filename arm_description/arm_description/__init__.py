@@ -19,7 +19,6 @@ from arm_description.errors import (
 )
 from arm_description.resources import ResourceFinder, resolve_uri
 from arm_description.urdf.joint_type import JointType
-from arm_description.urdf.mimic import Mimic
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import (
     Box,
@@ -34,6 +33,7 @@ from arm_description.urdf.robot import (
     Link,
     Material,
     Mesh,
+    Mimic,
     Pose,
     Robot,
     SafetyLimits,

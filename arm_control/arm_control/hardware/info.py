@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from arm_control.errors import HardwareInfoError
 from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.element import UrdfElement
-from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Mimic
 from arm_description.urdf.xml_document import finite_number
 
 COMPONENT_TYPES = ("system", "actuator", "sensor")

@@ -12,7 +12,7 @@ from arm_control.errors import HardwareInfoError
 from arm_control.hardware.driver import HardwareReturn, SystemInterface
 from arm_control.hardware.info import HardwareInfo, JointInfo
 from arm_description.errors import MimicCycleError
-from arm_description.urdf.mimic import Mimic, resolve_leader
+from arm_description.urdf.robot import Mimic, resolve_leader
 
 MOTIONS = ("position", "velocity", "acceleration")
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from arm_description.errors import JointStateError, SettingsError, UrdfError
 from arm_description.publishers.settings import JointPublisherSettings
-from arm_description.urdf.mimic import Mimic, resolve_leader
-from arm_description.urdf.robot import Joint
+from arm_description.urdf.robot import Joint, Mimic, resolve_leader
 from arm_node.names import listing
 
 

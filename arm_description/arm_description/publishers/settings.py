@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from arm_description.errors import SettingsError
-from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Mimic
 from arm_node.parameter_values import (
     IntegerReader,
     NumberReader,

@@ -13,7 +13,6 @@ from arm_description.errors import UrdfError
 from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.element import Remark, UrdfElement
 from arm_description.urdf.joint_type import JointType
-from arm_description.urdf.mimic import Mimic
 from arm_description.urdf.robot import (
     Box,
     Capsule,
@@ -27,6 +26,7 @@ from arm_description.urdf.robot import (
     Link,
     Material,
     Mesh,
+    Mimic,
     Robot,
     SafetyLimits,
     Sphere,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from arm_description.errors import MimicCycleError, UrdfError
 from arm_description.urdf.joint_type import JointType
-from arm_description.urdf.mimic import Mimic, resolve_leader
 from arm_node.names import listing
 
 if TYPE_CHECKING:
@@ -143,6 +142,19 @@ class Dynamics:
 
 
 @dataclass(frozen=True, slots=True)
+class Mimic:
+    """Position = multiplier x position of `joint` + offset."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+    def position(self, leader: float) -> float:
+        """Return this joint's position for a position of `joint` (rad or m)."""
+        return self.multiplier * leader + self.offset
+
+
+@dataclass(frozen=True, slots=True)
 class SafetyLimits:
     """The safety_controller element; a missing soft limit is infinite."""
 
@@ -245,6 +257,32 @@ class Robot:
             joint = waiting.pop()
             yield joint
             waiting.extend(reversed(self._children.get(joint.child, ())))
+
+
+def resolve_leader(name: str, mimics: Mapping[str, Mimic], known: Container[str] = ()) -> Mimic:
+    """Return a joint's position as a function of its leader's position.
+
+    Args:
+        name: the joint. A joint that is not a mimic joint is its own leader.
+        mimics: the mimic rules by joint name.
+        known: joints whose position is known: the nearest of them, including the joint itself, is
+            the leader.
+
+    Raises:
+        MimicCycleError: the joints mimic each other in a circle.
+    """
+    chain = [name]
+    multiplier, offset = 1.0, 0.0
+    while name in mimics and name not in known:
+        mimic = mimics[name]
+        offset += multiplier * mimic.offset
+        multiplier *= mimic.multiplier
+        name = mimic.joint
+        if name in chain:
+            # Same message as ROS 2's joint_state_publisher.
+            raise MimicCycleError(f"Found an infinite recursive mimic chain: {[*chain, name]}")
+        chain.append(name)
+    return Mimic(name, multiplier, offset)
 
 
 def find_root(links: Sequence[Link], joints: Sequence[Joint]) -> str:

@@ -19,8 +19,8 @@ from arm_description.urdf.robot import Mesh, Robot
 from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
 from arm_gazebo.check.plausibility import mesh_sizes, other_units
 from arm_gazebo.check.unread_elements import refused_by_ros, unread_elements
+from arm_gazebo.drives.braking_law import slow_joints
 from arm_gazebo.drives.servo_tuning import tune, weak_drives
-from arm_gazebo.drives.slow_joints import slow_joints
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_hardware import MAX_EFFORT, STATES

@@ -1,4 +1,4 @@
-"""A robot in its world, ready to be simulated."""
+"""A robot in its world, ready to be simulated, and its form as data for a file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.build_report import BuildReport
+from arm_gazebo.errors import ModelError
 from arm_gazebo.robot.actuation import RobotJoint
 
 
@@ -37,3 +38,49 @@ class BuiltModel:
     def robot_roots(self) -> frozenset[str]:
         """The top-level bodies of all robots."""
         return frozenset(root for roots in self.robots.values() for root in roots)
+
+
+@dataclass(frozen=True, slots=True)
+class SavedModel:
+    """A model that can be written to a file; all attributes except `content` are `BuiltModel`'s.
+
+    Attributes:
+        content: the model as MuJoCo saves it; another version of MuJoCo may not read it.
+    """
+
+    content: bytes
+    joints: Mapping[str, RobotJoint]
+    bodies: Mapping[str, int]
+    qpos: NDArray[np.float64]
+    robots: Mapping[str, tuple[str, ...]]
+
+    @classmethod
+    def of(cls, built: BuiltModel) -> "SavedModel":
+        """Save a model that no simulation uses yet: a simulation changes its model."""
+        content = np.empty(mujoco.mj_sizeModel(built.model), np.uint8)
+        mujoco.mj_saveModel(built.model, None, content)
+        return cls(
+            content.tobytes(),
+            dict(built.joints),
+            dict(built.bodies),
+            built.qpos,
+            dict(built.robots),
+        )
+
+    def load(self) -> BuiltModel:
+        """Return the model; it has no specification, so the world cannot be changed further.
+
+        Raises:
+            ModelError: this version of MuJoCo cannot read it.
+        """
+        name = "saved.mjb"
+        try:
+            model = mujoco.MjModel.from_binary_path(name, {name: self.content})
+        except (ValueError, mujoco.FatalError) as error:
+            reason = " ".join(str(error).split())
+            raise ModelError(
+                f"MuJoCo {mujoco.__version__} cannot read the model: {reason}"
+            ) from error
+        qpos = self.qpos.copy()
+        qpos.setflags(write=False)
+        return BuiltModel(model, None, self.joints, self.bodies, qpos, BuildReport(), self.robots)

@@ -13,8 +13,7 @@ from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import Servo
 from arm_gazebo.drives.servo_tuning import ServoTuning, retune, tune, weak_drives
 from arm_gazebo.errors import RecordingError, TimingError
-from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.saved_model import SavedModel
+from arm_gazebo.model.built_model import BuiltModel, SavedModel
 from arm_gazebo.physics.contact_gate import ContactGate
 from arm_gazebo.physics.faults import Distortion, PhysicsFaults
 from arm_gazebo.physics.physics_state import PhysicsState

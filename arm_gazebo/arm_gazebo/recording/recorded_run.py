@@ -9,8 +9,7 @@ from arm_control.lifecycle import LifecycleState
 from arm_control.manager.loaded_controllers import ManagedController
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.errors import RecordingError
-from arm_gazebo.model.built_model import BuiltModel
-from arm_gazebo.model.saved_model import SavedModel
+from arm_gazebo.model.built_model import BuiltModel, SavedModel
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.recording.run_file import RecordedInput, RunFile

@@ -15,7 +15,7 @@ from arm_control.manager.registry import controller_class
 from arm_control.run_inputs import is_run_input
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError, RecordingError
-from arm_gazebo.model.saved_model import SavedModel
+from arm_gazebo.model.built_model import SavedModel
 from arm_gazebo.recording.recorded_run import run_of
 from arm_gazebo.recording.run_file import RecordedInput, RecordingEnd, RunFile, StateBlock
 from arm_gazebo.recording.run_state import Row, StateRow, chained_hashes, state_names

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import mujoco
 
 from arm_control.hardware.info import HardwareInfo, JointInfo
-from arm_description.urdf.mimic import Mimic
-from arm_description.urdf.robot import Joint, Robot
+from arm_description.urdf.robot import Joint, Mimic, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_node.names import listing

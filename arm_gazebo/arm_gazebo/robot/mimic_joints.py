@@ -7,8 +7,7 @@ from dataclasses import replace
 import mujoco
 
 from arm_control.hardware.info import HardwareInfo
-from arm_description.urdf.mimic import Mimic
-from arm_description.urdf.robot import Joint, JointLimit, Robot
+from arm_description.urdf.robot import Joint, JointLimit, Mimic, Robot
 from arm_gazebo.build_report import BuildReport
 
 FITS_WITHIN = 1e-3

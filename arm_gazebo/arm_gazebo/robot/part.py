@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from arm_control.hardware.info import HardwareInfo
 from arm_description.resources import ResourceFinder
 from arm_description.transforms import rotation_from_rpy
-from arm_description.urdf.mimic import Mimic
-from arm_description.urdf.robot import Joint, Pose, Robot
+from arm_description.urdf.robot import Joint, Mimic, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mesh.cache import MeshCache

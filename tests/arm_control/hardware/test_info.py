@@ -4,7 +4,7 @@ import pytest
 
 from arm_control.errors import HardwareInfoError
 from arm_control.hardware.info import HardwareInfo, parse_hardware_info
-from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Mimic
 
 
 def robot(*blocks: str) -> str:

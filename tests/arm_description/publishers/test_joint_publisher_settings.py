@@ -4,7 +4,7 @@ import pytest
 
 from arm_description import SettingsError
 from arm_description.publishers.settings import JointPublisherSettings
-from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Mimic
 
 
 def read(**parameters) -> JointPublisherSettings:

@@ -9,7 +9,7 @@ from arm_description import JointStateError, SettingsError, parse_urdf
 from arm_description.errors import MimicCycleError
 from arm_description.publishers.joint_state_merge import JointStateMerge, MergedState
 from arm_description.publishers.settings import JointPublisherSettings
-from arm_description.urdf.mimic import Mimic
+from arm_description.urdf.robot import Mimic
 
 WIDE = "<limit lower='-1' upper='1' effort='1' velocity='1'/>"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_description import Joint, Link, Mimic, MimicCycleError, Pose, Robot, UrdfError
-from arm_description.urdf.mimic import resolve_leader
+from arm_description.urdf.robot import resolve_leader
 
 
 def robot() -> Robot:

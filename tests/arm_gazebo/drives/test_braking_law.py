@@ -6,9 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from arm_gazebo.drives.braking_law import FLOOR, BrakingLaw, budget, budgets
+from arm_gazebo.drives.braking_law import FLOOR, BrakingLaw, budget, budgets, slow_joints
 from arm_gazebo.drives.servo_tuning import tune
-from arm_gazebo.drives.slow_joints import slow_joints
 
 X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
 STEP = 0.3

@@ -10,7 +10,7 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.registry import controller_class
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import SwitchRequest
-from arm_gazebo.model.saved_model import SavedModel
+from arm_gazebo.model.built_model import SavedModel
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.recording.recorded_run import RecordedRun
 from arm_gazebo.recording.recorder import RunRecorder
