@@ -54,10 +54,14 @@ class UrdfElement(XmlElement[Callable[[Remark], None]]):
 
     def child(self, tag: str) -> "UrdfElement | None":
         """Return the first child with this tag, or None; warn of a second one."""
-        found = [child for child in self.elements if child.tag == tag]
-        if len(found) > 1:
-            found[1].warn(f"is the second one; the one in line {found[0].line} is used")
-        return found[0] if found else None
+        found = None
+        for child in self.elements:
+            if child.tag == tag and found is None:
+                found = child
+            elif child.tag == tag and found is not None:
+                child.warn(f"is the second one; the one in line {found.line} is used")
+                break
+        return found
 
     def needed_child(self, tag: str) -> "UrdfElement":
         """Return the first child with this tag, which must exist."""
@@ -72,7 +76,7 @@ class UrdfElement(XmlElement[Callable[[Remark], None]]):
 
     def needed_text(self, attribute: str) -> str:
         """Return an attribute, which must exist and not be empty."""
-        value = self.text(attribute)
+        value = self.attributes.get(attribute, "").strip()
         if not value:
             raise self.error(f"needs the attribute '{attribute}'")
         return value
@@ -123,13 +127,14 @@ class UrdfElement(XmlElement[Callable[[Remark], None]]):
 
     def pose(self) -> Pose:
         """Return the pose that an <origin> holds."""
-        rpy = self._quaternion() or self.vector("rpy", _ZERO)
+        if QUATERNION in self.attributes and self.version in QUATERNION_VERSIONS:
+            rpy = self._quaternion()
+        else:
+            rpy = self.vector("rpy", _ZERO)
         return Pose(self.vector("xyz", _ZERO), rpy)
 
-    def _quaternion(self) -> Vector | None:
+    def _quaternion(self) -> Vector:
         """Return the rotation of a quat_xyzw, which URDF has since version 1.1, as rpy."""
-        if QUATERNION not in self.attributes or self.version not in QUATERNION_VERSIONS:
-            return None
         if "rpy" in self.attributes:
             raise self.error(f"has both rpy and {QUATERNION}")
         # Imported here: the launcher needs NumPy for nothing else.

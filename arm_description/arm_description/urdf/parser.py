@@ -186,6 +186,8 @@ def _resolve_materials(links: Sequence[Link], materials: Iterable[Material]) -> 
             defined.setdefault(material.name, material)
     return tuple(
         replace(link, visuals=tuple(_resolve(visual, defined) for visual in link.visuals))
+        if any(v.material is not None and not _is_defined(v.material) for v in link.visuals)
+        else link
         for link in links
     )
 

@@ -90,7 +90,8 @@ class XmlElement(ABC, Generic[HomeT]):
 
     def __init__(self, element: etree._Element, home: HomeT, parent: Self | None = None) -> None:
         """Copy an element of lxml's, with all that is in it."""
-        tag, prefix = str(element.tag), ""
+        tag: str = element.tag
+        prefix, text, kind = "", element.text, type(self)
         self.is_foreign = False
         if tag[0] == "{":
             prefix = element.prefix or ""
@@ -100,11 +101,11 @@ class XmlElement(ABC, Generic[HomeT]):
             tag = tag.rpartition("}")[2]
         self.home = home
         self.tag = f"{prefix}:{tag}" if prefix else tag
-        self.line = int(element.sourceline or 0)
+        self.line: int = element.sourceline or 0
         self.attributes: dict[str, str] = dict(element.items())
-        self.content = (element.text or "").strip()
+        self.content = text.strip() if text else ""
         self.parent = parent
-        self.elements = tuple([type(self)(child, home, self) for child in element])
+        self.elements = tuple([kind(child, home, self) for child in element])
 
     @classmethod
     def parse(cls, text: str, source: str, home: HomeT) -> Self:
@@ -161,6 +162,14 @@ class XmlElement(ABC, Generic[HomeT]):
     def numbers_of(self, text: str, counts: tuple[int, ...], where: str = "") -> tuple[float, ...]:
         """Return the numbers of a text; `where` is "rpy=" for an attribute."""
         words = text.split()
+        if len(words) in counts and text.isascii() and "_" not in text:
+            try:
+                numbers = tuple(map(float, words))
+            except ValueError:
+                numbers = (math.nan,)
+            if math.isfinite(sum(numbers)):
+                return numbers
+        # What is wrong with them is looked for one by one.
         if len(words) not in counts:
             wanted = " or ".join(map(str, counts))
             raise self.error(f"has {where}'{' '.join(words)}': {len(words)} values, not {wanted}")

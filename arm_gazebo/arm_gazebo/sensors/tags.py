@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Container, Iterator, Sequence
 from typing import Protocol
 
 from arm_description.urdf.element import UrdfElement
@@ -93,7 +93,10 @@ class SensorTags:
     def findings(self) -> Iterator[Finding]:
         """Yield what is doubtful, and each tag that nobody looked up; call it after reading."""
         yield from self._doubts
-        yield from self._unread(self._element, "", set())
+        above = {
+            known[:end] for known in self._known for end, char in enumerate(known) if char == "/"
+        }
+        yield from self._unread(self._element, "", set(), above)
 
     def topic_error(self, topic: str, kind: str, owner: _AttachedSensor) -> SensorError:
         """Return an error about a topic of this sensor that another sensor uses."""
@@ -198,15 +201,17 @@ class SensorTags:
             return [self._element, *self._inner]
         return [found for outer in (self._element, *self._inner) for found in outer.find(tag)]
 
-    def _unread(self, element: UrdfElement, path: str, seen: set[str]) -> Iterator[Finding]:
+    def _unread(
+        self, element: UrdfElement, path: str, seen: set[str], above: Container[str]
+    ) -> Iterator[Finding]:
         for child in element.elements:
             here = path + child.tag
             if here in self._known:
                 yield from self._unread_attributes(child, here)
             if child in self._inner:
-                yield from self._unread(child, "", seen)
-            elif any(known.startswith(here + "/") for known in self._known):
-                yield from self._unread(child, here + "/", seen)
+                yield from self._unread(child, "", seen, above)
+            elif here in above:
+                yield from self._unread(child, here + "/", seen, above)
             elif here not in self._known:
                 problem = "the simulation does not use it"
                 yield self._finding(BuildOutcome.DROPPED, child, here, problem)

@@ -1,10 +1,13 @@
 """A description that is parsed once, and read by many."""
 
+import math
+
 import pytest
 
 from arm_control import ControllerContext, parse_hardware_info, read_joint_limits
 from arm_description import UrdfError, XmlError, parse_urdf
 from arm_description.urdf.description import RobotDescription, as_description, text_of
+from arm_description.urdf.xml_document import finite_number
 
 ROBOT = """\
 <robot name="r">
@@ -60,3 +63,35 @@ def test_what_is_wrong_is_said_with_the_documents_source():
         RobotDescription("<robot", "arm.urdf")
     with pytest.raises(UrdfError, match=r"^arm\.urdf, line 1: <thing> is not a robot"):
         parse_urdf(RobotDescription("<thing/>", "arm.urdf"))
+
+
+def test_each_reader_reads_a_description_once():
+    asked = []
+    description = RobotDescription(ROBOT)
+
+    def joints(given):
+        asked.append(given)
+        return [joint.name for joint in given.joints]
+
+    assert description.read(joints) == description.read(joints) == ["j"]
+    assert asked == [description]
+
+
+def test_parts_have_their_lines():
+    description = RobotDescription(ROBOT)
+    lines = [(part.tag, part.line) for part in (*description.links, *description.joints)]
+    assert lines == [("link", 2), ("link", 2), ("joint", 3)]
+    [hardware] = description.ros2_control
+    assert (hardware.line, hardware.find("joint/command_interface")[0].line) == (7, 9)
+
+
+@pytest.mark.parametrize(
+    "word", ["1_000", "\u0661", "nan", "inf", "1e400", "0x10", "", "1 2", "{pi}"]
+)
+def test_what_is_no_finite_number_in_decimals(word):
+    assert math.isnan(finite_number(word))
+
+
+@pytest.mark.parametrize(("word", "value"), [("-.5", -0.5), ("+2.", 2.0), ("1e-3", 0.001)])
+def test_numbers_in_decimals(word, value):
+    assert finite_number(word) == value
