@@ -116,7 +116,7 @@ def _differing_settings(first: RunFile, second: RunFile) -> Iterator[str]:
     one, other = run_of(first), run_of(second)
     if one.model.content != other.model.content:
         yield "the models differ"
-    for name in ("timing", "hold_joints", "proportional_gain", "seed"):
+    for name in (field.name for field in fields(one) if field.name not in ("model", "robots")):
         if getattr(one, name) != getattr(other, name):
             yield f"{name} {getattr(other, name)} instead of {getattr(one, name)}"
     if len(one.robots) != len(other.robots):
