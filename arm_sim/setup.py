@@ -7,7 +7,6 @@ from setuptools import find_packages, setup
 PACKAGE = "arm_sim"
 NEIGHBOURS = ["../arm_control", "../arm_description", "../arm_gazebo", "../arm_node"]
 REQUIREMENTS = [
-    "PyYAML>=6.0",
     "numpy>=2",
     "opencv-python-headless>=4.9",
     "ros-jazzy-common-interfaces==5.3.6",

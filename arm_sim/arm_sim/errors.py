@@ -5,6 +5,7 @@ ArmSimError
 ├── MissingPackageError  an optional package that is needed is not installed
 ├── CallError         a method that cannot be called now, or an argument that cannot be used
 │   └── ArgumentsError    arguments of a simulation that do not fit; also a TypeError
+├── BenchError        what a test requests and the bench cannot do
 └── GoalError         a goal that was rejected, failed or did not end in time
 
 Everything else that goes wrong raises the error that ends or warns the node, with its sentence:
@@ -25,6 +26,10 @@ class UnknownNameError(ArmSimError, KeyError):
     def __str__(self) -> str:
         # KeyError would show the message in quotes.
         return str(self.args[0])
+
+
+class BenchError(ArmSimError):
+    """The test bench cannot do what a test requests; the message says why."""
 
 
 class MissingPackageError(ArmSimError, ImportError):

@@ -15,10 +15,9 @@ import pytest
 
 if TYPE_CHECKING:
     from arm_sim.bench.evidence import Evidence
-    from arm_sim.bench.pool import SimulationPool
     from arm_sim.bench.processes import LoggedProcess
     from arm_sim.bench.ros_bench import RosBench
-    from arm_sim.bench.simulation import BenchSimulation
+    from arm_sim.bench.simulation import BenchSimulation, SimulationPool
 
 MARKERS = (
     "arm_sim(robot, world, controllers, ...): what the fixture arm_sim simulates; the arguments of "
@@ -62,7 +61,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def _arm_sim_pool() -> "Iterator[SimulationPool]":
-    from arm_sim.bench.pool import SimulationPool
+    from arm_sim.bench.simulation import SimulationPool
 
     pool = SimulationPool()
     yield pool
@@ -114,8 +113,7 @@ def arm_ros(
     from arm_node.environment import UnusableEnvironmentError, prepare_environment
     from arm_node.ros_domain import NoFreeDomainError, domain_of_its_own
     from arm_sim.bench.configuration import arguments_of, marked_arguments
-    from arm_sim.bench.launch_command import launch_command
-    from arm_sim.bench.processes import LoggedProcess
+    from arm_sim.bench.processes import LoggedProcess, launch_command
     from arm_sim.errors import ArmSimError
 
     refusal, problems = "", list[str]()

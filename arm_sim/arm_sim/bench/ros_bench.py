@@ -16,13 +16,12 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
-from arm_sim.bench.errors import BenchError
 from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
 from arm_sim.bench.history import StateHistory
 from arm_sim.bench.processes import LoggedProcess
 from arm_sim.bench.ros_connection import WAIT_S, Messages, MessageT, RosConnection
 from arm_sim.bench.ros_faults import RosFaults
-from arm_sim.errors import GoalError
+from arm_sim.errors import BenchError, GoalError
 from arm_sim.trajectory import trajectory_request
 
 if TYPE_CHECKING:

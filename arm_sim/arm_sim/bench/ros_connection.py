@@ -14,7 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from arm_node.executor_thread import ExecutorThread
 from arm_node.testing import DiscoveryCheck
-from arm_sim.bench.errors import BenchError
+from arm_sim.errors import BenchError
 
 WAIT_S = 30.0
 """Wall time to wait for anything that should arrive at once."""

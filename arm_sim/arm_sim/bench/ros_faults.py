@@ -14,9 +14,9 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 
 from arm_gazebo.faults.fault import Fault, FaultKind
-from arm_sim.bench.errors import BenchError
 from arm_sim.bench.processes import LoggedProcess
 from arm_sim.bench.ros_connection import RosConnection
+from arm_sim.errors import BenchError
 from arm_sim.fault_log import FaultLog
 from arm_sim.faulty_link import FaultyLink, LinkFault
 

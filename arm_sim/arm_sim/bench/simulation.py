@@ -1,16 +1,28 @@
-"""The simulation of a test: the library's, with assertions about everything that has happened."""
+"""The simulation of a test: the library's, with assertions about everything that has happened.
+
+A session builds each once and restores it for later tests; each is recorded, for those that fail.
+"""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Any
 
+from arm_control.errors import StateError
+from arm_gazebo.errors import RecordingError
+from arm_gazebo.recording.recorded_run import first_inputs, header_of
+from arm_gazebo.recording.recorder import RunRecorder
+from arm_gazebo.recording.run_file import Record, RecordedInput, RunFileWriter, StateBlock
+from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.world.contacts import bodies_of
 from arm_gazebo.world.entity import WORLD_FRAME
-from arm_sim.bench.black_box import BlackBox
+from arm_gazebo.world.refusal import RequestError
+from arm_sim.bench.configuration import configuration_key
 from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
 from arm_sim.bench.history import StateHistory
 from arm_sim.bench.touches import Touch, TouchLog
+from arm_sim.errors import CallError
 from arm_sim.faults import SimulationFaults
 from arm_sim.joints import Joints
 from arm_sim.robots import AnyPath
@@ -196,3 +208,121 @@ def _shown(touches: Sequence[Touch]) -> Iterator[Touch | str]:
     yield from touches[:SHOWN_TOUCHES]
     if len(touches) > SHOWN_TOUCHES:
         yield f"and {len(touches) - SHOWN_TOUCHES} more contacts"
+
+
+class BlackBox:
+    """Records a simulation from `begin` on. The simulation's thread, between two ticks.
+
+    Attributes:
+        refusal: why the run cannot be recorded; "" if it can.
+    """
+
+    def __init__(self, run: SimulationRun) -> None:
+        self.refusal = ""
+        self._run = run
+        self._recorder: RunRecorder | None = None
+        self._first: list[RecordedInput] = []
+        self._memory = _Memory()
+        self._built = run.physics.built
+
+    def begin(self, at_start: bool = False) -> None:
+        """Record from the present state on.
+
+        Args:
+            at_start: whether this is the state in which the first recording began.
+        """
+        if self._run.physics.input_gate is not None:
+            self.refusal = "the test records its run itself"
+            return
+        try:
+            is_known = at_start and self._first and self._run.physics.faults.present is None
+            first = self._first if is_known else list(first_inputs(self._run))
+        except (RecordingError, StateError) as error:
+            self.refusal = str(error)
+            return
+        self._first = self._first or first
+        self._memory, self._built = _Memory(), self._run.physics.built
+        self._recorder = RunRecorder(self._run, self._memory)
+        self._recorder.start(first)
+
+    def end(self) -> None:
+        """Stop; has no effect if nothing is recorded."""
+        if self._recorder is not None:
+            self._recorder.stop()
+            self._recorder.join()
+            self._recorder = None
+
+    def write(self, path: Path) -> None:
+        """Stop, and write the recording to a file that does not exist.
+
+        Raises:
+            RecordingError, OSError: it cannot be written.
+        """
+        self.end()
+        writer = RunFileWriter(path, header_of(self._run, self._built))
+        try:
+            for record in self._memory.records:
+                writer.write(record)
+        finally:
+            writer.close()
+
+
+class _Memory:
+    """Keeps the records of a run: the hash of every state, and a whole state now and then."""
+
+    path = Path()
+
+    def __init__(self) -> None:
+        self.records: list[Record] = []
+
+    def write(self, record: Record) -> None:
+        if isinstance(record, StateBlock):
+            # A replay compares the hashes; the states are 100 times larger.
+            sparse = record.states[:1].copy()
+            record = replace(record, interval=len(record.hashes), states=sparse)
+        self.records.append(record)
+
+    def flush(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+class SimulationPool:
+    """Gives each test a simulation of its configuration, in its initial state."""
+
+    def __init__(self) -> None:
+        self._built: dict[str, BenchSimulation] = {}
+
+    def take(self, arguments: dict[str, Any]) -> BenchSimulation:
+        """Return a simulation in its initial state.
+
+        Args:
+            arguments: those of `BenchSimulation`.
+
+        Raises:
+            DescriptionError, GazeboError, ArmControlError, ParameterValueError: it cannot be built.
+        """
+        key = configuration_key(arguments)
+        known = self._built.pop(key, None)
+        simulation = known if known is not None and _is_restored(known) else None
+        self._built[key] = simulation = simulation or BenchSimulation(**arguments)
+        return simulation
+
+    def close(self) -> None:
+        """Close all of them."""
+        for simulation in self._built.values():
+            simulation.close()
+        self._built.clear()
+
+
+def _is_restored(simulation: BenchSimulation) -> bool:
+    """Bring a simulation back to its start; if that is impossible, close it and return False."""
+    try:
+        simulation.reset(simulation.first_seed)
+    except (StateError, CallError, RequestError):
+        # The state of a controller cannot be saved, or a test has closed the simulation.
+        simulation.close()
+        return False
+    return True

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from arm_sim.bench.errors import BenchError
-from arm_sim.bench.launch_command import launch_command
+from arm_sim.bench.processes import launch_command
+from arm_sim.errors import BenchError
 
 ARM = [sys.executable, "-P", "-m", "arm_cli", "launch"]
 

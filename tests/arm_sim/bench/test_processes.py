@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from arm_sim.bench.errors import BenchError
 from arm_sim.bench.processes import LoggedProcess
+from arm_sim.errors import BenchError
 
 PARENT = """
 import subprocess, sys

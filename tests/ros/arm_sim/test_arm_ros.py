@@ -8,7 +8,7 @@ import pytest
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
-from arm_sim.bench.errors import BenchError
+from arm_sim.errors import BenchError
 
 pytestmark = [
     pytest.mark.ros,
