@@ -22,7 +22,7 @@ from launch_py import LaunchError
 from launch_py.command.command_line import find_launch_file
 from launch_py.command.command_line import run as run_launch
 from launch_py.fast_dds.participants import domain_of
-from launch_py.launch_description_entity import ArgumentInfo
+from launch_py.launch_context import ArgumentInfo
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.system.packages import Packages, ament_prefixes, launch_files
 
@@ -53,7 +53,7 @@ WORLD = "world"
 def launch(argv: Sequence[str]) -> int:
     """Launch; return the exit code."""
     # Imported only here, because Tab completion does not need it.
-    from launch_py.supervision.terminal_key import KeyCommand
+    from launch_py.supervision.foreground import KeyCommand
 
     try:
         with launch_domain(argv) as words:

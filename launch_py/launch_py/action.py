@@ -8,9 +8,8 @@ from typing import TypeVar
 
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError, errors_attributed_to, errors_located_at
-from launch_py.events import ProcessEvent
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchDescriptionEntity, LaunchSurvey
+from launch_py.events import LaunchDescriptionEntity, ProcessEvent
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.plan.steps import DeferredStep, Step
 
 LAUNCH_FILE = "__launch_file__"

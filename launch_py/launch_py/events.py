@@ -1,4 +1,4 @@
-"""The events that event handlers receive, named as in ROS 2's `launch.events`."""
+"""Events and their sources, named as in ROS 2's `launch.events`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from launch_py.launch_description_entity import LaunchDescriptionEntity
+
+class LaunchDescriptionEntity:
+    """A part of a launch description, as plans and events refer to it; see `Action`."""
+
+    def describe(self) -> str:
+        """Return its name in messages."""
+        return f"a {type(self).__name__}"
 
 
 class Event:
@@ -88,11 +94,15 @@ class ProcessStderr(ProcessIO):
 
 
 @dataclass(frozen=True)
-class Shutdown(Event):
+class ShutdownEvent(Event):
     """The shutdown begins; see `EmitEvent` and `OnShutdown`."""
 
     name: ClassVar[str] = "launch.events.Shutdown"
     reason: str = "the launch file asks for it"
+
+
+Shutdown = ShutdownEvent
+"""ROS's name, which the action that emits it has, too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,11 +114,15 @@ class ExecutionComplete(Event):
 
 
 @dataclass(frozen=True)
-class IncludeLaunchDescription(Event):
+class IncludeEvent(Event):
     """Emit it to run another launch description."""
 
     name: ClassVar[str] = "launch.events.IncludeLaunchDescription"
     launch_description: Any
+
+
+IncludeLaunchDescription = IncludeEvent
+"""ROS's name, which an action has, too."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,7 @@ from typing import Self, cast
 
 from launch_py.action import Action, check_actions
 from launch_py.errors import errors_attributed_to
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.plan.steps import LaunchPlan
 from launch_py.ros_launch import bridged, reading_launch
 

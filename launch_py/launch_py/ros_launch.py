@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from launch_py.errors import LaunchFileError
-from launch_py.launch_description_entity import ArgumentInfo
+from launch_py.launch_context import ArgumentInfo
 
 STOP_S = "30"
 """How long the launcher may take to stop its processes in order, before ROS 2's launch kills it."""

@@ -1,17 +1,42 @@
-"""What launch files import from ROS 2's `launch.utilities` and `launch_ros.utilities`."""
+"""What launch files import from `launch.utilities`, `launch.logging`, `launch_ros.utilities`."""
 
 from __future__ import annotations
 
+import logging
+import sys
 from collections.abc import Iterable
 from inspect import isclass
 from os import PathLike
 from typing import Any
 
 from launch_py.errors import LaunchFileError
-from launch_py.launch_description_entity import LaunchDescriptionEntity
-from launch_py.names import join_names
-from launch_py.substitution import LaunchScope, Substitution, Text, perform_text
+from launch_py.events import LaunchDescriptionEntity
+from launch_py.substitution import LaunchScope, Substitution, Text, join_names, perform_text
 from launch_py.substitutions import TextSubstitution
+
+ROOT = "launch"
+
+
+class _ShownHandler(logging.Handler):
+    """Writes to whatever stdout is at the time, as the launcher's own messages go there."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write one message."""
+        level = f"[{record.levelname}] " if record.levelno != logging.INFO else ""
+        sys.stdout.write(f"[{record.name}] {level}{record.getMessage()}\n")
+        sys.stdout.flush()
+
+
+def get_logger(name: str | None = None) -> logging.Logger:
+    """Return a logger below "launch"; it shows what is INFO or above."""
+    root = logging.getLogger(ROOT)
+    if not root.handlers:
+        root.addHandler(_ShownHandler())
+        root.setLevel(logging.INFO)
+        root.propagate = False
+    inner = (name or "").removeprefix(f"{ROOT}.")
+    return root.getChild(inner) if inner and inner != ROOT else root
+
 
 TEXT_TYPES = (str, PathLike, Substitution, Iterable)
 ENTITY_TYPES = (LaunchDescriptionEntity, Iterable)

@@ -85,7 +85,7 @@ def test_an_executable_without_a_replacement_is_reported():
 
 def test_every_stand_in_exists():
     from launch_py.system.packages import Packages
-    from launch_py.system.stand_ins import NOTHING, stand_ins
+    from launch_py.system.programs import NOTHING, stand_ins
 
     listed = list(stand_ins([sys.prefix]))
     assert len({(s.package, s.name) for s in listed}) == len(listed)

@@ -6,8 +6,7 @@ import sys
 
 import pytest
 
-from launch_py.fast_dds.bystanders import are_bystanders
-from launch_py.fast_dds.participants import find_ports
+from launch_py.fast_dds.participants import are_bystanders, find_ports
 
 DOMAIN = 231
 PORT = 7400 + 250 * DOMAIN + 10

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from launch_py.ros_imports import MissingRosNameError, ros_imports
-from launch_py.ros_names import NOT_HERE
+from launch_py.ros_imports import NOT_HERE, MissingRosNameError, ros_imports
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "launch_names.md"
 ROW = re.compile(r"\| `(\w+)` \| (works|differs|not here) \| (.*) \|")

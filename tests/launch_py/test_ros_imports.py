@@ -12,8 +12,7 @@ from launch_py.errors import LaunchFileError
 from launch_py.launch_description import expand_description
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan.steps import MessageStep
-from launch_py.ros_imports import ros_imports
-from launch_py.ros_names import HOMES, NOT_HERE, OTHER_NAMES
+from launch_py.ros_imports import HOMES, NOT_HERE, OTHER_NAMES, ros_imports
 
 TYPED = """
 import os

@@ -8,7 +8,7 @@ from launch_py import LaunchContext
 from launch_py.errors import SubstitutionError
 from launch_py.ros.substitution_parser import parse_substitutions
 from launch_py.substitution import perform_text
-from launch_py.substitutions.python_expression import PythonExpression
+from launch_py.substitutions.command import PythonExpression
 from launch_py.substitutions.safe_expression import MAX_SIZE, SafeExpression
 
 

@@ -23,7 +23,7 @@ from launch_py import (
     UnsetLaunchConfiguration,
 )
 from launch_py.action import Action
-from launch_py.actions.execute_local import Executable
+from launch_py.actions.execute_process import Executable
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError, SubstitutionError
 from launch_py.launch_context import LaunchContext

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from arm_cli.errors import CommandUsageError
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.workarounds.local_profile import PROFILE, use_local_profile
-from launch_py.fast_dds.abandoned_memory import remove_abandoned
+from launch_py.fast_dds.removal import remove_abandoned
 from launch_py.standard_streams import library_output_on_stderr
 from launch_py.system.child_environment import dds_profile
 

@@ -1,30 +1,23 @@
 """The actions, named as in ROS 2's `launch.actions`; `ReadyPanel` is new."""
 
 from launch_py.action import Action
-from launch_py.actions.configuration import (
-    AppendEnvironmentVariable,
-    DeclareLaunchArgument,
-    SetEnvironmentVariable,
-    SetLaunchConfiguration,
-    UnsetEnvironmentVariable,
-)
 from launch_py.actions.event_actions import (
     EmitEvent,
     RegisterEventHandler,
     Shutdown,
     UnregisterEventHandler,
 )
-from launch_py.actions.execute_local import ExecuteLocal
-from launch_py.actions.execute_process import ExecuteProcess
+from launch_py.actions.execute_process import ExecuteLocal, ExecuteProcess
 from launch_py.actions.grouping import (
     GroupAction,
     OpaqueCoroutine,
     OpaqueFunction,
     TimerAction,
 )
-from launch_py.actions.include_launch_description import IncludeLaunchDescription
 from launch_py.actions.messages import LogInfo, ReadyPanel
-from launch_py.actions.scoping import (
+from launch_py.actions.settings import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
     PopEnvironment,
     PopLaunchConfigurations,
     PushEnvironment,
@@ -32,8 +25,12 @@ from launch_py.actions.scoping import (
     ReplaceEnvironmentVariables,
     ResetEnvironment,
     ResetLaunchConfigurations,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    UnsetEnvironmentVariable,
     UnsetLaunchConfiguration,
 )
+from launch_py.launch_description_sources import IncludeLaunchDescription
 
 __all__ = [
     "Action",

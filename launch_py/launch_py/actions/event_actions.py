@@ -10,8 +10,7 @@ from launch_py.action import Action, check_actions, deferred_step
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError
 from launch_py.event_handlers import EventHandler
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.plan.steps import ShutdownStep, SignalStep
 from launch_py.substitution import Text, perform_text
 
@@ -57,13 +56,13 @@ class EmitEvent(Action):
     def expand(self, context: LaunchContext) -> None:
         """Add what the event does, and what its handlers do, to the plan."""
         match self.event:
-            case events.Shutdown():
+            case events.ShutdownEvent():
                 Shutdown(reason=self.event.reason).expand(context)
             case events.ShutdownProcess():
                 self._signal(context, self.event, None)
             case events.SignalProcess(signal_number=number):
                 self._signal(context, self.event, _signal_number(number))
-            case events.IncludeLaunchDescription(description):
+            case events.IncludeEvent(description):
                 description.visit(context.scoped())
             case EmittedEvent():
                 self.event.expand(context)

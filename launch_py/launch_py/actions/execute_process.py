@@ -7,14 +7,13 @@ import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, TypedDict
+from typing import Any, TypedDict, Unpack
 
 from launch_py.action import Action, check_actions
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchError, LaunchFileError, NotFoundError, UnavailableError
 from launch_py.event_handlers import OnProcessExit, Reaction
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.near_names import describe_known
 from launch_py.plan.readiness import Readiness
 from launch_py.plan.restart_policy import RestartPolicy
@@ -343,3 +342,50 @@ def _known(context: LaunchContext, value: Any, known: Iterable[str], where: str)
             f"{where.format(word)}; {describe_known(word, known, 'the choices are')}"
         )
     return word
+
+
+class Executable:
+    """A command line, and the folder and variables that it runs with; see `ExecuteProcess`."""
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[Text],
+        prefix: Text | None = None,
+        name: Text | None = None,
+        cwd: Text | None = None,
+        env: Mapping[Text, Text] | None = None,
+        additional_env: Mapping[Text, Text] | None = None,
+        arguments: Iterable[Text] | None = None,
+    ) -> None:
+        self.cmd = [cmd] if isinstance(cmd, str) else list(cmd)
+        self.prefix = prefix
+        self.name = name
+        self.cwd = cwd
+        self.env = env
+        self.additional_env = additional_env
+        self.arguments = list(arguments or ())
+
+
+class ExecuteLocal(ExecuteProcess):
+    """A process that an `Executable` describes; the other options are those of ExecuteProcess."""
+
+    def __init__(
+        self,
+        *,
+        process_description: Executable,
+        shell: bool = False,
+        **options: Unpack[ProcessOptions],
+    ) -> None:
+        self.process_description = described = process_description
+        if not isinstance(described, Executable):
+            raise LaunchFileError(f"process_description= takes an Executable, not {described!r}")
+        own: ProcessOptions = {
+            "prefix": described.prefix,
+            "cwd": described.cwd,
+            "env": described.env,
+            "additional_env": described.additional_env,
+        }
+        own.update(options)
+        words = [*described.cmd, *described.arguments]
+        super().__init__(cmd=words, name=described.name, shell=shell, **own)

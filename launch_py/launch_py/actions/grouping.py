@@ -9,8 +9,7 @@ from typing import Any
 from launch_py.action import Action, check_actions, deferred_step
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError, errors_attributed_to
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.ros_imports import ros_imports
 from launch_py.substitution import Text, perform_text
 from launch_py.typed_values import perform_boolean, perform_seconds

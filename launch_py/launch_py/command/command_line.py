@@ -31,7 +31,7 @@ from launch_py.system.packages import (
 from launch_py.typed_values import parse_boolean
 
 if TYPE_CHECKING:
-    from launch_py.supervision.terminal_key import KeyCommand
+    from launch_py.supervision.foreground import KeyCommand
 
 EXIT_INTERRUPTED = 130
 

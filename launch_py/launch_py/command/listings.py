@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from launch_py.launch_description_entity import ArgumentInfo, LaunchSurvey
+from launch_py.launch_context import ArgumentInfo, LaunchSurvey
 from launch_py.plan.steps import (
     GeneratedFile,
     LaunchPlan,

@@ -1,15 +1,18 @@
-"""Finds the DDS participants on this host without DDS.
+"""Finds the DDS participants on this host without DDS, and tells robots from bystanders.
 
 A participant of domain d listens on UDP port 7400 + 250 d + 10 + 2 i, where i is the first free
 number (RTPS 2.5, 9.6.2.3), and Fast DDS names its shared-memory ports by the same numbers. So the
 kernel's tables show at once whether this host can have other nodes on the ROS graph.
+
+Looking up the ROS graph delays the start of a launch by half a second. A process that only listens,
+such as a plotting script, `ros2 topic echo` or RViz, is not worth that delay.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -137,3 +140,42 @@ def _reads(pid: int, ports: ParticipantPorts) -> bool:
                 if match and int(match[1]) in ports.socket_inodes:
                     return True
     return False
+
+
+LAUNCHED = b"NOTIFY_SOCKET="
+"""Every process that `arm launch` starts has this in its environment."""
+
+ROS_ARGUMENTS = b"--ros-args"
+"""Every node that `ros2 launch` starts, and every renamed node, has this on its command line."""
+
+
+def are_bystanders(ports: ParticipantPorts, names: Iterable[str]) -> bool:
+    """Return whether no participant on these ports is likely to have a node with one of the names.
+
+    A bystander is a process of this user that no launch has started and whose command line names
+    none of the nodes. A participant whose process is unknown is not a bystander.
+
+    Args:
+        ports: the ports of the participants.
+        names: the names of the nodes, with or without a namespace.
+    """
+    if ports.owners.keys() != ports.indices:
+        return False
+    words = {name.rpartition("/")[2].encode() for name in names} - {b""}
+    return all(_is_bystander(pid, words) for pids in ports.owners.values() for pid in pids)
+
+
+def _is_bystander(pid: int, words: set[bytes]) -> bool:
+    folder = f"/proc/{pid}"
+    try:
+        if os.stat(folder).st_uid != os.geteuid() or LAUNCHED in _content(f"{folder}/environ"):
+            return False
+        command = _content(f"{folder}/cmdline")
+    except OSError:
+        return False
+    return ROS_ARGUMENTS not in command and not any(word in command for word in words)
+
+
+def _content(path: str) -> bytes:
+    with open(path, "rb") as file:
+        return file.read()

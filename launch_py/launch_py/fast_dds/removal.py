@@ -1,4 +1,9 @@
-"""Removes segments and ports that no process uses, and disturbs none that is opening them.
+"""Removes the files that Fast DDS leaves in /dev/shm, and disturbs none that is opening them.
+
+A participant that shuts down removes its own files; one that is killed leaves up to eight. The
+supervisor keeps a list of those of its processes (`SharedMemoryLedger`). If it is itself killed,
+the list is lost and the owner of a file not known, but the kernel knows whether the file is used
+(`remove_abandoned`).
 
 The name of a segment is used once. The number of a port is used again by the next participant, in
 any domain, and Fast DDS opens a port in steps: it takes the port's mutex, maps the segment, locks
@@ -15,15 +20,19 @@ from __future__ import annotations
 import ctypes
 import fcntl
 import os
+import re
 import signal
 import tempfile
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 
 from launch_py.fast_dds.shared_memory import (
     PORT_PREFIX,
+    SHM_FOLDER,
+    lock_files,
     lock_names,
+    lock_owners,
     locked_segments,
     mutex_file,
 )
@@ -145,3 +154,68 @@ def _unlink(names: Iterable[str], folder: str) -> list[str]:
             os.unlink(os.path.join(folder, name))
             removed.append(name)
     return removed
+
+
+class SharedMemoryLedger:
+    """Keeps a list of the segments that supervised processes own; belongs to the loop's thread.
+
+    The owner of a segment is looked up when its lock file appears (inotify). After the owner's
+    death the files are removed, unless another process uses them.
+
+    Args:
+        is_ours: tells whether a process id belongs to a supervised process or a descendant.
+        folder: where the segments are.
+    """
+
+    def __init__(self, is_ours: Callable[[int], bool], folder: str = SHM_FOLDER) -> None:
+        self._is_ours = is_ours
+        self._folder = folder
+        self._owned: set[str] = set()
+
+    def observe(self) -> None:
+        """Add the segments that supervised processes own now."""
+        files = lock_files(self._folder)
+        owners = lock_owners(self._folder) if files else {}
+        for stem, inode in files.items():
+            if any(self._is_ours(pid) for pid in owners.get(inode, ())):
+                self._owned.add(stem)
+
+    def sweep(self) -> list[str]:
+        """Remove the listed segments that have no living owner; return their names.
+
+        A removed segment stays on the list. A process that still sends to a dead one creates the
+        segment of its port again, and does not remove it at its own end.
+        """
+        existing = [stem for stem in sorted(self._owned) if self._exists(stem)]
+        return remove_unused(existing, self._folder) if existing else []
+
+    def _exists(self, stem: str) -> bool:
+        names = (stem, *lock_names(stem))
+        return any(os.path.exists(os.path.join(self._folder, name)) for name in names)
+
+
+_FILE = re.compile(r"(?:sem\.)?(fastrtps_(?:port\d+|[0-9a-f]+))(?:_[es]l|_mutex)?")
+
+
+def remove_abandoned(folder: str = SHM_FOLDER) -> list[str]:
+    """Remove the files of this user that no process uses; return their names."""
+    locked = locked_segments(folder)
+    abandoned = [
+        stem
+        for stem, names in _own_segments(folder).items()
+        # Mutexes alone stay while a participant lives; see `remove_unused`.
+        if stem not in locked and not (locked and names == {mutex_file(stem)})
+    ]
+    return remove_unused(abandoned, folder) if abandoned else []
+
+
+def _own_segments(folder: str) -> dict[str, set[str]]:
+    """Return the names of this user's files by segment."""
+    segments: dict[str, set[str]] = {}
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            match = _FILE.fullmatch(entry.name)
+            with suppress(OSError):
+                if match and entry.stat(follow_symlinks=False).st_uid == os.geteuid():
+                    segments.setdefault(match[1], set()).add(entry.name)
+    return segments

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from launch_py.action import Action
-from launch_py.actions import (
+from launch_py.actions.event_actions import Shutdown
+from launch_py.actions.execute_process import ExecuteProcess
+from launch_py.actions.grouping import GroupAction, TimerAction
+from launch_py.actions.messages import LogInfo
+from launch_py.actions.settings import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
-    ExecuteProcess,
-    GroupAction,
-    IncludeLaunchDescription,
-    LogInfo,
     PopEnvironment,
     PushEnvironment,
     ReplaceEnvironmentVariables,
@@ -22,14 +23,11 @@ from launch_py.actions import (
     ResetLaunchConfigurations,
     SetEnvironmentVariable,
     SetLaunchConfiguration,
-    Shutdown,
-    TimerAction,
     UnsetEnvironmentVariable,
 )
 from launch_py.errors import LaunchError, LaunchFileError
 from launch_py.frontend.entity import Entity, FileText, read_entities
 from launch_py.launch_description import LaunchDescription
-from launch_py.launch_description_sources import AnyLaunchDescriptionSource
 from launch_py.near_names import describe_known
 from launch_py.ros.actions import (
     Node,
@@ -88,13 +86,16 @@ class Element:
         make: returns the action.
         needed: the attributes that it must have.
         optional: the attributes that it may have, besides `if` and `unless`.
-        children: the elements that it may contain; None means any action.
+        children: the elements that it may contain; None means any action, and `make` gets the
+            actions, too.
+        parts: the elements beside those actions that are none.
     """
 
-    make: Callable[[Entity], Action]
+    make: Callable[..., Action]
     needed: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
     children: tuple[str, ...] | None = ()
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,31 +107,36 @@ class Part:
     children: tuple[str, ...] = ()
 
 
-def read_description(path: Path) -> LaunchDescription:
+def read_description(path: Path, include: Callable[..., Action]) -> LaunchDescription:
     """Return the launch description in an XML or YAML launch file.
+
+    Args:
+        path: the file.
+        include: makes the action of an `include` from the file's name. It is an argument because
+            it reads launch files of all formats, and so stands above this module.
 
     Raises:
         LaunchFileError: the file cannot be read, or an element in it is unknown or malformed.
     """
     root = read_entities(path)
     root.refuse_unknown((), ("version",))
-    return LaunchDescription(_actions(root))
+    including = Element(partial(_include, include), ("file",), (), ("arg", "let"))
+    elements = {**ELEMENTS, "include": including}
+    return LaunchDescription([_action(child, elements) for child in root.children])
 
 
-def _actions(entity: Entity) -> list[Action]:
-    return [_action(child) for child in entity.children]
-
-
-def _action(entity: Entity) -> Action:
-    element = ELEMENTS.get(entity.tag.replace("-", "_"))
+def _action(entity: Entity, elements: Mapping[str, Element]) -> Action:
+    element = elements.get(entity.tag.replace("-", "_"))
     if element is None:
-        known = describe_known(entity.tag, ELEMENTS)
+        known = describe_known(entity.tag, elements)
         raise LaunchFileError(f"{entity.where}: no action {entity.tag!r} here; {known}")
     entity.refuse_unknown(element.needed, (*element.optional, "if", "unless"))
     if element.children is not None:
         _check_parts(entity, element.children)
+    inside = [child for child in entity.children if child.tag not in element.parts]
+    inner = [] if element.children is not None else [[_action(c, elements) for c in inside]]
     try:
-        action = element.make(entity)
+        action = element.make(entity, *inner)
         action.where = entity.where
         return action
     except LaunchFileError:
@@ -275,14 +281,9 @@ def _executable(entity: Entity) -> Action:
     return ExecuteProcess(cmd=command, shell=shell, **_process_options(entity))
 
 
-def _include(entity: Entity) -> Action:
-    return IncludeLaunchDescription(
-        AnyLaunchDescriptionSource(entity.text("file")),
-        launch_arguments=[
-            (c.text("name"), c.text("value")) for c in entity.children_named("arg", "let")
-        ],
-        condition=entity.condition(),
-    )
+def _include(include: Callable[..., Action], entity: Entity) -> Action:
+    arguments = [(c.text("name"), c.text("value")) for c in entity.children_named("arg", "let")]
+    return include(entity.text("file"), launch_arguments=arguments, condition=entity.condition())
 
 
 def _argument(entity: Entity) -> Action:
@@ -295,18 +296,17 @@ def _argument(entity: Entity) -> Action:
     )
 
 
-def _group(entity: Entity) -> Action:
-    inner = [child for child in entity.children if child.tag not in ("keep", "arg")]
-    actions = [_action(child) for child in inner]
-    kept = {c.word("name"): c.text("value") for c in entity.children_named("keep")}
-    for child in entity.children_named("keep"):
-        child.refuse_unknown(("name", "value"), ())
-    actions[:0] = [_argument(child) for child in entity.children_named("arg")]
+def _group(entity: Entity, actions: list[Action]) -> Action:
+    kept = entity.children_named("keep")
+    for child in kept:
+        child.refuse_unknown(PAIR, ())
+    # Arguments are declared before the actions that use them, wherever they stand.
+    actions.sort(key=lambda action: not isinstance(action, DeclareLaunchArgument))
     return GroupAction(
         actions,
         scoped=entity.boolean("scoped", True),
         forwarding=entity.boolean("forwarding", True),
-        launch_configurations=kept,
+        launch_configurations={child.word("name"): child.text("value") for child in kept},
         condition=entity.condition(),
     )
 
@@ -325,10 +325,8 @@ def _append_env(entity: Entity) -> Action:
     )
 
 
-def _timer(entity: Entity) -> Action:
-    return TimerAction(
-        period=entity.text("period"), actions=_actions(entity), condition=entity.condition()
-    )
+def _timer(make: Callable[..., Action], entity: Entity, actions: list[Action]) -> Action:
+    return make(period=entity.text("period"), actions=actions, condition=entity.condition())
 
 
 def _one(make: Callable[..., Action], attribute: str, argument: str) -> Callable[[Entity], Action]:
@@ -355,12 +353,6 @@ def _reset(entity: Entity) -> Action:
 
 def _replace_env(entity: Entity) -> Action:
     return ReplaceEnvironmentVariables(_pairs(entity, "env"), condition=entity.condition())
-
-
-def _ros_timer(entity: Entity) -> Action:
-    return RosTimer(
-        period=entity.text("period"), actions=_actions(entity), condition=entity.condition()
-    )
 
 
 def _shutdown(entity: Entity) -> Action:
@@ -397,8 +389,7 @@ ELEMENTS = {
     "append_env": Element(_append_env, PAIR, ("prepend", "separator")),
     "arg": Element(_argument, ("name",), ("default", "description"), ("choice",)),
     "executable": Element(_executable, ("cmd",), ("args", "shell", *PROCESS), ("env",)),
-    "group": Element(_group, (), ("scoped", "forwarding"), None),
-    "include": Element(_include, ("file",), (), ("arg", "let")),
+    "group": Element(_group, (), ("scoped", "forwarding"), None, ("keep",)),
     "let": Element(_named(SetLaunchConfiguration), PAIR),
     "log": Element(_one(LogInfo, "message", "msg"), ("message",), ("level",)),
     "lifecycle_node": Element(
@@ -419,7 +410,7 @@ ELEMENTS = {
     "rep_env": Element(_replace_env, (), (), ("env",)),
     "reset": Element(_reset, (), (), ("keep",)),
     "reset_env": Element(_bare(ResetEnvironment)),
-    "ros_timer": Element(_ros_timer, ("period",), (), None),
+    "ros_timer": Element(partial(_timer, RosTimer), ("period",), (), None),
     "set_env": Element(_named(SetEnvironmentVariable), PAIR),
     "set_parameter": Element(_set_parameter, PAIR, ("type",)),
     "set_parameters_from_file": Element(
@@ -429,7 +420,7 @@ ELEMENTS = {
     "set_ros_log_dir": Element(_one(SetROSLogDir, "new_log_dir", "new_log_dir"), ("new_log_dir",)),
     "set_use_sim_time": Element(_one(SetUseSimTime, "value", "value"), ("value",)),
     "shutdown": Element(_shutdown, (), ("reason",)),
-    "timer": Element(_timer, ("period",), (), None),
+    "timer": Element(partial(_timer, TimerAction), ("period",), (), None),
     "unset_env": Element(_one(UnsetEnvironmentVariable, "name", "name"), ("name",)),
 }
 """The actions by the names of their elements; a hyphen counts as an underscore."""

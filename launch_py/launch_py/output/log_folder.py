@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from launch_py.errors import StartError
-from launch_py.log_path import launch_name
 from launch_py.printable import printable, without_colours
+from launch_py.system.child_environment import launch_name
 
 OWNER_ONLY = 0o600
 """Logs are private to the user, because they may hold secrets."""

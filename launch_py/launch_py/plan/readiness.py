@@ -13,11 +13,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from launch_py.errors import LaunchFileError
-from launch_py.names import graph_name
-from launch_py.substitution import Text
+from launch_py.substitution import Text, join_names
 from launch_py.typed_values import check_seconds
 
 DEFAULT_TIMEOUT_S = 60.0
+
+# ROS's rules: no part starts with a digit, and no name has two underscores in a row.
+_FULL_NAME = re.compile(r"(?!.*__)(?:/[A-Za-z_]\w*)+", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +112,7 @@ class TopicPublished(ProbedCondition):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, topic=graph_name(namespace, perform(self.topic)))
+        return replace(self, topic=_graph_name(namespace, perform(self.topic)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +127,7 @@ class ServiceAvailable(ProbedCondition):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, service=graph_name(namespace, perform(self.service)))
+        return replace(self, service=_graph_name(namespace, perform(self.service)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,7 @@ class ActionAvailable(ProbedCondition):
 
     def resolve(self, perform: Callable[[Text], str], namespace: str) -> Readiness:
         """Return the condition with its text performed."""
-        return replace(self, action=graph_name(namespace, perform(self.action)))
+        return replace(self, action=_graph_name(namespace, perform(self.action)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,3 +161,18 @@ class HttpOk(ProbedCondition):
         if not url.startswith(("http://", "https://")):
             raise LaunchFileError(f"HttpOk({url!r}): a page's URL begins with http:// or https://")
         return replace(self, url=url)
+
+
+def _graph_name(namespace: str, name: str) -> str:
+    """Return the full name of the topic, service or action `name` in `namespace`.
+
+    Raises:
+        LaunchFileError: ROS does not allow the name.
+    """
+    full = join_names(namespace, name) if name else ""
+    if not _FULL_NAME.fullmatch(full):
+        raise LaunchFileError(
+            f"{name!r} is not a valid name of a topic, service or action: use letters, digits "
+            "and single underscores, and separate parts by slashes; a part begins with no digit"
+        )
+    return full

@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
-from launch_py.events import ProcessEvent, ProcessIO, Shutdown
-from launch_py.launch_description_entity import LaunchDescriptionEntity
+from launch_py.events import LaunchDescriptionEntity, ProcessEvent, ProcessIO, ShutdownEvent
 from launch_py.plan.readiness import Finished, Readiness
 from launch_py.plan.restart_policy import RestartPolicy
 
@@ -127,7 +126,7 @@ class OutputHandlerStep(Step):
 class ShutdownHandlerStep(Step):
     """Once due, calls a function of the launch file when the shutdown begins."""
 
-    expand: Callable[[Shutdown], Sequence[Step]]
+    expand: Callable[[ShutdownEvent], Sequence[Step]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,13 @@ from launch_py.actions.grouping import TimerAction
 from launch_py.conditions import Condition
 from launch_py.errors import NodeParameterError
 from launch_py.launch_context import LaunchContext
-from launch_py.names import join_names
 from launch_py.plan.steps import GeneratedFile
-from launch_py.ros.parameter_descriptions import ParameterFile
-from launch_py.ros.parameter_order import ParameterSource, files_in_order, source_of_values
+from launch_py.ros.parameter_descriptions import (
+    ParameterFile,
+    ParameterSource,
+    files_in_order,
+    source_of_values,
+)
 from launch_py.ros.parameters import (
     ParameterValue,
     evaluate_parameters,
@@ -26,6 +29,7 @@ from launch_py.substitution import (
     Pairs,
     Text,
     describe_text,
+    join_names,
     keep_pairs,
     perform_pairs,
     perform_text,

@@ -13,8 +13,7 @@ from typing import Any
 from launch_py.action import Action
 from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError, NotFoundError
-from launch_py.launch_context import LaunchContext
-from launch_py.launch_description_entity import LaunchSurvey
+from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.ros.actions import Node
 from launch_py.ros.lifecycle import LifecycleNode
 from launch_py.substitution import Pairs, Text, describe_text, perform_text

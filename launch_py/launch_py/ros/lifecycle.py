@@ -18,12 +18,11 @@ from launch_py.errors import LaunchFileError
 from launch_py.event_handlers import EventHandler, OnProcessStart
 from launch_py.events import Event, ProcessIO, matches_action
 from launch_py.launch_context import LaunchContext
-from launch_py.names import join_names
 from launch_py.near_names import describe_known
 from launch_py.plan.readiness import LogLine
 from launch_py.plan.steps import OutputHandlerStep
 from launch_py.ros.actions import Node
-from launch_py.substitution import Text, perform_text
+from launch_py.substitution import Text, join_names, perform_text
 
 TRANSITIONS = {"create": 0, "configure": 1, "cleanup": 2, "activate": 3, "deactivate": 4}
 SHUTDOWNS = {"unconfigured_shutdown": 5, "inactive_shutdown": 6, "active_shutdown": 7}

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from launch_py.names import join_names
+from launch_py.substitution import join_names
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -12,7 +12,7 @@ from launch_py.ros.substitutions import (
     ExecutableInPackage,
     FindPackagePrefix,
     FindPackageShare,
-    Parameter,
+    ParameterSubstitution,
 )
 from launch_py.substitution import Substitution, Text
 from launch_py.substitutions import (
@@ -72,7 +72,7 @@ KINDS = {
     "not": _Kind(NotSubstitution),
     "not-equals": _Kind(NotEqualsSubstitution, 2, 2),
     "or": _Kind(OrSubstitution, 2, 2),
-    "param": _Kind(lambda name, value=None: Parameter(name, default=value), 1, 2),
+    "param": _Kind(lambda name, value=None: ParameterSubstitution(name, default=value), 1, 2),
     "string-join": _Kind(lambda mark, *parts: StringJoinSubstitution(parts, mark), 2, MANY),
     "var": _Kind(lambda name, value=None: LaunchConfiguration(name, default=value), 1, 2),
 }

@@ -75,7 +75,7 @@ class ExecutableInPackage(FindPackagePrefix):
         return f"ExecutableInPackage({describe_text(self.executable)!r})"
 
 
-class Parameter(Substitution):
+class ParameterSubstitution(Substitution):
     """The value that `SetParameter` has given a parameter in this scope."""
 
     def __init__(self, name: Text, *, default: Text | None = None) -> None:
@@ -96,3 +96,7 @@ class Parameter(Substitution):
     def describe(self) -> str:
         """Return the substitution as messages show it."""
         return f"Parameter({describe_text(self.name)!r})"
+
+
+Parameter = ParameterSubstitution
+"""ROS's name, which the description of a parameter has, too."""

@@ -2,7 +2,7 @@
 
 from launch_py.errors import SubstitutionError as SubstitutionFailure
 from launch_py.substitution import Substitution
-from launch_py.substitutions.command import Call, Command, FindExecutable
+from launch_py.substitutions.command import Call, Command, FindExecutable, PythonExpression
 from launch_py.substitutions.files import (
     AnonName,
     FileContent,
@@ -12,22 +12,19 @@ from launch_py.substitutions.files import (
     ThisLaunchFile,
     ThisLaunchFileDir,
 )
-from launch_py.substitutions.logic import (
+from launch_py.substitutions.text import (
     AllSubstitution,
     AndSubstitution,
     AnySubstitution,
     BooleanSubstitution,
+    EnvironmentVariable,
     EqualsSubstitution,
     IfElseSubstitution,
+    LaunchConfiguration,
+    LocalSubstitution,
     NotEqualsSubstitution,
     NotSubstitution,
     OrSubstitution,
-)
-from launch_py.substitutions.python_expression import PythonExpression
-from launch_py.substitutions.text import (
-    EnvironmentVariable,
-    LaunchConfiguration,
-    LocalSubstitution,
     StringJoinSubstitution,
     TextSubstitution,
 )

@@ -7,9 +7,9 @@ import stat
 from collections.abc import Iterable
 
 from launch_py.errors import SubstitutionError
-from launch_py.log_path import launch_name, log_root
 from launch_py.near_names import describe_irregular_file
 from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
+from launch_py.system.child_environment import launch_name, log_root
 
 MAX_CHARACTERS = 20_000_000
 """Maximum length of a file whose text a launch file takes; robots' descriptions are shorter."""

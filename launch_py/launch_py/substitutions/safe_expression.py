@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 from launch_py.errors import SubstitutionError
 from launch_py.near_names import describe_known
 from launch_py.substitution import LaunchScope, Substitution, Text, describe_text, perform_text
-from launch_py.substitutions.python_expression import NAMES
+from launch_py.substitutions.command import NAMES
 
 MAX_CHARACTERS = 4000
 """The longest expression: the parser's stack grows with it."""

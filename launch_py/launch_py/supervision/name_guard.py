@@ -18,10 +18,10 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from launch_py.fast_dds.bystanders import are_bystanders
 from launch_py.fast_dds.participants import (
     PID_BITS,
     ancestors,
+    are_bystanders,
     domain_of,
     find_ports,
     own_processes,
@@ -31,8 +31,7 @@ from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import ProcessStep, StopDelays
 from launch_py.supervision import linux
 from launch_py.supervision.event_loop import EventLoop, Timer
-from launch_py.supervision.probe_client import ProbeClient
-from launch_py.supervision.runner import LocalRunner
+from launch_py.supervision.runner import LocalRunner, ProbeClient
 from launch_py.system.child_environment import for_program
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import time
@@ -11,9 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from launch_py.fast_dds.ledger import SharedMemoryLedger
+from launch_py.fast_dds.removal import SharedMemoryLedger
 from launch_py.fast_dds.shared_memory import watch_folder
-from launch_py.log_path import log_root
 from launch_py.output import PlainScreen, ReadySummary, Screen, TerminalScreen
 from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
 from launch_py.output.reporter import Reporter
@@ -24,16 +25,69 @@ from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.foreground import (
     KEY_SIGNAL,
     STANDARD_INPUT,
+    KeyCommand,
+    is_in_foreground,
     stop_signals,
     supervise_in_fork,
 )
 from launch_py.supervision.name_guard import NameGuard
-from launch_py.supervision.notify_socket import NotifySocket
-from launch_py.supervision.probe_client import ProbeClient
-from launch_py.supervision.runner import LocalRunner
+from launch_py.supervision.runner import LocalRunner, ProbeClient
 from launch_py.supervision.supervisor import Supervisor
-from launch_py.supervision.terminal_key import KeyCommand, is_in_foreground
-from launch_py.system.child_environment import default_environment
+from launch_py.system.child_environment import default_environment, log_root
+
+_CREDENTIALS = struct.Struct("iII")
+MAX_DATAGRAM_BYTES = 4096
+
+
+class NotifySocket:
+    """The socket on which processes report readiness and status; belongs to the loop's thread.
+
+    The protocol is systemd's: a datagram of lines `READY=1` and `STATUS=text` to the address in
+    NOTIFY_SOCKET, so a program that runs as a service under systemd needs no change. The terminal's
+    status line shows the status of the processes. This project adds one field: `X_REMARK=text` is
+    shown to users when everything is ready. The address is abstract, so no file is left behind. The
+    kernel gives the sender of each message.
+
+    Args:
+        on_notification: called with the sender's process id and the fields of its message.
+    """
+
+    def __init__(self, on_notification: Callable[[int, dict[str, str]], None]) -> None:
+        name = f"launch_py-{os.getpid()}-{os.urandom(4).hex()}"
+        self.address = f"@{name}"
+        self._on_notification = on_notification
+        self._socket = socket.socket(
+            socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK | socket.SOCK_CLOEXEC
+        )
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+        self._socket.bind(f"\0{name}")
+
+    def fileno(self) -> int:
+        """Return the file descriptor to watch for reading."""
+        return self._socket.fileno()
+
+    def receive(self) -> None:
+        """Receive one message. Call it when the socket is readable."""
+        try:
+            data, ancillary, _, _ = self._socket.recvmsg(
+                MAX_DATAGRAM_BYTES, socket.CMSG_SPACE(_CREDENTIALS.size)
+            )
+        except BlockingIOError:
+            return
+        for level, kind, payload in ancillary:
+            if level == socket.SOL_SOCKET and kind == socket.SCM_CREDENTIALS:
+                pid, _, _ = _CREDENTIALS.unpack(payload[: _CREDENTIALS.size])
+                self._on_notification(pid, _fields(data))
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+
+def _fields(data: bytes) -> dict[str, str]:
+    lines = data.decode("utf-8", errors="replace").splitlines()
+    return {key: value for key, _, value in (line.partition("=") for line in lines)}
+
 
 OBSERVE_DELAYS_S = (0.02, 0.1, 0.5)
 """The times after a lock file's creation at which its owner is looked up. The process takes the

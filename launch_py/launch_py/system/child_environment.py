@@ -1,12 +1,36 @@
-"""The environment of launched processes."""
+"""The environment of launched processes, and where they write their log files."""
+
+from __future__ import annotations
 
 import os
+import socket
 import sys
+import time
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 from launch_py.errors import NotFoundError
 from launch_py.system.packages import Packages, ament_prefixes
+
+
+def log_root(environ: Mapping[str, str]) -> Path:
+    """Return the folder of ROS's logs: ROS_LOG_DIR, else $ROS_HOME/log, else ~/.ros/log."""
+    if environ.get("ROS_LOG_DIR"):
+        return Path(os.path.expanduser(environ["ROS_LOG_DIR"]))
+    if environ.get("ROS_HOME"):
+        return Path(os.path.expanduser(environ["ROS_HOME"])) / "log"
+    if environ.get("HOME"):
+        return Path(environ["HOME"]) / ".ros" / "log"
+    return Path(environ.get("TMPDIR", "/tmp")) / f"ros-log-{os.getuid()}"
+
+
+@cache
+def launch_name() -> str:
+    """Return the name of this process's log folder, known before the folder exists."""
+    stamp = time.strftime("%Y-%m-%d-%H-%M-%S")
+    return f"{stamp}-{socket.gethostname()}-{os.getpid()}"
+
 
 BOOTSTRAP_GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 LIBRARY_PATH = "LD_LIBRARY_PATH"

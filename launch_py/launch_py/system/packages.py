@@ -22,7 +22,7 @@ from launch_py.near_names import (
     did_you_mean,
     near_names,
 )
-from launch_py.system.stand_ins import NOTHING, SAME, StandIn, stand_ins
+from launch_py.system.programs import NOTHING, SAME, StandIn, stand_ins
 
 MARKERS = "share/ament_index/resource_index/packages"
 STAND_IN_MARK = "stand-in of arm-suite\n"

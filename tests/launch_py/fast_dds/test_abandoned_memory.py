@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from launch_py.fast_dds.abandoned_memory import remove_abandoned
+from launch_py.fast_dds.removal import remove_abandoned
 
 SEGMENT = ("fastrtps_0d1a538084f21f6e", "fastrtps_0d1a538084f21f6e_el")
 PORT = (

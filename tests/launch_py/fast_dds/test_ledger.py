@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from launch_py.fast_dds.ledger import SharedMemoryLedger
+from launch_py.fast_dds.removal import SharedMemoryLedger
 
 HOLD = (
     "import fcntl, sys; f = open(sys.argv[1]); fcntl.flock(f, fcntl.LOCK_EX); "

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from launch_py.errors import StartError
-from launch_py.log_path import log_root
 from launch_py.output.log_folder import LogFolder
+from launch_py.system.child_environment import log_root
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from launch_py.supervision.notify_socket import NotifySocket
+from launch_py.supervision.session import NotifySocket
 
 SEND = (
     "import os, socket; s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM); "

@@ -5,9 +5,9 @@ import sys
 import pytest
 
 from launch_py.plan.readiness import HttpOk
-from launch_py.supervision import linux, probe_client
+from launch_py.supervision import linux, runner
 from launch_py.supervision.event_loop import EventLoop
-from launch_py.supervision.probe_client import ProbeClient
+from launch_py.supervision.runner import ProbeClient
 
 TIMEOUT_S = 30.0
 TOPIC = "actions = [python('a', 'import signal; signal.pause()', ready=TopicPublished('/t'))]"
@@ -63,7 +63,7 @@ class Trial:
 
 @pytest.fixture
 def trial(tmp_path, monkeypatch):
-    monkeypatch.setattr(probe_client, "PROBE_COMMAND", (sys.executable, "-S", "-c", ANSWERS))
+    monkeypatch.setattr(runner, "PROBE_COMMAND", (sys.executable, "-S", "-c", ANSWERS))
     trial = Trial(tmp_path / "probe.log")
     yield trial
     trial.close()

@@ -24,7 +24,7 @@ PROGRAM = """\
 import sys
 
 from launch_py.command.command_line import run
-from launch_py.supervision.terminal_key import KeyCommand
+from launch_py.supervision.foreground import KeyCommand
 
 command = "print('all', end=' ', flush=True); import time; time.sleep(0.2); print('stands')"
 key = KeyCommand("emergency stop", (sys.executable, "-c", command))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from launch_py.fast_dds.ledger import SharedMemoryLedger
+from launch_py.fast_dds.removal import SharedMemoryLedger
 
 TIMEOUT_S = 120.0
 END_TIMEOUT_S = 15.0
