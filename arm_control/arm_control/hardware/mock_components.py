@@ -1,4 +1,7 @@
-"""mock_components/GenericSystem: a driver without hardware, whose states mirror its commands."""
+"""mock_components/GenericSystem: a driver without hardware, whose states mirror its commands.
+
+Joints move by mirroring commands, by integration, or as mimics.
+"""
 
 import logging
 from collections.abc import Iterable, Mapping, Sequence

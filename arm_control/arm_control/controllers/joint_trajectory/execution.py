@@ -1,4 +1,9 @@
-"""The executed plan, its speed, and its goal."""
+"""The executed plan, its speed, its goal, and how the goal ends.
+
+Without a goal tolerance, ros2_controllers ends a goal by time alone. Here a joint that rests far
+from its end, because something blocks it or nothing drives it, does not count as arrived. One that
+is late but comes closer does.
+"""
 
 import logging
 from collections.abc import Sequence

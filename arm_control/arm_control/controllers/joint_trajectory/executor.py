@@ -1,4 +1,4 @@
-"""Executes trajectories while the controller is active."""
+"""Executes trajectories while the controller is active, and turns set-points into commands."""
 
 import logging
 import struct

@@ -1,4 +1,4 @@
-"""The clients' requests, not yet checked, and the results of goals."""
+"""Goals: requests, not yet checked, their tolerances and their results."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

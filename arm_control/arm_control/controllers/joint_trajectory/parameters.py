@@ -1,4 +1,4 @@
-"""Parameters of the joint trajectory controller."""
+"""Parameters of the joint trajectory controller, and the configuration that follows from them."""
 
 import logging
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A trajectory in the controller's form."""
+"""Trajectories: the waypoints of a client, and their form in the controller."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The node /controller_manager and its parameters."""
+"""The node /controller_manager: its parameters, robot_description and /diagnostics."""
 
 import dataclasses
 import logging

@@ -1,4 +1,4 @@
-"""The node of one controller: its parameters, its adapter, its transition events."""
+"""The node of one controller: parameters, adapter, transition events; and its executor."""
 
 import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
