@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import pendulum, sensor
 
 from arm_gazebo.errors import FaultError
 from arm_gazebo.recording.replay import Replay
@@ -15,11 +16,7 @@ from arm_sim.bench.simulation import BenchSimulation
 from arm_sim.errors import CallError, UnknownNameError
 
 GOAL = [1.0, 0.5, 0.1, 0.5]
-IMU = """<robot name='box'><link name='base'/><link name='bob'><inertial><mass value='1'/>
-<inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link>
-<joint name='hinge' type='revolute'><parent link='base'/><child link='bob'/>
-<axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='20' velocity='3'/></joint>
-<gazebo reference='bob'><sensor name='imu' type='imu'/></gazebo></robot>"""
+IMU = pendulum(sensor("bob", "imu", "imu"), name="box", xyz="0 0 0")
 
 
 @pytest.fixture

@@ -4,17 +4,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from robots import pendulum
 
 from arm_control.errors import ParameterError
 from arm_gazebo.errors import SimSettingsError
 from arm_sim import Simulation, UnknownNameError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "servo_arm"
-PENDULUM = """<robot name='pendulum'><link name='base'/><link name='bob'><inertial>
-<mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial>
-</link><joint name='hinge' type='revolute'><parent link='base'/><child link='bob'/>
-<origin xyz='0 0 1'/><axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='20' velocity='3'/>
-</joint></robot>"""
+PENDULUM = pendulum()
 CONTROLLERS = {
     "controller_manager": {
         "ros__parameters": {

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import pendulum
 
 from arm_control.errors import (
     ArmControlError,
@@ -200,13 +201,7 @@ def test_it_raises_where_the_parameters_ask_for_that(tmp_path: Path):
 
 def test_any_urdf_gets_a_controller(tmp_path):
     file = tmp_path / "pendulum.urdf"
-    file.write_text(
-        "<robot name='pendulum'><link name='base'/><link name='bob'><inertial>"
-        "<mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/>"
-        "</inertial></link><joint name='hinge' type='revolute'><parent link='base'/>"
-        "<child link='bob'/><origin xyz='0 0 1'/><axis xyz='0 1 0'/>"
-        "<limit lower='-3' upper='3' effort='20' velocity='3'/></joint></robot>"
-    )
+    file.write_text(pendulum())
     with Simulation(file) as sim:
         sim["position_controller"].command([0.5])
         sim.run(1.0)

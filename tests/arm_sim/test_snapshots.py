@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import control, pendulum, sensor
 
 from arm_control.controllers.goals import GoalOutcome
 from arm_control.errors import StateError
@@ -15,18 +16,17 @@ CAN = """<sdf version='1.9'><model name='can'><link name='body'>
 <inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
 <collision name='shape'><geometry><box><size>0.06 0.06 0.1</size></box></geometry></collision>
 </link></model></sdf>"""
-NOISY = """<robot name='noisy'><link name='base'/><link name='bob'><inertial><mass value='1'/>
-<inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link>
-<joint name='hinge' type='revolute'><parent link='base'/><child link='bob'/><origin xyz='0 0 1'/>
-<axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='20' velocity='3'/></joint>
-<gazebo reference='bob'><sensor name='imu' type='imu'><always_on>1</always_on><imu>
-<linear_acceleration><x><noise type='gaussian'><mean>0</mean><stddev>0.1</stddev></noise></x>
-</linear_acceleration></imu></sensor></gazebo>
-<ros2_control name='sim' type='system'><hardware><plugin>arm_gazebo/SimulatedHardware</plugin>
-</hardware><joint name='hinge'><command_interface name='position'/>
-<state_interface name='position'/></joint>
-<sensor name='imu'><state_interface name='linear_acceleration.x'/></sensor>
-</ros2_control></robot>"""
+NOISE = """<always_on>1</always_on><imu><linear_acceleration><x><noise type='gaussian'>
+<mean>0</mean><stddev>0.1</stddev></noise></x></linear_acceleration></imu>"""
+NOISY = pendulum(
+    sensor("bob", "imu", "imu", NOISE),
+    control(
+        "<joint name='hinge'><command_interface name='position'/>"
+        "<state_interface name='position'/></joint>",
+        "<sensor name='imu'><state_interface name='linear_acceleration.x'/></sensor>",
+    ),
+    name="noisy",
+)
 
 
 def follower() -> Simulation:

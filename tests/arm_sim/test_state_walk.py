@@ -12,6 +12,7 @@ import pytest
 from hypothesis import Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from robots import box, link, robot
 
 from arm_control.errors import ArmControlError, ControllerManagerError, StateError
 from arm_control.lifecycle import LifecycleState
@@ -111,11 +112,7 @@ PARAMETERS = {
     **{name: {"ros__parameters": values} for name, (_, values) in CONTROLLERS.items()},
 }
 
-BOX = (
-    '<robot name="box"><link name="box"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" '
-    'izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.1 0.1 0.1"/>'
-    "</geometry></collision></link></robot>"
-)
+BOX = robot(link("box", box("collision")), name="box")
 FAR_AWAY = (9.0, 9.0, 0.05)
 
 STILL = 2e-3

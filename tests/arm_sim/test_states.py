@@ -3,15 +3,11 @@
 from pathlib import Path
 
 import pytest
+from robots import pendulum, sensor
 
 from arm_sim import Simulation, UnknownNameError
 
-IMU = """<robot name='box'><link name='base'/><link name='bob'><inertial><mass value='1'/>
-<inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link>
-<joint name='hinge' type='revolute'><parent link='base'/><child link='bob'/><origin xyz='0 0 1'/>
-<axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='20' velocity='3'/></joint>
-<gazebo reference='bob'><sensor name='imu' type='imu'><always_on>1</always_on></sensor></gazebo>
-</robot>"""
+IMU = pendulum(sensor("bob", "imu", "imu", "<always_on>1</always_on>"), name="box")
 
 
 def test_states_are_those_that_controllers_read(sim: Simulation):

@@ -3,17 +3,18 @@
 from types import MappingProxyType
 
 import pytest
+from robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_viewer.joint_move import SPEED_USED, DriveKind, joint_drives, plan_moves
 from arm_viewer.requests import MoveJoints
 from arm_viewer.snapshot import Description, JointReading, JointStates, ListedController, Snapshot
 
-ROBOT = """<robot name='r'><link name='base'/><link name='a'/><link name='b'/>
-  <joint name='j0' type='revolute'><parent link='base'/><child link='a'/>
-    <limit lower='-2' upper='2' effort='1' velocity='0.5'/></joint>
-  <joint name='j1' type='revolute'><parent link='a'/><child link='b'/>
-    <limit lower='-2' upper='2' effort='1' velocity='2'/></joint></robot>"""
+ROBOT = robot(
+    *(link(name, mass=0) for name in ("base", "a", "b")),
+    joint("j0", "base", "a", limits=(-2, 2), effort=1, velocity=0.5),
+    joint("j1", "a", "b", limits=(-2, 2), effort=1, velocity=2),
+)
 POSITIONS = "position_controllers/JointGroupPositionController"
 TRAJECTORIES = "joint_trajectory_controller/JointTrajectoryController"
 

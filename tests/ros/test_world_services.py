@@ -5,13 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from robots import crate
 
 pytestmark = pytest.mark.ros
 
-CRATE = """<robot name="crate"><link name="base">
-  <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>
-  </inertial><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
-  <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
+CRATE = crate(size=0.2)
 WALL = """<sdf version="1.9"><model name="wall"><static>true</static><link name="l">
   <visual name="v"><geometry><box><size>6 6 6</size></box></geometry>
   <material><diffuse>1 0 0 1</diffuse></material></visual></link></model></sdf>"""

@@ -30,7 +30,7 @@ NASTY = st.sampled_from(
 )
 SETTINGS = settings(
     deadline=None,
-    max_examples=60,
+    max_examples=30,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
 )
 

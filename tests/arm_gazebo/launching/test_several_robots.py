@@ -1,6 +1,7 @@
 """Copies of a robot on a grid, and what their controllers' parameters name."""
 
 import pytest
+from robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.errors import SimSettingsError
@@ -22,9 +23,11 @@ CONTROLLERS = """
 /lab/wheels:
   ros__parameters: {base_frame_id: base_link, left_wheel_names: [left], wheel_radius: 0.1}
 """
-ROBOT = """<robot name="6dof-arm"><link name="base_link"/><link name="tip"/>
-  <joint name="shoulder" type="revolute"><parent link="base_link"/><child link="tip"/>
-    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+ROBOT = robot(
+    *(link(name, mass=0) for name in ("base_link", "tip")),
+    joint("shoulder", "base_link", "tip", limits=(-1, 1), effort=1, velocity=1),
+    name="6dof-arm",
+)
 
 
 @pytest.fixture
@@ -42,8 +45,8 @@ def test_copies_have_namespaces_prefixes_and_places_of_their_own(setup):
     robots = copies_of(setup, Grid(3, 0.5))
     assert list(robots) == ["robot_6dof_arm_0", "robot_6dof_arm_1", "robot_6dof_arm_2"]
     assert [robot.pose[:2] for robot in robots.values()] == [(0, 0), (0, 0.5), (0.5, 0)]
-    for name, robot in robots.items():
-        assert parse_urdf(robot.setup.description).joint(f"{name}_shoulder").child == f"{name}_tip"
+    for name, placed in robots.items():
+        assert parse_urdf(placed.setup.description).joint(f"{name}_shoulder").child == f"{name}_tip"
 
 
 def test_parameters_of_controllers_name_the_joints_of_the_copy(setup):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from robots import crate
 
 from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
 from arm_control.errors import ControllerManagerError
@@ -14,9 +15,7 @@ from arm_gazebo.recording.run_file import RecordedInput, RunFile, RunFileWriter
 FORWARD = "position_controllers/JointGroupPositionController"
 TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 JOINTS = ("j0", "j1", "j2", "j3")
-CRATE = """<robot name="crate"><link name="base"><inertial><mass value="1"/>
-  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
-  <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link></robot>"""
+CRATE = crate()
 BALL = """<mujoco><worldbody><body><freejoint/><geom size="0.05" mass="0.1"/></body></worldbody>
   </mujoco>"""
 

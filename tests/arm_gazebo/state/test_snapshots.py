@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import crate
 
 from arm_gazebo.state.snapshot import MAGIC, model_hash, read_snapshot, write_snapshot
 from arm_gazebo.state.snapshots import SnapshotStore
@@ -12,9 +13,7 @@ from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 
-CRATE = """<robot name="crate"><link name="base">
-  <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>
-  </inertial><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link></robot>"""
+CRATE = crate()
 
 
 class Kept:
@@ -110,7 +109,7 @@ def test_a_model_file_that_has_changed_since_is_refused(kept, tmp_path):
     run.spawn("crate", 0.4, str(model))
     run.snapshots.save(str(tmp_path / "a.snapshot"))
     run.snapshots.restore(str(tmp_path / "a.snapshot"))
-    model.write_text(CRATE.replace('mass value="1"', 'mass value="2"'))
+    model.write_text(CRATE.replace("mass value='1'", "mass value='2'"))
     kind, message = refusal(lambda: run.snapshots.restore(str(tmp_path / "a.snapshot")))
     assert kind is Refusal.FAILED
     assert "is not that of this simulation" in message

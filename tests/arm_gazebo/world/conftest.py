@@ -4,26 +4,20 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from robots import crate, joint, link
 
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource
 
-URDF = """<robot name="crate"><link name="base">
-  <inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>
-  </inertial>
-  <visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>
-  <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>{more}</robot>"""
-LID = """<link name="lid"><inertial><mass value="0.1"/>
-  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
-  <joint name="hinge" type="revolute"><parent link="base"/><child link="lid"/>
-  <limit lower="-1.5" upper="1.5" effort="1" velocity="1"/></joint>"""
-CRATE = URDF.format(more="")
-CHEST = URDF.format(more=LID)
-LAMP = URDF.format(
-    more="<link name='world'/><joint name='j' type='{joint}'><parent link='world'/>"
+LID = link("lid", mass=0.1)
+HINGE = joint("hinge", "base", "lid", limits=(-1.5, 1.5), axis="1 0 0", effort=1, velocity=1)
+CRATE = crate()
+CHEST = crate(LID, HINGE)
+LAMP = crate(
+    "<link name='world'/><joint name='j' type='{joint}'><parent link='world'/>"
     "<child link='base'/><origin xyz='0 0.5 1' rpy='0 0 1.5707963267948966'/></joint>"
 )
-POST = URDF.format(more="<gazebo><static>true</static></gazebo>")
+POST = crate("<gazebo><static>true</static></gazebo>")
 BALL = """<sdf version="1.9"><model name="ball"><link name="body"><collision name="c"><geometry>
   <sphere><radius>0.05</radius></sphere></geometry></collision><visual name="v"><geometry><sphere>
   <radius>0.05</radius></sphere></geometry></visual></link></model></sdf>"""

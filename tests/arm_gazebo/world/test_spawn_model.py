@@ -172,7 +172,7 @@ def test_numbers_that_cannot_be_simulated_are_refused(things, mass):
 
 
 def test_a_missing_mesh_is_a_refusal(things):
-    text = things.crate.replace('<box size="0.1 0.1 0.1"/>', '<mesh filename="model://no/x.stl"/>')
+    text = things.crate.replace("<box size='0.1 0.1 0.1'/>", "<mesh filename='model://no/x.stl'/>")
     kind, message = refused(text)
     assert kind is Refusal.MISSING_ASSETS
     assert "model://no/x.stl" in message

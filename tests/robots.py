@@ -1,0 +1,64 @@
+"""Robots of tests, as URDF texts, where it does not matter how each is written."""
+
+
+def link(name: str, *inside: str, mass: float = 1.0) -> str:
+    """A link that weighs something, unless `mass` is 0."""
+    inertia = "<inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/>"
+    inertial = f"<inertial><mass value='{mass:g}'/>{inertia}</inertial>" if mass else ""
+    return f"<link name='{name}'>{inertial}{''.join(inside)}</link>"
+
+
+def box(*kinds: str, size: float = 0.1) -> str:
+    """A cube as what a link shows and touches, or as one of both: `visual`, `collision`."""
+    shape = f"<geometry><box size='{size} {size} {size}'/></geometry>"
+    return "".join(f"<{kind}>{shape}</{kind}>" for kind in kinds or ("visual", "collision"))
+
+
+def joint(
+    name: str,
+    parent: str,
+    child: str,
+    *inside: str,
+    kind: str = "revolute",
+    axis: str = "0 1 0",
+    xyz: str = "0 0 0",
+    limits: tuple[float, float] | None = (-3.0, 3.0),
+    effort: float = 20.0,
+    velocity: float = 3.0,
+) -> str:
+    """A joint between two links; `limits` None leaves its limits out."""
+    lines = [f"<parent link='{parent}'/><child link='{child}'/><origin xyz='{xyz}'/>", *inside]
+    if kind not in ("fixed", "floating"):
+        lines.append(f"<axis xyz='{axis}'/>")
+    if limits is not None:
+        span = f"lower='{limits[0]:g}' upper='{limits[1]:g}'"
+        lines.append(f"<limit {span} effort='{effort:g}' velocity='{velocity:g}'/>")
+    return f"<joint name='{name}' type='{kind}'>{''.join(lines)}</joint>"
+
+
+def sensor(reference: str, name: str, kind: str, *inside: str) -> str:
+    """A sensor of Gazebo at a link."""
+    tag = f"<sensor name='{name}' type='{kind}'>{''.join(inside)}</sensor>"
+    return f"<gazebo reference='{reference}'>{tag}</gazebo>"
+
+
+def control(*inside: str, plugin: str = "arm_gazebo/SimulatedHardware") -> str:
+    """A <ros2_control> block."""
+    hardware = f"<hardware><plugin>{plugin}</plugin></hardware>"
+    return f"<ros2_control name='sim' type='system'>{hardware}{''.join(inside)}</ros2_control>"
+
+
+def robot(*parts: str, name: str = "r") -> str:
+    """A robot of these parts."""
+    return f"<robot name='{name}'>{''.join(parts)}</robot>"
+
+
+def pendulum(*more: str, name: str = "pendulum", xyz: str = "0 0 1") -> str:
+    """A bob of 1 kg on a hinge about y, and more parts."""
+    hinge = joint("hinge", "base", "bob", xyz=xyz)
+    return robot(link("base", mass=0), link("bob"), hinge, *more, name=name)
+
+
+def crate(*more: str, size: float = 0.1) -> str:
+    """A cube of 1 kg that stands free, and more parts."""
+    return robot(link("base", box(size=size)), *more, name="crate")
