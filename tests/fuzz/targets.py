@@ -111,7 +111,7 @@ def _read_mesh(folder: Path, name: str, data: bytes) -> bool:
 def _read_yaml(folder: Path, name: str, data: bytes) -> bool:
     from arm_control.manager.parameter_file import ControllerParameterFile
     from arm_controller.pose_file import read_pose_file
-    from arm_gazebo.launching import controllers_file, robots_file
+    from arm_gazebo.launching import controllers_file, several_robots
 
     path = seeds.write(folder, name, data)
     readers: tuple[Callable[[], object], ...] = (
@@ -120,7 +120,7 @@ def _read_yaml(folder: Path, name: str, data: bytes) -> bool:
         ),
         lambda: controllers_file.controllers_in_namespace("left", path),
         lambda: ControllerParameterFile(str(path)).lookup("arm", "/left", "joints"),
-        lambda: robots_file.read_robots_file(path),
+        lambda: several_robots.read_robots_file(path),
         lambda: read_pose_file(path, ("a", "b")),
     )
     return any([_succeeds(reader) for reader in readers])

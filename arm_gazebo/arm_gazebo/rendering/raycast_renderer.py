@@ -27,7 +27,7 @@ class RaycastRenderer:
     """Renders diffuse surfaces in plain colours, without textures, highlights and shadows.
 
     If the machine cannot keep the camera's rate, small objects may be missed; see
-    `adaptive_sampling` and `SamplingStep`.
+    `fill_picture` and `SamplingStep`.
     """
 
     backend = "raycast"
