@@ -1,5 +1,6 @@
 """Draws the frames of cameras, with their noise and their limits."""
 
+import zlib
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -7,13 +8,101 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.camera.depth_image import mark_limits
-from arm_gazebo.camera.noise import CameraNoise
 from arm_gazebo.sensors.camera import CameraSensor
 
 if TYPE_CHECKING:
     import mujoco
 
     from arm_gazebo.rendering.renderer import Renderer
+
+
+class DepthNoise:
+    """Noise of distances. One thread.
+
+    Like colour noise, it depends only on the seed, the camera's name and the frame's number.
+    """
+
+    def __init__(self, sensor: CameraSensor, seed: int) -> None:
+        self._key = (zlib.crc32(sensor.name.encode()), seed & (2**64 - 1))
+        self._mean = np.float32(sensor.noise_mean)
+        self._stddev = np.float32(sensor.noise_stddev)
+
+    def add_to(self, depth: NDArray[np.float32], frame_number: int) -> None:
+        """Add a frame's noise in m to distances (height, width), in place."""
+        random = np.random.default_rng((*self._key, frame_number))
+        depth += self._mean + self._stddev * random.standard_normal(depth.shape, dtype=np.float32)
+
+
+SPARE_SAMPLES = 1 << 20
+"""Extra length of the bank beyond one image, which is the number of different noise images."""
+FULL_RANGE = 255.0
+
+
+class NoiseBank:
+    """Precomputed rows of noise; each frame uses another section of them. One thread.
+
+    The section depends only on the seed, the camera's name and the frame's number, so the same
+    run gives the same images. Fresh noise for an 800x800 image would take 40 ms; this takes well
+    under 1 ms.
+    """
+
+    def __init__(self, sensor: CameraSensor, seed: int) -> None:
+        """Compute the bank: 6 bytes per pixel plus 2 MB, and 0.1 s for 800x800.
+
+        Args:
+            sensor: the camera, with size, mean and standard deviation.
+            seed: seed of the run; any integer.
+        """
+        import cv2
+
+        self._add, self._subtract = cv2.add, cv2.subtract
+        self._key = (zlib.crc32(sensor.name.encode()), seed & (2**64 - 1))
+        size = sensor.width * sensor.height * 3
+        noise = np.random.default_rng(self._key).standard_normal(
+            size + SPARE_SAMPLES, dtype=np.float32
+        )
+        noise *= sensor.noise_stddev * FULL_RANGE
+        noise += sensor.noise_mean * FULL_RANGE
+        np.rint(noise, out=noise)
+        # Two rows, because bytes are unsigned; adding and subtracting saturates correctly.
+        self._brighter = np.clip(noise, 0, FULL_RANGE).astype(np.uint8)
+        self._darker = np.clip(-noise, 0, FULL_RANGE).astype(np.uint8)
+
+    def add_to(self, picture: NDArray[np.uint8], frame_number: int) -> None:
+        """Add a frame's noise to a picture (height, width, 3) in place; values saturate."""
+        start = self._start(frame_number)
+        flat = picture.reshape(1, -1)
+        section = slice(start, start + picture.size)
+        self._add(flat, self._brighter[np.newaxis, section], dst=flat)
+        self._subtract(flat, self._darker[np.newaxis, section], dst=flat)
+
+    def _start(self, frame_number: int) -> int:
+        mixed = np.random.SeedSequence((*self._key, frame_number)).generate_state(1)
+        return int(mixed[0]) % SPARE_SAMPLES
+
+
+class CameraNoise:
+    """The noise of one camera's pictures and distances; nothing without noise. One thread.
+
+    What is not drawn costs nothing: a bank is computed with the first picture.
+    """
+
+    def __init__(self, sensor: CameraSensor, seed: int) -> None:
+        self._sensor, self._seed = sensor, seed
+        self._is_silent = sensor.noise_stddev == 0.0 and sensor.noise_mean == 0.0
+        self._bank: NoiseBank | None = None
+        self._depth = DepthNoise(sensor, seed)
+
+    def add_to_picture(self, picture: NDArray[np.uint8], frame_number: int) -> None:
+        """Add a frame's noise to a picture (height, width, 3), in place."""
+        if not self._is_silent:
+            self._bank = self._bank or NoiseBank(self._sensor, self._seed)
+            self._bank.add_to(picture, frame_number)
+
+    def add_to_depth(self, depth: NDArray[np.float32], frame_number: int) -> None:
+        """Add a frame's noise in m to distances (height, width), in place."""
+        if not self._is_silent:
+            self._depth.add_to(depth, frame_number)
 
 
 class FrameDrawing:

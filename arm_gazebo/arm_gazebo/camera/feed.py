@@ -8,10 +8,9 @@ import mujoco
 
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.camera.settings import CameraSettings
-from arm_gazebo.feed.schedule import FrameDue, FrameSchedule
+from arm_gazebo.feed.schedule import FrameDue, FrameSchedule, StreamCount
 from arm_gazebo.feed.socket_pair import CameraProgress
 from arm_gazebo.feed.state_feed import PreparedModel, StateFeed
-from arm_gazebo.feed.stream_count import StreamCount
 from arm_gazebo.rendering.backend_selection import backend_order
 from arm_gazebo.rendering.renderer import camera_id
 from arm_gazebo.sensors.camera import CameraSensor

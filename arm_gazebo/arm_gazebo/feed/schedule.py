@@ -1,4 +1,4 @@
-"""Decides when each camera takes a picture and each sensor a reading, in simulation time."""
+"""When each camera takes a picture and each sensor a reading, in simulation time, and how many."""
 
 import math
 from collections.abc import Sequence
@@ -6,6 +6,27 @@ from dataclasses import dataclass
 from typing import Any
 
 from arm_control.loop.schedule import Schedule
+
+
+@dataclass(frozen=True, slots=True)
+class StreamCount:
+    """A camera's or a sensor's figures since the start.
+
+    Attributes:
+        name: the camera's name, or the sensor's topic.
+        kind: "camera" or "sensor".
+        rate_hz: the rate asked for, per second of simulation time.
+        due: how many were due; those that nobody subscribes to count as well.
+        published: how many were published.
+        dropped: how many were lost for lack of time.
+    """
+
+    name: str
+    kind: str
+    rate_hz: float
+    due: int
+    published: int
+    dropped: int
 
 
 @dataclass(frozen=True, slots=True)

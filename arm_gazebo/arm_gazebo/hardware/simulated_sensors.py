@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
 from arm_control.hardware.info import HardwareInfo
-from arm_gazebo.feed.schedule import FrameSchedule
-from arm_gazebo.feed.stream_count import StreamCount
+from arm_gazebo.feed.schedule import FrameSchedule, StreamCount
 from arm_gazebo.sensors.link_sensor import LinkSensor
 from arm_gazebo.sensors.noise import SensorNoise
 from arm_node.index_slice import as_slice

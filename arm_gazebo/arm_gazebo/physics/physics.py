@@ -16,9 +16,8 @@ from arm_gazebo.errors import RecordingError, TimingError
 from arm_gazebo.model.built_model import BuiltModel, SavedModel
 from arm_gazebo.physics.contact_gate import ContactGate
 from arm_gazebo.physics.faults import Distortion, PhysicsFaults
-from arm_gazebo.physics.physics_state import PhysicsState
 from arm_gazebo.physics.state_probe import StateProbe, WorldState
-from arm_gazebo.physics.state_transfer import StateTransfer
+from arm_gazebo.physics.state_transfer import PhysicsState, StateTransfer
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint
 from arm_node.workarounds.profiler import switch_off_profiler

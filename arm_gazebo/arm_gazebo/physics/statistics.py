@@ -8,7 +8,7 @@ import mujoco
 
 from arm_control.loop.clock import Clock, MonotonicClock
 from arm_control.loop.pacer import Pacer
-from arm_gazebo.feed.stream_count import StreamCount
+from arm_gazebo.feed.schedule import StreamCount
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import TickCosts
 

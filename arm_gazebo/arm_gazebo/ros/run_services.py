@@ -1,9 +1,12 @@
-"""The services of simulation_interfaces for the simulation's state and its world."""
+"""The services of simulation_interfaces for the state, steps, snapshots and world of a run."""
 
+import time
+from collections.abc import Sequence
 from typing import Any
 
+from rclpy.executors import Executor
 from rclpy.node import Node
-from simulation_interfaces.msg import SimulatorFeatures
+from simulation_interfaces.msg import Resource, Result, SimulatorFeatures, WorldResource
 from simulation_interfaces.srv import (
     GetAvailableWorlds,
     GetCurrentWorld,
@@ -12,11 +15,17 @@ from simulation_interfaces.srv import (
     LoadWorld,
     ResetSimulation,
     SetSimulationState,
+    StepSimulation,
     UnloadWorld,
 )
 
-from arm_gazebo.ros.world_convert import ServiceRow, answer, create_services, world_message
+from arm_control.errors import LoopStoppedError
+from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.ros_executor_bridge import call_on_loop, wait_for_future
+from arm_gazebo.camera.feed import CameraFeed
+from arm_gazebo.ros.world_convert import ServiceRow, answer, create_services, refuse, world_message
 from arm_gazebo.state.run_reset import ResetScope, RunReset
+from arm_gazebo.state.snapshots import RunSnapshot, SnapshotStore
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
 from arm_gazebo.world.refusal import Refusal, RequestError
@@ -160,3 +169,170 @@ class RunServices:
         if self._loader.world is None:
             raise RequestError(Refusal.NO_WORLD, "no world is loaded")
         return self._loader.world
+
+
+SNAPSHOT_CODES = {
+    Refusal.NO_RESOURCE: LoadWorld.Response.NO_RESOURCE,
+    Refusal.UNREADABLE: LoadWorld.Response.RESOURCE_PARSE_ERROR,
+    Refusal.MISSING_ASSETS: LoadWorld.Response.MISSING_ASSETS,
+}
+
+
+class SnapshotServices:
+    """Creates the services on a node. A request's `world_resource.uri` is a name or a file."""
+
+    def __init__(self, node: Node, snapshots: SnapshotStore) -> None:
+        self._snapshots = snapshots
+        services: tuple[ServiceRow, ...] = (
+            (LoadWorld, "save_snapshot", self._save),
+            (LoadWorld, "restore_snapshot", self._restore),
+            (LoadWorld, "remove_snapshot", self._remove),
+            (GetAvailableWorlds, "list_snapshots", self._list),
+        )
+        create_services(node, services)
+
+    def _save(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
+        def save() -> None:
+            where = request.world_resource.uri
+            response.world = _message(where, self._snapshots.save(where))
+
+        return answer(response, SNAPSHOT_CODES, save)
+
+    def _restore(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
+        def restore() -> None:
+            where = request.world_resource.uri
+            snapshot, remark = self._snapshots.restore(where)
+            response.world = _message(where, snapshot, remark)
+
+        return answer(response, SNAPSHOT_CODES, restore)
+
+    def _remove(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
+        return answer(
+            response, SNAPSHOT_CODES, lambda: self._snapshots.remove(request.world_resource.uri)
+        )
+
+    def _list(self, _request: Any, response: GetAvailableWorlds.Response) -> Any:
+        def look() -> None:
+            named = self._snapshots.named()
+            response.worlds = [_message(name, snapshot) for name, snapshot in named.items()]
+
+        return answer(response, {}, look)
+
+
+def _message(where: str, snapshot: RunSnapshot, remark: str = "") -> WorldResource:
+    return WorldResource(
+        name=snapshot.world,
+        world_resource=Resource(uri=where),
+        description="; ".join(filter(None, (snapshot.description, remark))),
+    )
+
+
+SLICE_S = 0.1
+"""Longest time for which a wait for a picture delays the other services."""
+PICTURE_TIMEOUT_S = 30.0
+"""The first picture takes seconds, because the camera process then loads its renderer."""
+
+
+class StepServices:
+    """Creates the services on a node and answers them.
+
+    /step_simulation answers when the messages of the last step have been sent.
+    /step_simulation_with_sensors does not take a step before the pictures of the previous one have
+    been published, so that every picture that is due is taken.
+
+    Args:
+        node: gets the services.
+        executor: spins the node.
+        loop: runs the simulation.
+        run: its run state.
+        cameras: publish pictures from another process.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        executor: Executor,
+        loop: ControlLoop,
+        run: RunControl,
+        cameras: Sequence[CameraFeed],
+    ) -> None:
+        self._executor = executor
+        self._loop = loop
+        self._run = run
+        self._cameras = tuple(cameras)
+        create_services(
+            node,
+            (
+                (StepSimulation, "step_simulation", self._step),
+                (StepSimulation, "step_simulation_with_sensors", self._step_with_sensors),
+            ),
+        )
+
+    # Coroutines, so that a request to end a long run of steps is answered in the meantime.
+
+    async def _step(self, request: StepSimulation.Request, response: Any) -> Any:
+        try:
+            done = await wait_for_future(self._run.step(request.steps), self._executor)
+        except RequestError as error:
+            return refuse(response, {}, error)
+        except (LoopStoppedError, ValueError) as error:
+            return refuse(response, {}, RequestError(Refusal.FAILED, str(error)))
+        return self._answered(response, done, request.steps)
+
+    async def _step_with_sensors(self, request: StepSimulation.Request, response: Any) -> Any:
+        done = 0
+        try:
+            with self._run.run_of_steps(request.steps) as goes_on:
+                await self._pictures_are_out()
+                before = [camera.missed() for camera in self._cameras]
+                while done < request.steps and goes_on():
+                    done += await wait_for_future(self._run.step(1), self._executor)
+                    await self._pictures_are_out()
+                    self._check_sent(before)
+        except RequestError as error:
+            return refuse(response, {}, error)
+        except (LoopStoppedError, ValueError) as error:
+            return refuse(response, {}, RequestError(Refusal.FAILED, str(error)))
+        return self._answered(response, done, request.steps)
+
+    async def _pictures_are_out(self) -> None:
+        """Wait until every picture that was taken has been published.
+
+        Raises:
+            RequestError: that takes too long.
+        """
+        for camera in self._cameras:
+            deadline_s = time.monotonic() + PICTURE_TIMEOUT_S
+            while late := camera.unpublished(SLICE_S):
+                # It also lets the executor answer other requests.
+                await call_on_loop(self._loop, camera.forget_pace, self._executor)
+                if time.monotonic() > deadline_s:
+                    raise RequestError(
+                        Refusal.FAILED,
+                        f"no picture of {', '.join(late)} within {PICTURE_TIMEOUT_S:g} s",
+                    )
+            await call_on_loop(self._loop, camera.forget_pace, self._executor)
+
+    def _check_sent(self, before: Sequence[dict[str, int]]) -> None:
+        """Check that every picture that was due has been taken.
+
+        Raises:
+            RequestError: one was not.
+        """
+        for camera, missed in zip(self._cameras, before, strict=True):
+            names = [name for name, count in camera.missed().items() if count > missed[name]]
+            if names:
+                raise RequestError(
+                    Refusal.FAILED,
+                    f"no picture of {', '.join(names)}: the camera process is not running",
+                )
+
+    def _answered(self, response: Any, done: int, asked: int) -> Any:
+        response.result.result = Result.RESULT_OK
+        if done < asked:
+            failure = self._loop.lock_step and self._loop.lock_step.failure
+            response.result.result = Result.RESULT_OPERATION_FAILED
+            response.result.error_message = (
+                f"{done} of {asked} steps: {failure or 'the state was changed'}"
+            )
+        return response

@@ -25,8 +25,7 @@ from arm_description.transforms import rotation_from_quaternion, transform
 from arm_gazebo.ros.topic import set_stamp
 from arm_gazebo.world.changes import Matrix, quaternion_of
 from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
-from arm_gazebo.world.entity_filter import EntityFilter, Volume
-from arm_gazebo.world.entity_motion import Box, EntityMotion
+from arm_gazebo.world.entity_motion import Box, EntityFilter, EntityMotion, Volume
 from arm_gazebo.world.loading import NamedWorld
 from arm_gazebo.world.refusal import Refusal, RequestError
 

@@ -22,9 +22,8 @@ from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
 from arm_gazebo.robot.part import RobotInWorld
-from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
-from arm_gazebo.world.trial import WORLD_PROCESSOR_S
+from arm_gazebo.world.trial import WORLD_PROCESSOR_S, check_mjcf_files
 from arm_node.user_file import read_text
 
 if TYPE_CHECKING:

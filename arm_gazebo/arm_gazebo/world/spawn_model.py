@@ -33,10 +33,8 @@ from arm_gazebo.sdf.body import WORLD_MASKS, add_model
 from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.model import read_model
 from arm_gazebo.sdf.scope import SdfScope, sdf_file_in
-from arm_gazebo.world.mjcf_files import check_mjcf_files
 from arm_gazebo.world.refusal import Refusal, RequestError
-from arm_gazebo.world.trial import MjcfTrial
-from arm_gazebo.world.trial_steps import can_be_simulated
+from arm_gazebo.world.trial import MjcfTrial, can_be_simulated, check_mjcf_files
 from arm_node.names import listing
 from arm_node.user_file import UnusableFileError, read_text
 

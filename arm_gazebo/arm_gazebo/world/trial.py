@@ -1,4 +1,4 @@
-"""Try an MJCF in a separate process with limited memory and time, before it is compiled here.
+"""Check an untrusted MJCF, and try it in a process with limited memory and time.
 
 With an untrusted model MuJoCo may use all memory, never return, or crash the process. None of this
 may happen in the process of the control loop.
@@ -13,8 +13,13 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
+import mujoco
+import numpy as np
+
 from arm_gazebo.feed.child_process import describe_exit
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
+from arm_gazebo.mjcf.references import check_readable, references
+from arm_gazebo.world.refusal import Refusal, RequestError
 
 MODULE = "arm_gazebo.world.trial_process"
 END_TIMEOUT_S = 5.0
@@ -115,3 +120,43 @@ def _problem(answer: dict[str, object], limit: MemoryLimit) -> str:
     if answer.get("out_of_memory"):
         return f"it needs more than {limit.mb:.0f} MB (parameter {limit.parameter})"
     return str(answer["problem"])
+
+
+def check_mjcf_files(text: str, path: Path | None = None) -> None:
+    """Refuse an untrusted MJCF that names files outside its own folder, or that are not regular.
+
+    Args:
+        text: the MJCF.
+        path: its file; None for a text without a file, which may not name any files.
+
+    Raises:
+        RequestError: it names a file outside its folder; the message says which.
+        ModelError: a file is not a regular one.
+        XmlError: the MJCF, or one that it includes, is not XML.
+    """
+    for reference in references(text, path):
+        if reference.source is None:
+            problem = "a text has no folder; give a uri instead"
+        elif Path(reference.value).is_absolute() or ".." in Path(reference.value).parts:
+            problem = "it is outside the folder of the MJCF file"
+        else:
+            continue
+        raise RequestError(
+            Refusal.MISSING_ASSETS,
+            f"{reference.attribute}='{reference.value}' is not read: {problem}",
+        )
+    if path is not None:
+        check_readable(text, path)
+
+
+STEPS = 5
+
+
+def can_be_simulated(model: mujoco.MjModel) -> bool:
+    """Return whether the numbers of a compiled model are finite, and stay so in a few steps."""
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, STEPS)
+    numbers = (model.body_mass, model.body_inertia, model.geom_rbound, data.xpos, data.geom_xpos)
+    # MuJoCo resets itself when a number is no longer finite.
+    was_reset = data.time < (STEPS - 0.5) * model.opt.timestep
+    return not was_reset and all(np.isfinite(values).all() for values in numbers)

@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import mujoco
 
-from arm_gazebo.world.trial_steps import can_be_simulated
+from arm_gazebo.world.trial import can_be_simulated
 
 NICENESS = 5
 """The control loop has precedence on the processor."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_gazebo.camera.info import Intrinsics
+from arm_gazebo.ros.camera_publisher import Intrinsics
 from arm_gazebo.sensors.camera import CameraSensor
 
 SENSOR = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047)

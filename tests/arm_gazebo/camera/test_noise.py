@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from arm_gazebo.camera.noise import CameraNoise, NoiseBank
+from arm_gazebo.camera.drawing import CameraNoise, NoiseBank
 from arm_gazebo.sensors.camera import CameraSensor
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from arm_control.loop.pacer import Pacer
 from arm_control.testing import ManualClock
-from arm_gazebo.feed.stream_count import StreamCount
+from arm_gazebo.feed.schedule import StreamCount
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.physics.tick import TickCosts
 

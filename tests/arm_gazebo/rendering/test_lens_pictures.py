@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from arm_gazebo.camera.depth_image import PointGrid
-from arm_gazebo.camera.info import Intrinsics
 from arm_gazebo.rendering.pinhole_view import PinholeView
 from arm_gazebo.robot.part import add_cameras
+from arm_gazebo.ros.camera_publisher import Intrinsics
 from arm_gazebo.sensors.camera import CameraSensor
 
 COLUMNS, ROWS, SQUARE = 6, 4, 0.06

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from arm_gazebo.build_report import Finding
-from arm_gazebo.camera.info import Intrinsics
 from arm_gazebo.errors import SensorError
+from arm_gazebo.ros.camera_publisher import Intrinsics
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 

@@ -7,8 +7,13 @@ import numpy as np
 import pytest
 from robots import crate
 
-from arm_gazebo.state.snapshot import MAGIC, model_hash, read_snapshot, write_snapshot
-from arm_gazebo.state.snapshots import SnapshotStore
+from arm_gazebo.state.snapshots import (
+    MAGIC,
+    SnapshotStore,
+    model_hash,
+    read_snapshot,
+    write_snapshot,
+)
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource

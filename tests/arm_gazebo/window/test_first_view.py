@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from arm_gazebo.window.first_view import first_view
+from arm_gazebo.window.__main__ import first_view
 
 ROBOT = """
   <body name="robot"><geom type="box" size=".05 .05 .3" pos="0 0 .3"/>

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.world.entity import Category
-from arm_gazebo.world.entity_filter import EntityFilter, Volume
+from arm_gazebo.world.entity_motion import EntityFilter, Volume
 from arm_gazebo.world.refusal import RequestError
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_gazebo.world.entity_filter import NamePattern
+from arm_gazebo.world.entity_motion import NamePattern
 from arm_gazebo.world.refusal import RequestError
 
 ITEMS = st.sampled_from(["a", "b", ".", "^", "$", "[ab]", "[^a]", r"\w", r"\b", ""])

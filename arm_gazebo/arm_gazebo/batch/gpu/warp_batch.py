@@ -6,12 +6,14 @@ drives' law and the physics steps, is one recorded graph, which the GPU does wit
 
 from collections.abc import Callable, Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import mujoco_warp
 import numpy as np
 import warp as wp
+from numpy.typing import NDArray
 
 from arm_gazebo.batch.copies import (
     Array,
@@ -22,11 +24,93 @@ from arm_gazebo.batch.copies import (
     rows_of,
     start_of,
 )
-from arm_gazebo.batch.gpu.room import check_overflow, room_of
-from arm_gazebo.batch.gpu.rows import read_column, write_rows
 from arm_gazebo.batch.gpu.servo_warp import ServoWarp
 from arm_gazebo.batch.gpu_device import GPU, HOST_COMPILED, explained
+from arm_gazebo.errors import BatchError
 from arm_gazebo.physics.physics import Physics
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.kernel
+def write_rows(
+    row: wp.array[wp.float32], rows: wp.array[wp.int32], array: wp.array2d[wp.float32]
+) -> None:
+    """Write one row to several rows of an array."""
+    each, column = wp.tid()
+    array[rows[each], column] = row[column]
+
+
+@wp.kernel
+def read_column(array: wp.array2d[wp.vec3], column: wp.int32, result: wp.array[wp.vec3]) -> None:
+    """Read a column of vectors."""
+    copy = wp.tid()
+    result[copy] = array[copy, column]
+
+
+LEAST_CONTACTS = 48
+CONTACTS = 32
+CONTACTS_PER_TREE = 12
+"""A box on the floor has 4 contacts, and as many with the fingers and with the box beside it."""
+CONTACTS_OF_SURFACE = 256
+"""More contacts where there are height fields or soft bodies."""
+EQUALITY_ROWS = {
+    mujoco.mjtEq.mjEQ_CONNECT: 3,
+    mujoco.mjtEq.mjEQ_WELD: 6,
+}
+"""Rows of the equality constraints; all others have one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Room for one copy.
+
+    Attributes:
+        contacts: contacts; a copy may use the room of others.
+        rows: rows of all constraints: equalities, friction, limits and contacts.
+    """
+
+    contacts: int
+    rows: int
+
+
+def room_of(model: mujoco.MjModel) -> Room:
+    """Return the room for copies of a model."""
+    contacts = max(LEAST_CONTACTS, CONTACTS + CONTACTS_PER_TREE * model.ntree)
+    if model.nhfield or model.nflex:
+        contacts += CONTACTS_OF_SURFACE
+    dimension = int(max([1, *model.geom_condim, *model.pair_dim]))
+    if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and dimension > 1:
+        dimension = 2 * (dimension - 1)
+    rows = sum(EQUALITY_ROWS.get(kind, 1) for kind in model.eq_type.tolist())
+    rows += int((model.dof_frictionloss > 0.0).sum() + (model.tendon_frictionloss > 0.0).sum())
+    # A joint or tendon may be at both of its limits.
+    rows += 2 * int(model.jnt_limited.sum() + model.tendon_limited.sum())
+    return Room(contacts, rows + dimension * contacts)
+
+
+def check_overflow(overflow: NDArray[np.int32], room: Room) -> None:
+    """Check that the room sufficed.
+
+    Args:
+        overflow: MuJoCo Warp's flags of each copy, shape (copies,).
+        room: the room.
+
+    Raises:
+        BatchError: it did not, so that contacts are missing in these copies.
+    """
+    kinds = mujoco_warp.OverflowType
+    # The others say that a solver stopped at its last iteration, which does not disturb MuJoCo.
+    missing = kinds.NEFC | kinds.NJMAX_NNZ | kinds.BROADPHASE | kinds.NARROWPHASE
+    missing |= kinds.CCD | kinds.HFIELD
+    count = int(((overflow & int(missing)) != 0).sum())
+    if count:
+        raise BatchError(
+            f"{count} copies have more contacts than there is room for on the device: "
+            f"{room.contacts} contacts and {room.rows} rows of constraints for each; "
+            "device='host' has no such limit"
+        )
+
 
 SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)

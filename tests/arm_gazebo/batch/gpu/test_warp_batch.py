@@ -15,8 +15,12 @@ wp = pytest.importorskip("warp", reason="the extra `gpu` is not installed")
 pytest.importorskip("mujoco_warp", reason="the extra `gpu` is not installed")
 
 from arm_gazebo.batch.gpu import warp_batch  # noqa: E402
-from arm_gazebo.batch.gpu.room import Room, check_overflow, room_of  # noqa: E402
-from arm_gazebo.batch.gpu.warp_batch import WarpBatch  # noqa: E402
+from arm_gazebo.batch.gpu.warp_batch import (  # noqa: E402
+    Room,
+    WarpBatch,
+    check_overflow,
+    room_of,
+)
 
 COPIES = 3
 ROUNDING = 1e-6
