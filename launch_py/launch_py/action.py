@@ -86,6 +86,10 @@ def check_actions(actions: Iterable[Action] | Action, owner: str) -> list[Action
     """
     if isinstance(actions, Action):
         return [actions]
+    if not isinstance(actions, Iterable):
+        raise LaunchFileError(
+            f"{owner} takes actions, not {actions!r} of type {type(actions).__name__}"
+        )
     checked = [action for action in actions if action is not None]
     for action in checked:
         if not isinstance(action, Action):

@@ -8,7 +8,7 @@ from types import ModuleType
 
 from launch_py.action import LAUNCH_FILE, Action
 from launch_py.conditions import Condition
-from launch_py.errors import LaunchError, LaunchFileError, NotFoundError
+from launch_py.errors import LaunchError, LaunchFileError, NotFoundError, errors_located_at
 from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.launch_description import LaunchDescription
 from launch_py.ros_imports import MissingRosNameError, ros_imports
@@ -23,6 +23,7 @@ from launch_py.substitution import (
     perform_text,
 )
 from launch_py.system.packages import Packages, describe_missing_launch_file
+from launch_py.system.programs import NOTHING
 
 FRONTEND_ENDINGS = (".xml", ".launch", ".yaml", ".yml")
 """What XML and YAML launch files end with; .launch is XML."""
@@ -96,15 +97,19 @@ def _read_python(path: Path) -> LaunchDescription:
     try:
         # Compiled by hand: an import would leave a __pycache__ in the installed share folder.
         with ros_imports(), read_by_launch_py():
-            exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), module.__dict__)
+            exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
             generate = getattr(module, "generate_launch_description", None)
             if generate is None:
                 raise LaunchFileError(f"{path} does not define generate_launch_description()")
             description = generate()
-    except LaunchError:
-        raise
+    except LaunchError as error:
+        where = _where(error, path)
+        with errors_located_at(where if ", line " in where else ""):
+            raise
     except MissingRosNameError as error:
         raise LaunchFileError(f"{_where(error, path)}: {error}") from error
+    except ModuleNotFoundError as error:
+        raise LaunchFileError(f"{_where(error, path)}: {_missing_module(error)}") from error
     except (Exception, SystemExit) as error:
         # A launch file is user code and may raise anything. One that exits describes no launch.
         # The text of a SyntaxError would repeat the file and the line.
@@ -122,6 +127,14 @@ def _read_python(path: Path) -> LaunchDescription:
             f"{kind.__name__}, not LaunchDescription"
         )
     return description
+
+
+def _missing_module(error: ModuleNotFoundError) -> str:
+    """Return the error about a module that cannot be imported, and what there is instead."""
+    package = (error.name or "").partition(".")[0]
+    found = Packages(os.environ).stand_in_of(package, package)
+    instead = f"; {found.words[0]}" if found is not None and found.kind == NOTHING else ""
+    return f"{type(error).__name__}: {error}{instead}"
 
 
 def _where(error: BaseException, path: Path) -> str:

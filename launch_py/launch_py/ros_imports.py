@@ -276,7 +276,8 @@ class _Finder(Loader):
             return None
         if rest and top not in self.made:
             return None  # The real package finds its own modules.
-        if fullname not in HOMES and fullname.rpartition(".")[0] not in HOMES:
+        above = fullname.rpartition(".")[0]
+        if fullname not in HOMES and (above not in HOMES or above == top):
             raise _missing_module(fullname)
         return ModuleSpec(fullname, self, is_package=True)
 

@@ -319,9 +319,35 @@ def is_costly(value: Text) -> bool:
     return any(is_costly(part) for part in value)
 
 
+def keep_dict(values: Mapping[Any, Any] | None, of: str) -> dict[Any, Any]:
+    """Return a copy of a dict, empty for None.
+
+    Args:
+        values: the dict.
+        of: what takes it, for the error message.
+
+    Raises:
+        LaunchFileError: it is not a dict.
+    """
+    if not isinstance(values, Mapping | None):
+        raise LaunchFileError(f"{of} takes a dict, not {values!r} of type {type(values).__name__}")
+    return dict(values or {})
+
+
+def keep_list(values: Iterable[Any] | None, of: str) -> list[Any]:
+    """Return what is iterated as a list, a single text as a list of it; see `keep_dict`."""
+    if isinstance(values, str):
+        return [values]
+    if not isinstance(values, Iterable | None):
+        raise LaunchFileError(f"{of} takes a list, not {values!r} of type {type(values).__name__}")
+    return list(values or ())
+
+
 def keep_pairs(pairs: Pairs | None) -> tuple[tuple[Text, Text], ...]:
     """Return the pairs as a tuple, because an iterator such as `zip` can be read only once."""
     items = pairs.items() if isinstance(pairs, Mapping) else pairs or ()
+    if not isinstance(items, Iterable):
+        raise LaunchFileError(f"a dict or pairs are needed, not {pairs!r}")
     return tuple(cast("Iterable[tuple[Text, Text]]", items))
 
 

@@ -117,7 +117,7 @@ def test_a_file_that_fails_leaves_no_modules_behind(ros_file):
         ("import launch\nlaunch.Nothing", "launch has no 'Nothing' here; it has Action, "),
         (
             "import launch_ros.zebra.other",
-            "there is no module 'launch_ros.zebra.other' here; ",
+            "there is no module 'launch_ros.zebra' here; ",
         ),
     ],
 )

@@ -26,7 +26,7 @@ from launch_py.plan.steps import (
     Trigger,
     TriggerKind,
 )
-from launch_py.substitution import Text, perform_text
+from launch_py.substitution import Text, keep_list, perform_text
 from launch_py.system.packages import Packages
 from launch_py.system.programs import find_program
 from launch_py.typed_values import perform_boolean, perform_seconds
@@ -133,7 +133,7 @@ class ExecuteProcess(Action):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
-        self.cmd: Sequence[Text] = [cmd] if isinstance(cmd, str) else list(cmd)
+        self.cmd: Sequence[Text] = keep_list(cmd, "cmd=")
         self.name = name
         self.ready = (ready,) if isinstance(ready, Readiness) else tuple(ready)
         self.depends_on = (
@@ -306,6 +306,23 @@ class ExecuteProcess(Action):
         return replace(policy, max_restarts=retries, give_up_after=give_up_after)
 
 
+def refuse_unknown_options(action: Action, options: Iterable[str], own: Iterable[str]) -> None:
+    """Check the options that an action passes on to ExecuteProcess.
+
+    Args:
+        action: the action.
+        options: the names of the options.
+        own: the names of the action's other arguments, for the error message.
+
+    Raises:
+        LaunchFileError: there is no such option.
+    """
+    for name in options:
+        if name not in ProcessOptions.__annotations__:
+            known = describe_known(name, (*ProcessOptions.__annotations__, *own), "it takes")
+            raise LaunchFileError(f"{type(action).__name__} takes no argument {name!r}; {known}")
+
+
 def perform_shown_streams(context: LaunchContext, output: Output, process: str) -> frozenset[str]:
     """Return the streams that are shown.
 
@@ -358,13 +375,13 @@ class Executable:
         additional_env: Mapping[Text, Text] | None = None,
         arguments: Iterable[Text] | None = None,
     ) -> None:
-        self.cmd = [cmd] if isinstance(cmd, str) else list(cmd)
+        self.cmd = keep_list(cmd, "cmd=")
         self.prefix = prefix
         self.name = name
         self.cwd = cwd
         self.env = env
         self.additional_env = additional_env
-        self.arguments = list(arguments or ())
+        self.arguments = keep_list(arguments, "arguments=")
 
 
 class ExecuteLocal(ExecuteProcess):
@@ -377,6 +394,7 @@ class ExecuteLocal(ExecuteProcess):
         shell: bool = False,
         **options: Unpack[ProcessOptions],
     ) -> None:
+        refuse_unknown_options(self, options, ("process_description", "shell"))
         self.process_description = described = process_description
         if not isinstance(described, Executable):
             raise LaunchFileError(f"process_description= takes an Executable, not {described!r}")

@@ -11,7 +11,7 @@ from launch_py.conditions import Condition
 from launch_py.errors import LaunchFileError, errors_attributed_to
 from launch_py.launch_context import LaunchContext, LaunchSurvey
 from launch_py.ros_imports import ros_imports
-from launch_py.substitution import Text, perform_text
+from launch_py.substitution import Text, keep_dict, perform_text
 from launch_py.typed_values import perform_boolean, perform_seconds
 
 
@@ -36,7 +36,7 @@ class GroupAction(Action):
         self.actions = check_actions(actions, "GroupAction")
         self.scoped = scoped
         self.forwarding = forwarding
-        self.launch_configurations = dict(launch_configurations or {})
+        self.launch_configurations = keep_dict(launch_configurations, "launch_configurations=")
 
     def expand(self, context: LaunchContext) -> None:
         """Expand the actions in the group's scope."""

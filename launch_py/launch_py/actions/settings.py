@@ -12,7 +12,14 @@ from launch_py.conditions import Condition
 from launch_py.errors import LaunchError, LaunchFileError, UsageError
 from launch_py.launch_context import ArgumentInfo, LaunchContext, LaunchSurvey
 from launch_py.near_names import describe_known
-from launch_py.substitution import Text, describe_text, is_costly, perform_text
+from launch_py.substitution import (
+    Text,
+    describe_text,
+    is_costly,
+    keep_dict,
+    keep_list,
+    perform_text,
+)
 from launch_py.typed_values import perform_boolean
 
 
@@ -35,7 +42,7 @@ class DeclareLaunchArgument(Action):
         self.name = name
         self.default_value = default_value
         self.description = None if description is None else describe_text(description)
-        self.choices = tuple(str(choice) for choice in choices or ())
+        self.choices = tuple(map(str, keep_list(choices, "choices=")))
 
     def expand(self, context: LaunchContext) -> None:
         """Set the default if no value is given, and check the value.
@@ -212,7 +219,7 @@ class ReplaceEnvironmentVariables(Action):
         self, environment: Mapping[Text, Text] | None = None, *, condition: Condition | None = None
     ) -> None:
         super().__init__(condition=condition)
-        self.environment = dict(environment or {})
+        self.environment = keep_dict(environment, "ReplaceEnvironmentVariables")
 
     def expand(self, context: LaunchContext) -> None:
         """Unset the launcher's own variables, and set the given ones."""
@@ -233,7 +240,7 @@ class ResetLaunchConfigurations(Action):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
-        self.launch_configurations = dict(launch_configurations or {})
+        self.launch_configurations = keep_dict(launch_configurations, "ResetLaunchConfigurations")
 
     def expand(self, context: LaunchContext) -> None:
         """Replace the configurations."""

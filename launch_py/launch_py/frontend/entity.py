@@ -143,8 +143,13 @@ def read_entities(path: Path) -> Entity:
     try:
         with path.open(encoding="utf-8") as file:
             text = file.read(MAX_CHARACTERS + 1)
-    except (OSError, UnicodeError) as error:
+    except OSError as error:
         raise LaunchFileError(f"{path} cannot be read: {error}") from error
+    except UnicodeDecodeError as error:
+        byte = error.object[error.start]
+        raise LaunchFileError(
+            f"{path} cannot be read: it is not UTF-8, as the byte 0x{byte:02x} tells"
+        ) from error
     if len(text) > MAX_CHARACTERS:
         raise LaunchFileError(f"{path} has more than {MAX_CHARACTERS} characters")
     is_yaml = path.suffix in (".yaml", ".yml")
@@ -214,7 +219,7 @@ def _single(node: yaml.Node, path: Path, depth: int) -> Entity:
     if not isinstance(node, yaml.MappingNode) or len(node.value) != 1:
         raise LaunchFileError(f"{where}: an action must be one name with a colon, such as 'node:'")
     key, value = node.value[0]
-    return _filled(Entity(str(key.value), where), value, path, depth)
+    return _filled(Entity(_name(key, path), where), value, path, depth)
 
 
 def _filled(entity: Entity, body: yaml.Node, path: Path, depth: int) -> Entity:
@@ -225,7 +230,7 @@ def _filled(entity: Entity, body: yaml.Node, path: Path, depth: int) -> Entity:
             entity.children += [_single(item, path, depth + 1) for item in body.value]
         case yaml.MappingNode():
             for key, value in body.value:
-                name = str(key.value)
+                name = _name(key, path)
                 if name == "children":
                     entity.children += [_single(item, path, depth + 1) for item in value.value]
                 elif isinstance(value, yaml.ScalarNode) or not any(_mappings(value)):
@@ -240,6 +245,17 @@ def _filled(entity: Entity, body: yaml.Node, path: Path, depth: int) -> Entity:
                 f"{entity.where}: {entity.tag} takes names and values, not a text"
             )
     return entity
+
+
+def _name(key: yaml.Node, path: Path) -> str:
+    import yaml
+
+    if not isinstance(key, yaml.ScalarNode):
+        raise LaunchFileError(
+            f"{path}, line {key.start_mark.line + 1}: a name must stand before the colon, not a "
+            "list or a mapping"
+        )
+    return str(key.value)
 
 
 def _below(name: str, node: yaml.Node, path: Path) -> Entity:

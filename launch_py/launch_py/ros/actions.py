@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Unpack
 
 from launch_py.action import Action
-from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
+from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions, refuse_unknown_options
 from launch_py.actions.grouping import TimerAction
 from launch_py.conditions import Condition
 from launch_py.errors import NodeParameterError
@@ -30,6 +30,7 @@ from launch_py.substitution import (
     Text,
     describe_text,
     join_names,
+    keep_list,
     keep_pairs,
     perform_pairs,
     perform_text,
@@ -37,6 +38,19 @@ from launch_py.substitution import (
 from launch_py.system.packages import Packages
 
 Parameters = Mapping[Any, Any] | ParameterFile | Text
+
+NODE_OPTIONS = (
+    "package",
+    "executable",
+    "name",
+    "namespace",
+    "exec_name",
+    "parameters",
+    "remappings",
+    "arguments",
+    "ros_arguments",
+)
+"""The arguments of `Node` beside those of every process."""
 
 
 class Node(ExecuteProcess):
@@ -77,17 +91,17 @@ class Node(ExecuteProcess):
         ros_arguments: Iterable[Text] | None = None,
         **options: Unpack[ProcessOptions],
     ) -> None:
+        refuse_unknown_options(self, options, NODE_OPTIONS)
         super().__init__(cmd=(), name=exec_name or name or executable, **options)
         self.package = package
         self.executable = executable
         self.node_name = name
         self.namespace = namespace
-        self.parameters = (
-            [parameters] if isinstance(parameters, Mapping) else list(parameters or ())
-        )
+        single = isinstance(parameters, Mapping)
+        self.parameters = [parameters] if single else keep_list(parameters, "parameters=")
         self.remappings = keep_pairs(remappings)
-        self.arguments = list(arguments or ())
-        self.ros_arguments = list(ros_arguments or ())
+        self.arguments = keep_list(arguments, "arguments=")
+        self.ros_arguments = keep_list(ros_arguments, "ros_arguments=")
 
     def command_words(self, context: LaunchContext) -> tuple[str | GeneratedFile, ...]:
         """Return the command line.
