@@ -98,13 +98,14 @@ def robot_parameters(description: str, pose: Sequence[float]) -> list[Path]:
         DescriptionError: the text is not a valid robot.
         GazeboError: the controllers' file cannot be used.
     """
+    from arm_description.urdf.description import RobotDescription
     from arm_gazebo.launching.default_control import has_hardware
     from arm_gazebo.launching.robot_setup import gz_parameter_files, set_up_robot
 
     folder = Path(tempfile.mkdtemp(prefix="gz_sim_"))
     model = folder / "robot.urdf"
     model.write_text(description, encoding="utf-8")
-    controllers = next(iter(gz_parameter_files(description)), "")
+    controllers = next(iter(gz_parameter_files(RobotDescription(description))), "")
     setup = set_up_robot(str(model), controllers=controllers, spawn="")
     settings = {
         **setup.parameters(),

@@ -13,7 +13,6 @@ from arm_gazebo.launching.world_path import find_world
 from arm_gazebo.mjcf.memory_limit import WORLD_LIMIT, MemoryLimit
 from arm_gazebo.mjcf.references import check_readable
 from arm_gazebo.mjcf.size import check_mjcf_size
-from arm_gazebo.sdf.world import read_sdf_world
 from arm_node.user_file import read_text
 
 SDF_SUFFIXES = (".sdf", ".world")
@@ -36,6 +35,9 @@ def load_world(
     path = find_world(world)
     try:
         if path.suffix in SDF_SUFFIXES:
+            # Imported here, because most worlds are MuJoCo's.
+            from arm_gazebo.sdf.world import read_sdf_world
+
             return read_sdf_world(path, report or BuildReport())
         text = read_text(path)
         check_readable(text, path)

@@ -9,7 +9,6 @@ import numpy as np
 from arm_gazebo.errors import BackendError, CameraError
 from arm_gazebo.rendering.gl_context import EglContext, GlContext, OsmesaContext
 from arm_gazebo.rendering.gl_renderer import GlRenderer
-from arm_gazebo.rendering.raycast_renderer import RaycastRenderer
 from arm_gazebo.rendering.renderer import Renderer
 from arm_gazebo.sensors.camera import CameraSensor
 
@@ -78,6 +77,9 @@ def open_renderer(
         if backend == RAYCAST:
             if reasons:
                 _warn(reasons)
+            # Imported here: the simulation's process chooses a backend, but does not draw.
+            from arm_gazebo.rendering.raycast_renderer import RaycastRenderer
+
             return RaycastRenderer()
         try:
             context = CONTEXTS[backend]()

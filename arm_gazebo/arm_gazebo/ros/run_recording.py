@@ -4,6 +4,7 @@ import logging
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
@@ -11,8 +12,10 @@ from rclpy.parameter import Parameter
 
 from arm_control.errors import LoopStoppedError
 from arm_gazebo.errors import RecordingError
-from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.run.run import SimulationRun
+
+if TYPE_CHECKING:
+    from arm_gazebo.recording.recorder import RunRecorder
 
 PARAMETER = "record_run"
 
@@ -73,6 +76,9 @@ class RunRecording:
             self._begin(path)
 
     def _begin(self, path: str) -> None:
+        # Imported here, because most runs are not recorded.
+        from arm_gazebo.recording.recorder import RunRecorder
+
         self._recorder = RunRecorder.to_file(self._run, Path(path).expanduser().absolute())
         logger.info("recording the run to %s", self._recorder.path)
 
