@@ -75,3 +75,35 @@ sys.path.insert(0, {str(tmp_path)!r})
 import own_msgs.msg
 print(json.dumps([own_msgs.msg.ANSWER, "own_msgs.msg._own" in sys.modules]))"""
     assert said(code) == [42, True]
+
+
+def test_a_node_with_its_services_needs_no_numpy():
+    code = """
+import rclpy
+from sensor_msgs.msg import JointState
+rclpy.init()
+node = rclpy.create_node("plain")
+node.create_subscription(JointState, "joint_states", print, 1)
+print(json.dumps(["numpy" in sys.modules]))
+node.destroy_node()
+rclpy.shutdown()"""
+    assert said(code) == [False]
+
+
+def test_arrays_of_messages_are_numpys():
+    code = """
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import CameraInfo
+from unique_identifier_msgs.msg import UUID
+info = CameraInfo(k=[float(i) for i in range(9)])
+info = deserialize_message(serialize_message(info), CameraInfo)
+uuid = deserialize_message(serialize_message(UUID()), UUID)
+import numpy
+refused = False
+try:
+    CameraInfo(k=[1.0])
+except AssertionError:
+    refused = True
+is_numpys = type(info.k) is numpy.ndarray
+print(json.dumps([info.k.tolist(), str(uuid.uuid.dtype), is_numpys, refused]))"""
+    assert said(code) == [[float(i) for i in range(9)], "uint8", True, True]
