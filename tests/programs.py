@@ -9,6 +9,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import psutil
 import pytest
@@ -31,11 +32,12 @@ class Program(LoggedProcess):
 
     def __init__(
         self,
-        command: Sequence[str],
+        command: Sequence[str | Path],
         environment: Mapping[str, str] | None = None,
         stdin: int = subprocess.DEVNULL,
     ) -> None:
-        super().__init__(" ".join(command[:4]), command, environment or os.environ, stdin)
+        words = [os.fspath(word) for word in command]
+        super().__init__(" ".join(words[:4]), words, environment or os.environ, stdin)
 
     @property
     def lines(self) -> list[str]:
