@@ -7,7 +7,6 @@ from setuptools import find_packages, setup
 PACKAGE = "arm_control"
 NEIGHBOURS = ["../arm_description", "../arm_node"]
 REQUIREMENTS = [
-    "lxml>=5.0",
     "numpy>=2",
     "ros-jazzy-common-interfaces==5.3.6",
     "ros-jazzy-rclpy[fastrtps]==7.1.6",

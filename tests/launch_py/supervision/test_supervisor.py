@@ -296,9 +296,12 @@ def test_a_handler_that_raises_ends_the_launch_with_a_message(trial):
     ("handler", "said"),
     [
         (lambda event, _context: event.no_such_thing, "an event handler: AttributeError"),
-        (lambda _event, _context: 3, "an event handler: TypeError"),
+        (lambda _event, _context: 3, "an event handler takes actions, not 3 of type int"),
         (lambda *_: fake_process("b", prefix="'"), "an ExecuteProcess of b: ValueError"),
-        (OpaqueFunction(function=lambda _context: 3), "an event handler: TypeError"),
+        (
+            OpaqueFunction(function=lambda _context: 3),
+            "an event handler takes actions, not 3 of type int",
+        ),
     ],
 )
 def test_a_handler_with_invalid_actions_ends_the_launch_with_a_message(trial, handler, said):
