@@ -12,7 +12,7 @@ import pytest
 # cannot be imported twice: they are all imported here.
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
-from arm_sim.bench import joint_plot, pool
+from arm_sim.bench import joint_plot, simulation
 from arm_sim.simulation import Simulation
 
 PLUGIN_ALONE = """
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.arm_sim(arguments={"camera": "none"})
 @pytest.fixture(autouse=True, scope="module")
 def _import_everything():
     assert joint_plot
-    assert pool
+    assert simulation
     with Simulation("arm") as sim:
         sim.contacts()
 
