@@ -11,7 +11,7 @@ from arm_cli.interface_types import InterfaceIndex
 from arm_cli.names import absolute_name, is_hidden
 from arm_cli.output import complain, print_json, say, say_document
 from arm_cli.ros import completers
-from arm_cli.ros.connection import connect
+from arm_cli.ros.connection import connect, settled_graph
 from arm_cli.word_completion import message_names
 from arm_node.printable import printable
 
@@ -86,11 +86,7 @@ def name_argument(kind: EntityKind) -> Argument:
 
 def list_entities(kind: EntityKind, options: argparse.Namespace) -> None:
     """Print all names, or their number."""
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         found = kind.types(graph, kind.can_be_hidden and options.hidden)
         if getattr(options, "verbose", False) and not (options.json or options.count):
             _print_endpoints(graph, found)
@@ -112,11 +108,7 @@ def find_entities(kind: EntityKind, options: argparse.Namespace) -> None:
     """
     type_name = getattr(options, f"{kind.noun}_type")
     wanted = InterfaceIndex().find(type_name, (kind.type_kind,)).full_name
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         found = kind.types(graph, kind.can_be_hidden and options.hidden)
     names = [name for name, types in found.items() if wanted in types]
     if options.count:
@@ -194,11 +186,7 @@ def topic_info(options: argparse.Namespace) -> None:
     Raises:
         NoSuchNameError: there is no such topic.
     """
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         types = graph.find_topic(options.topic_name)
         topic = absolute_name(options.topic_name)
         publishers, subscriptions = graph.publishers(topic), graph.subscriptions(topic)
@@ -227,11 +215,7 @@ def service_info(options: argparse.Namespace) -> None:
         NoSuchNameError: there is no such service.
     """
     name = absolute_name(options.service_name)
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         types = graph.find_service(name)
         clients, servers = graph.client_count(name), graph.server_count(name)
     if options.json:
@@ -255,11 +239,7 @@ def action_info(options: argparse.Namespace) -> None:
         NoSuchNameError: there is no such action.
     """
     name = absolute_name(options.action_name)
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         types = graph.find_action(name)
         nodes = graph.nodes(hidden=True)
         clients = [node.full_name for node in nodes if name in graph.action_clients_of(node)]
@@ -303,11 +283,7 @@ def _plain(info: Any) -> dict[str, Any]:
 )
 def node_list(options: argparse.Namespace) -> None:
     """Print the nodes' names."""
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         names = [node.full_name for node in graph.nodes(options.hidden)]
     if options.json:
         print_json(names)
@@ -330,11 +306,7 @@ def node_info(options: argparse.Namespace) -> None:
     Raises:
         NoSuchNameError: there is no such node.
     """
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         node = graph.find_node(options.node_name)
         parts = {
             "Subscribers": graph.subscribed_by(node),

@@ -8,7 +8,7 @@ from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError
 from arm_cli.graph_files import to_dot, to_mermaid, write_text
 from arm_cli.output import say_document
-from arm_cli.ros.connection import connect
+from arm_cli.ros.connection import settled_graph
 from arm_node.drawing import NodeTopics, node_graph, to_svg
 
 if TYPE_CHECKING:
@@ -41,11 +41,7 @@ def graph(options: argparse.Namespace) -> None:
             f"--format {{{','.join(WRITERS)}}}"
         )
     write = WRITERS[options.format or SUFFIXES.get(suffix, "mermaid")]
-    with connect() as session:
-        from arm_cli.ros.graph import Graph
-
-        graph = Graph(session)
-        graph.settle()
+    with settled_graph() as graph:
         text = write(node_graph(topics_by_node(graph), options.all))
     if options.output:
         write_text(Path(options.output), f"```mermaid\n{text}```\n" if suffix == ".md" else text)

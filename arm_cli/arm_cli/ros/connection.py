@@ -13,6 +13,7 @@ from launch_py.standard_streams import library_output_on_stderr
 from launch_py.system.child_environment import dds_profile
 
 if TYPE_CHECKING:
+    from arm_cli.ros.graph import Graph
     from arm_cli.ros.session import CommandSession
 
 
@@ -40,3 +41,14 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Co
 
     with library_output_on_stderr(), open_session(name, use_sim_time) as session:
         yield session
+
+
+@contextmanager
+def settled_graph() -> Iterator["Graph"]:
+    """Yield the ROS graph when its discovery has settled; see `connect` and `Graph.settle`."""
+    with connect() as session:
+        from arm_cli.ros.graph import Graph
+
+        graph = Graph(session)
+        graph.settle()
+        yield graph
