@@ -12,6 +12,7 @@ from os import fspath
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
 from arm_gazebo.run.settings import PhysicsSettings
+from arm_node.names import describe_known
 from arm_node.setting import settings_of
 from arm_sim.errors import ArgumentsError
 from arm_sim.robots import AnyPath
@@ -61,6 +62,10 @@ def takes(
             except TypeError as error:
                 called = f"{make.__qualname__}.__init__"
                 reason = str(error).replace(called, type(self).__name__)
+                known = signature(make).parameters
+                unknown = next((name for name in keywords if name not in known), None)
+                if unknown is not None:
+                    reason += f"; {describe_known(unknown, known, 'it takes')}"
                 raise ArgumentsError(reason) from None
             method(self, own)
 

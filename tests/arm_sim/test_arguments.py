@@ -29,7 +29,12 @@ def test_the_keywords_are_those_of_earlier_versions():
 @pytest.mark.parametrize(
     ("arguments", "keywords", "sentence"),
     [
-        ((), {"hold_joint": False}, "Simulation() got an unexpected keyword argument 'hold_joint'"),
+        (
+            (),
+            {"hold_joint": False},
+            "Simulation() got an unexpected keyword argument 'hold_joint'; "
+            "did you mean 'hold_joints'?",
+        ),
         (
             ("arm", "empty"),
             {},
