@@ -74,20 +74,23 @@ def joint_ranges(joints: Iterable[Joint]) -> tuple[JointRange, ...]:
 class HeldSlider:
     """Decides whether a slider shows the position of its joint. One thread at a time.
 
-    While the user drags the slider, and until the joint has stopped, the slider stays where the
-    user put it; otherwise it would jump back to the present position. Afterwards it shows the
-    position of the joint. After `MAX_HOLD_S` it does so even if the joint still moves.
+    While the user drags the slider, and until the joint has set off and stopped, the slider stays
+    where the user put it; otherwise it would jump back to the present position. Afterwards it shows
+    the position of the joint. After `MAX_HOLD_S` it does so even if the joint still moves, or has
+    never moved: how soon a joint sets off depends on the load of two machines and a network.
     """
 
     def __init__(self, resolution: float) -> None:
         """Ignore movements smaller than `resolution` (rad or m)."""
         self._resolution = resolution
         self._held_from_s = -math.inf
+        self._target = math.nan
         self._moved_s = -math.inf
         self._position = math.nan
 
-    def hold(self, now_s: float) -> None:
-        """Record that the user has moved the slider."""
+    def hold(self, target: float, now_s: float) -> None:
+        """Record that the user has moved the slider to a position."""
+        self._target = target
         self._held_from_s = now_s
 
     def shown(self, position: float, now_s: float) -> float | None:
@@ -106,8 +109,11 @@ class HeldSlider:
 
     def is_held(self, now_s: float) -> bool:
         """Return whether the slider stays where the user put it."""
+        has_started = self._moved_s > self._held_from_s
+        is_there = abs(self._position - self._target) < self._resolution
         still_s = now_s - max(self._moved_s, self._held_from_s)
-        return now_s - self._held_from_s < MAX_HOLD_S and still_s < STILL_S
+        rests = (has_started or is_there) and still_s >= STILL_S
+        return now_s - self._held_from_s < MAX_HOLD_S and not rests
 
 
 class _MimicTable:
@@ -267,7 +273,7 @@ class _JointSlider:
             position = number_typed(text, self.range.name, self.range.lower, self.range.upper)
         except ValueError as error:
             return str(error)
-        self._held.hold(time.monotonic())
+        self._held.hold(position, time.monotonic())
         self._handle.value = position
         self._move()
         return ""
@@ -290,5 +296,5 @@ class _JointSlider:
     def _moved(self, event: GuiEvent[Any]) -> None:
         # Without a client the change came from `update`, which must not move the joint.
         if event.client_id is not None:
-            self._held.hold(time.monotonic())
+            self._held.hold(self.value, time.monotonic())
             self._move()

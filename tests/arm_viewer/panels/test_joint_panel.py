@@ -81,7 +81,7 @@ def test_nan_is_not_shown():
 def test_it_stays_where_the_user_put_it_until_the_joint_rests():
     follower = HeldSlider(0.001)
     follower.shown(0.0, 0.0)
-    follower.hold(1.0)
+    follower.hold(0.9, 1.0)
     for k in range(10):
         assert follower.shown(0.1 * k, 1.0 + 0.1 * k) is None
     # It went on moving until 1.9 s.
@@ -92,8 +92,25 @@ def test_it_stays_where_the_user_put_it_until_the_joint_rests():
 
 def test_a_joint_that_others_keep_moving_does_not_hold_it_for_ever():
     follower = HeldSlider(0.001)
-    follower.hold(0.0)
+    follower.hold(9.0, 0.0)
     times = [0.1 * k for k in range(int(MAX_HOLD_S * 10) + 2)]
     shown = [follower.shown(time_s, time_s) for time_s in times]
     assert shown[-3] is None
     assert shown[-1] == times[-1]
+
+
+def test_a_joint_that_sets_off_late_does_not_bring_it_back():
+    follower = HeldSlider(0.001)
+    follower.shown(0.0, 0.0)
+    follower.hold(0.9, 1.0)
+    assert follower.shown(0.0, 1.0 + 4.0 * STILL_S) is None
+    assert follower.shown(0.9, 1.0 + 5.0 * STILL_S) is None
+    assert follower.shown(0.9, 1.0 + 6.1 * STILL_S) == 0.9
+
+
+def test_a_joint_that_is_there_already_releases_it():
+    follower = HeldSlider(0.001)
+    follower.shown(0.5, 0.0)
+    follower.hold(0.5, 1.0)
+    assert follower.shown(0.5, 1.0 + 0.9 * STILL_S) is None
+    assert follower.shown(0.5, 1.0 + 1.1 * STILL_S) == 0.5
