@@ -1,0 +1,1 @@
+"""Motion planning for robot arms, without ROS below the node `move_group`."""

@@ -1,0 +1,1 @@
+"""Collision checks with MuJoCo, and the proof that a motion is free."""

@@ -1,0 +1,1 @@
+"""What a goal or a path must satisfy."""

@@ -1,0 +1,62 @@
+"""The errors of this package, each with the code that MoveIt gives to it.
+
+PlanningError            a request that cannot be answered, or a plan that was not found
+└── SrdfError            an SRDF that cannot be used
+"""
+
+from enum import IntEnum
+
+
+class ErrorCode(IntEnum):
+    """The values of moveit_msgs/MoveItErrorCodes."""
+
+    SUCCESS = 1
+    UNDEFINED = 0
+    FAILURE = 99999
+    PLANNING_FAILED = -1
+    INVALID_MOTION_PLAN = -2
+    MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE = -3
+    CONTROL_FAILED = -4
+    UNABLE_TO_AQUIRE_SENSOR_DATA = -5
+    TIMED_OUT = -6
+    PREEMPTED = -7
+    START_STATE_IN_COLLISION = -10
+    START_STATE_VIOLATES_PATH_CONSTRAINTS = -11
+    GOAL_IN_COLLISION = -12
+    GOAL_VIOLATES_PATH_CONSTRAINTS = -13
+    GOAL_CONSTRAINTS_VIOLATED = -14
+    INVALID_GROUP_NAME = -15
+    INVALID_GOAL_CONSTRAINTS = -16
+    INVALID_ROBOT_STATE = -17
+    INVALID_LINK_NAME = -18
+    INVALID_OBJECT_NAME = -19
+    FRAME_TRANSFORM_FAILURE = -21
+    COLLISION_CHECKING_UNAVAILABLE = -22
+    ROBOT_STATE_STALE = -23
+    SENSOR_INFO_STALE = -24
+    COMMUNICATION_FAILURE = -25
+    START_STATE_INVALID = -26
+    GOAL_STATE_INVALID = -27
+    UNRECOGNIZED_GOAL_TYPE = -28
+    CRASH = -29
+    ABORT = -30
+    NO_IK_SOLUTION = -31
+
+
+class PlanningError(Exception):
+    """A request that cannot be answered; the message is a sentence for the user.
+
+    Attributes:
+        code: MoveIt's code of the failure.
+    """
+
+    def __init__(self, code: ErrorCode, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class SrdfError(PlanningError):
+    """An SRDF that cannot be used; the message names the element and its line."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(ErrorCode.FAILURE, message)

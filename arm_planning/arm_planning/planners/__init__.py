@@ -1,0 +1,1 @@
+"""Finds paths from a start to a goal."""

@@ -1,0 +1,1 @@
+"""The robot as planning sees it: groups of joints, limits, named states, the SRDF."""

@@ -1,0 +1,28 @@
+"""Which pairs of links and objects may touch: MoveIt's allowed collision matrix."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class AllowedCollisions:
+    """Pairs that may touch.
+
+    Attributes:
+        pairs: whether a pair may touch; the two names of a key in sorted order.
+        defaults: whether a name may touch everything that it has no pair with.
+    """
+
+    pairs: Mapping[tuple[str, str], bool] = field(default_factory=dict)
+    defaults: Mapping[str, bool] = field(default_factory=dict)
+
+    def may_touch(self, first: str, second: str) -> bool:
+        """Return whether two may touch: by their pair, else by both defaults, else by the one.
+
+        A pair without an entry and without a default may not.
+        """
+        pair = (first, second) if first <= second else (second, first)
+        if pair in self.pairs:
+            return self.pairs[pair]
+        known = [self.defaults[name] for name in pair if name in self.defaults]
+        return bool(known) and all(known)

@@ -1,0 +1,1 @@
+"""Makes a trajectory of a path within the limits of the joints."""

@@ -1,0 +1,33 @@
+"""Installs this folder alone, by colcon or pip; the root pyproject.toml installs the suite."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "arm_planning"
+NEIGHBOURS = ["../arm_node", "../arm_description"]
+REQUIREMENTS = [
+    "numpy>=2",
+]
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={"arm_planning": ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=[
+        "setuptools",
+        *REQUIREMENTS,
+        *(f"{Path(path).name} @ {Path(path).resolve().as_uri()}" for path in NEIGHBOURS),
+    ],
+    zip_safe=True,
+    description=(
+        "Motion planning for arms: planning scene, collision checks, inverse kinematics, planners "
+        "and timing, with the surface of MoveIt 2's move_group."
+    ),
+    license="Apache-2.0",
+)
