@@ -8,6 +8,8 @@ PACKAGE = "arm_planning"
 NEIGHBOURS = ["../arm_node", "../arm_description"]
 REQUIREMENTS = [
     "numpy>=2",
+    "ros-jazzy-common-interfaces==5.3.6",
+    "ros-jazzy-rclpy[fastrtps]==7.1.6",
 ]
 
 setup(

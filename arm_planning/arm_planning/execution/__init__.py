@@ -1,0 +1,1 @@
+"""Runs trajectories on controllers: which ones, from where, for how long."""

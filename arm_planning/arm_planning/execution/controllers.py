@@ -1,0 +1,168 @@
+"""The controllers that can run a trajectory, and the choice among them by MoveIt's rules."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import combinations
+
+from arm_node.names import describe_known, listing
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.trajectory import Trajectory
+
+
+class ControllerKind(Enum):
+    """What a controller's action is, by the type in moveit_controllers.yaml."""
+
+    FOLLOW_JOINT_TRAJECTORY = "FollowJointTrajectory"
+    GRIPPER_COMMAND = "GripperCommand"
+    PARALLEL_GRIPPER_COMMAND = "ParallelGripperCommand"
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryController:
+    """A controller with an action that takes a trajectory or its end.
+
+    Attributes:
+        name: its name.
+        action: name of its action below the controller's name.
+        kind: its action's type.
+        joints: the joints that it drives.
+        is_default: whether it is preferred to others of the same joints.
+        max_effort: effort for a gripper's goals, N or N m.
+        stall_is_success: whether a gripper that is stopped by a thing has reached its goal.
+        duration_scaling: how many times its planned duration a motion may take.
+        duration_margin_s: and how much longer.
+    """
+
+    name: str
+    action: str
+    kind: ControllerKind
+    joints: tuple[str, ...]
+    is_default: bool = False
+    max_effort: float = 0.0
+    stall_is_success: bool = False
+    duration_scaling: float | None = None
+    duration_margin_s: float | None = None
+
+    @property
+    def action_name(self) -> str:
+        """The action's name, relative to the namespace."""
+        return f"{self.name}/{self.action}" if self.action else self.name
+
+
+def controllers_of_settings(settings: Mapping[str, object]) -> list[TrajectoryController]:
+    """Return the controllers of moveit_controllers.yaml.
+
+    Args:
+        settings: the values below moveit_simple_controller_manager, with dotted names.
+
+    Raises:
+        PlanningError: a controller has no joints or an unknown type.
+    """
+    names = settings.get("controller_names", ())
+    if not isinstance(names, Sequence):
+        raise _refusal("moveit_simple_controller_manager.controller_names is not a list of names")
+    return [_controller(str(name), settings) for name in names]
+
+
+def choose_controllers(
+    controllers: Sequence[TrajectoryController], joints: Sequence[str], names: Sequence[str] = ()
+) -> tuple[TrajectoryController, ...]:
+    """Return the fewest controllers that together drive all joints, none of them twice.
+
+    Args:
+        controllers: all that there are.
+        joints: the joints to drive.
+        names: the only controllers to use; empty for any.
+
+    Raises:
+        PlanningError: CONTROL_FAILED: a name is unknown, or no controllers drive all joints.
+    """
+    known = {controller.name: controller for controller in controllers}
+    for name in names:
+        if name not in known:
+            raise _refusal(f"Controller {name} is not known; {describe_known(name, known)}")
+    usable = [known[name] for name in names] if names else list(controllers)
+    wanted = set(joints)
+    relevant = [controller for controller in usable if wanted.intersection(controller.joints)]
+    for chosen in _by_preference(relevant):
+        driven = [joint for controller in chosen for joint in controller.joints]
+        if wanted <= set(driven) and len(driven) == len(set(driven)):
+            return chosen
+    raise _refusal(_nobody_drives(wanted, controllers))
+
+
+def part_for(trajectory: Trajectory, controller: TrajectoryController) -> Trajectory:
+    """Return the columns of a trajectory that a controller drives, in the trajectory's order."""
+    columns = [i for i, joint in enumerate(trajectory.joints) if joint in controller.joints]
+    return Trajectory(
+        tuple(trajectory.joints[i] for i in columns),
+        trajectory.times_s,
+        trajectory.positions[:, columns],
+        trajectory.velocities[:, columns],
+        trajectory.accelerations[:, columns],
+    )
+
+
+def _by_preference(
+    controllers: Sequence[TrajectoryController],
+) -> Iterator[tuple[TrajectoryController, ...]]:
+    ranked = sorted(controllers, key=lambda controller: not controller.is_default)
+    for count in range(1, len(ranked) + 1):
+        yield from combinations(ranked, count)
+
+
+def _nobody_drives(wanted: Iterable[str], controllers: Sequence[TrajectoryController]) -> str:
+    driven = {joint for controller in controllers for joint in controller.joints}
+    missing = sorted(set(wanted) - driven)
+    joints = " ".join(sorted(wanted))
+    sentence = (
+        f"Unable to identify any set of controllers that can actuate the joints: [ {joints} ]"
+    )
+    if missing:
+        sentence += f"; no active controller drives {listing(missing)}"
+    known = listing(f"{each.name} ({listing(each.joints)})" for each in controllers)
+    return (
+        f"{sentence}; the known controllers are {known}: activate one that drives these joints, "
+        "such as a joint_trajectory_controller, or name it in moveit_controllers.yaml"
+    )
+
+
+def _controller(name: str, settings: Mapping[str, object]) -> TrajectoryController:
+    prefix = f"{name}."
+    own = {
+        key.removeprefix(prefix): value for key, value in settings.items() if key.startswith(prefix)
+    }
+    kinds = {kind.value: kind for kind in ControllerKind}
+    kind = kinds.get(str(own.get("type", "")))
+    if kind is None:
+        raise _refusal(
+            f"controller '{name}' of moveit_simple_controller_manager has the type "
+            f"'{own.get('type', '')}'; there are {listing(kinds)}"
+        )
+    joints = own.get("joints", ())
+    if not isinstance(joints, Sequence) or isinstance(joints, str) or not joints:
+        raise _refusal(f"controller '{name}' of moveit_simple_controller_manager has no joints")
+    return TrajectoryController(
+        name,
+        str(own.get("action_ns", "")),
+        kind,
+        tuple(map(str, joints)),
+        is_default=own.get("default") is True,
+        max_effort=_number(own.get("max_effort"), 0.0),
+        stall_is_success=own.get("allow_failure") is True,
+        duration_scaling=_optional(own.get("allowed_execution_duration_scaling")),
+        duration_margin_s=_optional(own.get("allowed_goal_duration_margin")),
+    )
+
+
+def _number(value: object, default: float) -> float:
+    return float(value) if isinstance(value, int | float) else default
+
+
+def _optional(value: object) -> float | None:
+    return float(value) if isinstance(value, int | float) else None
+
+
+def _refusal(sentence: str) -> PlanningError:
+    return PlanningError(ErrorCode.CONTROL_FAILED, sentence)

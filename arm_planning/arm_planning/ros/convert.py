@@ -1,0 +1,210 @@
+"""Converts poses, robot states and trajectories from and to messages; units are the same."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from moveit_msgs.msg import MoveItErrorCodes, RobotState, RobotTrajectory
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from arm_node.names import describe_known, listing
+from arm_node.rigid_transform import RigidTransform, Vector
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.trajectory import Trajectory
+
+NANOSECONDS = 1_000_000_000
+UNIT = 1e-3
+"""How far the norm of a quaternion may be from 1: it is normalised."""
+
+Warn = Callable[[str], None]
+"""Takes a sentence for the user about something that is passed over."""
+
+
+def error_code(code: ErrorCode, message: str = "") -> MoveItErrorCodes:
+    """Return an error code with its reason."""
+    return MoveItErrorCodes(val=int(code), message=message, source="move_group" if message else "")
+
+
+def vector_of(message: Point | Vector3, what: str) -> Vector:
+    """Return a point or vector.
+
+    Raises:
+        PlanningError: a coordinate is not finite; `what` names the vector.
+    """
+    vector = (message.x, message.y, message.z)
+    if not all(map(math.isfinite, vector)):
+        raise PlanningError(ErrorCode.FAILURE, f"{what} is not finite: {listing(map(str, vector))}")
+    return vector
+
+
+def pose_of(message: Pose, what: str) -> RigidTransform:
+    """Return a pose with a unit quaternion.
+
+    Raises:
+        PlanningError: a number is not finite, or the quaternion is zero; `what` names the pose.
+    """
+    position = vector_of(message.position, f"the position of {what}")
+    return RigidTransform(position, quaternion_of(message.orientation, what))
+
+
+def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, float]:
+    """Return a unit quaternion.
+
+    Raises:
+        PlanningError: a number is not finite, or the norm is not 1; `what` names the pose.
+    """
+    numbers = (message.x, message.y, message.z, message.w)
+    norm = math.hypot(*numbers)
+    if not abs(norm - 1.0) <= UNIT:
+        raise PlanningError(
+            ErrorCode.FAILURE,
+            f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
+            "is (0, 0, 0, 1)",
+        )
+    x, y, z, w = (number / norm for number in numbers)
+    return (x, y, z, w)
+
+
+def pose_message(pose: RigidTransform) -> Pose:
+    """Return a pose as a message."""
+    x, y, z = pose.position
+    i, j, k, w = pose.rotation
+    return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=i, y=j, z=k, w=w))
+
+
+def vector_message(vector: Iterable[float]) -> Vector3:
+    """Return a vector as a message."""
+    x, y, z = map(float, vector)
+    return Vector3(x=x, y=y, z=z)
+
+
+def seconds(duration: Duration) -> float:
+    """Return a duration or a time in s."""
+    return duration.sec + duration.nanosec / NANOSECONDS
+
+
+def duration_message(time_s: float) -> Duration:
+    """Return a duration as a message, rounded to whole nanoseconds."""
+    sec, nanosec = divmod(round(time_s * NANOSECONDS), NANOSECONDS)
+    return Duration(sec=sec, nanosec=nanosec)
+
+
+def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> dict[str, float]:
+    """Return the positions of active joints in a state; other joints are passed over.
+
+    Clients forward every name on /joint_states, so a joint that is not the robot's only warns.
+
+    Raises:
+        PlanningError: INVALID_ROBOT_STATE: a position is not finite.
+    """
+    names, values = list(message.joint_state.name), list(message.joint_state.position)
+    if len(names) != len(values):
+        warn(
+            "Different number of names and positions in JointState message: "
+            f"{len(names)}, {len(values)}"
+        )
+        return {}
+    result: dict[str, float] = {}
+    known = {joint.name for joint in model.robot.joints}
+    for name, value in zip(names, values, strict=True):
+        if name not in known:
+            unknown = describe_known(name, known, "the robot has")
+            warn(f"a state names the joint '{name}', which the robot does not have; {unknown}")
+        elif not math.isfinite(value):
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE, f"the position of joint '{name}' is {value}"
+            )
+        elif name in model.joints:
+            result[name] = value
+    return result
+
+
+def robot_state_message(model: PlanningModel, positions: JointPositions) -> RobotState:
+    """Return a state with the positions of all joints, mimic joints included."""
+    state = RobotState()
+    names: list[str] = []
+    values: list[float] = []
+    for joint in model.robot.joints_in_tree_order:
+        if joint.type.is_scalar:
+            rule = model.robot.leader_of(joint.name)
+            names.append(joint.name)
+            values.append(rule.position(positions.get(rule.joint, 0.0)))
+    state.joint_state.header.frame_id = model.frame
+    state.joint_state.name = names
+    state.joint_state.position = values
+    return state
+
+
+def trajectory_message(frame: str, trajectory: Trajectory | None) -> RobotTrajectory:
+    """Return a trajectory as a message; without one, an empty message."""
+    message = RobotTrajectory()
+    if trajectory is None:
+        return message
+    joint_trajectory = message.joint_trajectory
+    joint_trajectory.header.frame_id = frame
+    joint_trajectory.joint_names = list(trajectory.joints)
+    joint_trajectory.points = [
+        JointTrajectoryPoint(
+            positions=position,
+            velocities=velocity,
+            accelerations=acceleration,
+            time_from_start=duration_message(time_s),
+        )
+        for position, velocity, acceleration, time_s in zip(
+            trajectory.positions.tolist(),
+            trajectory.velocities.tolist(),
+            trajectory.accelerations.tolist(),
+            trajectory.times_s.tolist(),
+            strict=True,
+        )
+    ]
+    return message
+
+
+def trajectory_of(message: RobotTrajectory) -> Trajectory:
+    """Return a trajectory; velocities and accelerations that a point lacks are NaN.
+
+    Raises:
+        PlanningError: INVALID_MOTION_PLAN: a point has a wrong number of values, a value is not
+            finite, or its time does not increase.
+    """
+    given = message.joint_trajectory
+    count = len(given.joint_names)
+    points: Sequence[Any] = given.points
+    for number, point in enumerate(points):
+        sizes = {len(point.velocities), len(point.accelerations)} - {0}
+        if len(point.positions) != count or not sizes <= {count}:
+            raise PlanningError(
+                ErrorCode.INVALID_MOTION_PLAN,
+                f"point {number} of the trajectory has {len(point.positions)} positions for "
+                f"{count} joints",
+            )
+    times = np.array([seconds(point.time_from_start) for point in points])
+    positions = np.array([point.positions for point in points]).reshape(-1, count)
+    if not np.isfinite(positions).all():
+        raise PlanningError(
+            ErrorCode.INVALID_MOTION_PLAN, "the trajectory has a position that is not finite"
+        )
+    if (np.diff(times) <= 0.0).any():
+        number = int(np.argmax(np.diff(times) <= 0.0)) + 1
+        raise PlanningError(
+            ErrorCode.INVALID_MOTION_PLAN,
+            f"point {number} of the trajectory is not later than the point before it",
+        )
+    return Trajectory(
+        tuple(given.joint_names),
+        times,
+        positions,
+        _values(points, "velocities", count),
+        _values(points, "accelerations", count),
+    )
+
+
+def _values(points: Sequence[Any], name: str, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    missing = [math.nan] * count
+    rows = [list(getattr(point, name)) or missing for point in points]
+    return np.array(rows).reshape(-1, count)

@@ -1,0 +1,219 @@
+"""Converts constraints and planning requests from messages, with their frames resolved."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from moveit_msgs.msg import Constraints as ConstraintsMessage
+from moveit_msgs.msg import JointConstraint as JointMessage
+from moveit_msgs.msg import MotionPlanRequest
+from moveit_msgs.msg import OrientationConstraint as OrientationMessage
+from moveit_msgs.msg import PositionConstraint as PositionMessage
+
+from arm_node.names import describe_known
+from arm_node.rigid_transform import RigidTransform, quaternion_product
+from arm_planning.constraints.constraints import (
+    Constraints,
+    JointConstraint,
+    OrientationConstraint,
+    OrientationError,
+    PositionConstraint,
+)
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.request import PlanRequest
+from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.ros.convert import Warn, quaternion_of, vector_of
+from arm_planning.ros.convert_shapes import placed_shapes
+from arm_planning.scene.objects import PlacedShape
+from arm_planning.scene.scene import PlanningScene
+
+DEFAULT_TIME_S = 1.0
+"""MoveIt's time for a request that gives none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Finds the frames that constraints name.
+
+    Attributes:
+        model: the robot.
+        scene: the scene with its objects.
+        pose: returns a fixed frame's pose in the planning frame; raises PlanningError if it does
+            not exist.
+    """
+
+    model: PlanningModel
+    scene: PlanningScene
+    pose: Callable[[str], RigidTransform]
+
+    def link_and_offset(self, name: str) -> tuple[str, RigidTransform]:
+        """Return the link that a link, an attached object or one of its subframes moves with.
+
+        Raises:
+            PlanningError: INVALID_LINK_NAME: there is none of that name.
+        """
+        if any(link.name == name for link in self.model.robot.links):
+            return name, RigidTransform()
+        owner, _, subframe = name.partition("/")
+        body = self.scene.attached.get(name) or self.scene.attached.get(owner)
+        if body is not None:
+            if name == body.object.id:
+                return body.link, body.object.pose
+            if subframe in body.object.subframes:
+                return body.link, body.object.pose.then(body.object.subframes[subframe])
+        links = [link.name for link in self.model.robot.links]
+        known = describe_known(name, [*links, *self.scene.attached], "the robot has")
+        raise PlanningError(ErrorCode.INVALID_LINK_NAME, f"no link '{name}'; {known}")
+
+    def reference(self, name: str) -> tuple[str, RigidTransform]:
+        """Return the link that a frame moves with ("": the planning frame) and its pose there.
+
+        Raises:
+            PlanningError: FRAME_TRANSFORM_FAILURE: there is no such frame.
+        """
+        name = name.lstrip("/")
+        if name in ("", self.model.frame, self.model.robot.root):
+            return "", RigidTransform()
+        try:
+            return self.link_and_offset(name)
+        except PlanningError:
+            return "", self.pose(name)
+
+
+def constraints_of(message: ConstraintsMessage, frames: Frames, warn: Warn) -> Constraints:
+    """Return constraints with frames that planning knows.
+
+    Raises:
+        PlanningError: a link, joint or frame does not exist, or a number is not usable.
+    """
+    if message.visibility_constraints:
+        raise PlanningError(
+            ErrorCode.INVALID_GOAL_CONSTRAINTS,
+            "visibility constraints are not supported; joint, position and orientation "
+            "constraints are",
+        )
+    return Constraints(
+        tuple(_joint(each, frames.model, warn) for each in message.joint_constraints),
+        tuple(
+            _position(each, frames, warn)
+            for each in message.position_constraints
+            if _has_region(each, warn)
+        ),
+        tuple(_orientation(each, frames, warn) for each in message.orientation_constraints),
+        message.name,
+    )
+
+
+def plan_request(
+    message: MotionPlanRequest, start: JointPositions | None, frames: Frames, warn: Warn
+) -> PlanRequest:
+    """Return a planning request.
+
+    Args:
+        message: the request.
+        start: its start state, converted; None for the scene's.
+        frames: the frames of the scene that it is planned in.
+        warn: takes what is passed over or replaced.
+
+    Raises:
+        PlanningError: see `constraints_of`.
+    """
+    time_s = message.allowed_planning_time
+    if not time_s > 0.0:
+        time_s = DEFAULT_TIME_S
+    return PlanRequest(
+        group=message.group_name,
+        goals=tuple(constraints_of(each, frames, warn) for each in message.goal_constraints),
+        path=constraints_of(message.path_constraints, frames, warn),
+        start=start,
+        pipeline=message.pipeline_id,
+        planner=message.planner_id,
+        attempts=max(message.num_planning_attempts, 1),
+        allowed_time_s=time_s,
+        velocity_scaling=message.max_velocity_scaling_factor,
+        acceleration_scaling=message.max_acceleration_scaling_factor,
+    )
+
+
+def _joint(message: JointMessage, model: PlanningModel, warn: Warn) -> JointConstraint:
+    names = [joint.name for joint in model.robot.movable_joints]
+    if message.joint_name not in names:
+        known = describe_known(message.joint_name, names, "the robot has")
+        raise _invalid(f"a constraint names the joint '{message.joint_name}'; {known}")
+    numbers = (message.position, message.tolerance_above, message.tolerance_below)
+    if not all(map(math.isfinite, numbers)):
+        raise _invalid(f"the constraint on joint '{message.joint_name}' is not finite: {numbers}")
+    if message.tolerance_above < 0.0 or message.tolerance_below < 0.0:
+        raise _invalid(f"the constraint on joint '{message.joint_name}' has a negative tolerance")
+    return JointConstraint(
+        message.joint_name,
+        message.position,
+        above=message.tolerance_above,
+        below=message.tolerance_below,
+        weight=_weight(message.weight, f"joint '{message.joint_name}'", warn),
+    )
+
+
+def _has_region(message: PositionMessage, warn: Warn) -> bool:
+    region = message.constraint_region
+    if region.primitives or region.meshes:
+        return True
+    warn(f"the position constraint on link '{message.link_name}' has no region and is ignored")
+    return False
+
+
+def _position(message: PositionMessage, frames: Frames, warn: Warn) -> PositionConstraint:
+    owner = f"the region of the position constraint on '{message.link_name}'"
+    region = message.constraint_region
+    shapes = placed_shapes(
+        owner, region.primitives, region.primitive_poses, region.meshes, region.mesh_poses
+    )
+    frame, origin = frames.reference(message.header.frame_id)
+    link, offset = frames.link_and_offset(message.link_name)
+    point = vector_of(message.target_point_offset, f"the offset of '{message.link_name}'")
+    return PositionConstraint(
+        link,
+        offset.then(RigidTransform(point)).position,
+        tuple(PlacedShape(each.shape, origin.then(each.pose)) for each in shapes),
+        frame,
+        _weight(message.weight, f"the position of '{message.link_name}'", warn),
+    )
+
+
+def _orientation(message: OrientationMessage, frames: Frames, warn: Warn) -> OrientationConstraint:
+    link, offset = frames.link_and_offset(message.link_name)
+    frame, origin = frames.reference(message.header.frame_id)
+    what = f"the orientation constraint on '{message.link_name}'"
+    wanted = quaternion_product(origin.rotation, quaternion_of(message.orientation, what))
+    tolerances = (
+        message.absolute_x_axis_tolerance,
+        message.absolute_y_axis_tolerance,
+        message.absolute_z_axis_tolerance,
+    )
+    if not all(tolerance >= 0.0 for tolerance in tolerances):
+        raise _invalid(f"{what} has tolerances that are not positive: {tolerances}")
+    if message.parameterization not in (0, 1):
+        raise _invalid(
+            f"{what} has the parameterization {message.parameterization}; there are "
+            "0 (XYZ_EULER_ANGLES) and 1 (ROTATION_VECTOR)"
+        )
+    # The link is where the object on it would be in the wanted orientation.
+    return OrientationConstraint(
+        link,
+        quaternion_product(wanted, offset.inverse().rotation),
+        tolerances,
+        OrientationError(message.parameterization),
+        frame,
+        _weight(message.weight, what, warn),
+    )
+
+
+def _weight(weight: float, what: str, warn: Warn) -> float:
+    if weight > 0.0:
+        return weight
+    warn(f"the weight of the constraint on {what} is {weight:g}; 1 is used")
+    return 1.0
+
+
+def _invalid(sentence: str) -> PlanningError:
+    return PlanningError(ErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)

@@ -1,0 +1,138 @@
+"""Converts the shapes of objects from and to messages."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from geometry_msgs.msg import Point, Pose
+from shape_msgs.msg import Mesh, MeshTriangle, SolidPrimitive
+from shape_msgs.msg import Plane as PlaneMessage
+
+from arm_description.urdf.robot import Box, Cylinder, Sphere
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.ros.convert import pose_of
+from arm_planning.scene.objects import PlacedShape
+from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
+
+SIZES = {
+    SolidPrimitive.BOX: ("box", ("x", "y", "z")),
+    SolidPrimitive.SPHERE: ("sphere", ("radius",)),
+    SolidPrimitive.CYLINDER: ("cylinder", ("height", "radius")),
+    SolidPrimitive.CONE: ("cone", ("height", "radius")),
+}
+
+
+def placed_shapes(
+    owner: str,
+    primitives: Sequence[SolidPrimitive],
+    primitive_poses: Sequence[Pose],
+    meshes: Sequence[Mesh],
+    mesh_poses: Sequence[Pose],
+    planes: Sequence[PlaneMessage] = (),
+    plane_poses: Sequence[Pose] = (),
+) -> tuple[PlacedShape, ...]:
+    """Return the shapes of an object; a shape without a pose is at the origin.
+
+    Args:
+        owner: names the object in errors, such as "object 'box1'".
+        primitives: boxes, spheres, cylinders and cones.
+        primitive_poses: their poses; fewer are allowed, more are not.
+        meshes: triangle meshes.
+        mesh_poses: their poses.
+        planes: half spaces.
+        plane_poses: their poses.
+
+    Raises:
+        PlanningError: INVALID_OBJECT_NAME: a shape has no size, or there are more poses than
+            shapes.
+    """
+    return (
+        *_placed(owner, "primitive", [_solid(owner, each) for each in primitives], primitive_poses),
+        *_placed(owner, "mesh", [_mesh(owner, each) for each in meshes], mesh_poses),
+        *_placed(owner, "plane", [_plane(owner, each) for each in planes], plane_poses),
+    )
+
+
+def solid_message(shape: Shape) -> SolidPrimitive | Mesh | PlaneMessage:
+    """Return a shape as the message of its kind."""
+    match shape:
+        case Box(size):
+            return SolidPrimitive(type=SolidPrimitive.BOX, dimensions=list(size))
+        case Sphere(radius):
+            return SolidPrimitive(type=SolidPrimitive.SPHERE, dimensions=[radius])
+        case Cylinder(radius, length):
+            return SolidPrimitive(type=SolidPrimitive.CYLINDER, dimensions=[length, radius])
+        case Cone(radius, height):
+            return SolidPrimitive(type=SolidPrimitive.CONE, dimensions=[height, radius])
+        case Plane(a, b, c, d):
+            return PlaneMessage(coef=[a, b, c, d])
+        case TriangleMesh(vertices, triangles):
+            return Mesh(
+                vertices=[Point(x=x, y=y, z=z) for x, y, z in vertices.tolist()],
+                triangles=[MeshTriangle(vertex_indices=row) for row in triangles.tolist()],
+            )
+
+
+def _placed(
+    owner: str, kind: str, shapes: Sequence[Shape], poses: Sequence[Pose]
+) -> list[PlacedShape]:
+    if len(poses) > len(shapes):
+        raise _refusal(f"{owner} has {len(poses)} {kind} poses for {len(shapes)} shapes")
+    what = f"a {kind} of {owner}"
+    placed = [pose_of(pose, what) for pose in poses]
+    placed += [RigidTransform()] * (len(shapes) - len(poses))
+    return [PlacedShape(shape, pose) for shape, pose in zip(shapes, placed, strict=True)]
+
+
+def _solid(owner: str, message: SolidPrimitive) -> Shape:
+    if message.type not in SIZES:
+        raise _refusal(
+            f"{owner} has a primitive of type {message.type}; there are 1 (box), 2 (sphere), "
+            "3 (cylinder) and 4 (cone)"
+        )
+    name, wanted = SIZES[message.type]
+    sizes = list(message.dimensions)
+    if len(sizes) != len(wanted):
+        raise _refusal(
+            f"{owner} has a {name} of {len(sizes)} dimensions; it has {', '.join(wanted)}"
+        )
+    if not all(math.isfinite(size) and size > 0.0 for size in sizes):
+        raise _refusal(f"{owner} has a {name} with a size that is not positive: {sizes}")
+    match message.type:
+        case SolidPrimitive.BOX:
+            x, y, z = sizes
+            return Box((x, y, z))
+        case SolidPrimitive.SPHERE:
+            return Sphere(sizes[0])
+        case SolidPrimitive.CYLINDER:
+            return Cylinder(radius=sizes[1], length=sizes[0])
+        case _:
+            return Cone(radius=sizes[1], height=sizes[0])
+
+
+def _mesh(owner: str, message: Mesh) -> TriangleMesh:
+    vertices = np.array([(v.x, v.y, v.z) for v in message.vertices], dtype=float).reshape(-1, 3)
+    triangles = np.array([list(t.vertex_indices) for t in message.triangles], dtype=np.int64)
+    triangles = triangles.reshape(-1, 3)
+    if not len(triangles):
+        raise _refusal(f"{owner} has a mesh without triangles")
+    if triangles.max() >= len(vertices):
+        raise _refusal(
+            f"{owner} has a mesh with {len(vertices)} vertices, of which a triangle uses number "
+            f"{triangles.max()}"
+        )
+    if not np.isfinite(vertices).all():
+        raise _refusal(f"{owner} has a mesh with a vertex that is not finite")
+    return TriangleMesh(vertices, triangles)
+
+
+def _plane(owner: str, message: PlaneMessage) -> Plane:
+    a, b, c, d = map(float, message.coef)
+    if not all(map(math.isfinite, (a, b, c, d))) or not (a or b or c):
+        raise _refusal(f"{owner} has a plane without a normal: {[a, b, c, d]}")
+    return Plane(a, b, c, d)
+
+
+def _refusal(sentence: str) -> PlanningError:
+    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, sentence)

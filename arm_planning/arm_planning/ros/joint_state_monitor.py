@@ -1,0 +1,111 @@
+"""The robot's present state, from /joint_states."""
+
+import math
+import threading
+import time
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+
+from arm_node.names import listing
+from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_planning.robot.model import PlanningModel
+from arm_planning.ros.convert import seconds
+
+DEPTH = 20
+"""Messages kept until they are read: several publishers may share the topic."""
+FRESH_S = 0.05
+"""A state that arrived this recently counts as the present one."""
+POLL_S = 0.001
+
+
+class JointStateMonitor:
+    """Merges the joint states of all publishers; any thread may ask for them.
+
+    The topic is read when somebody asks, which costs nothing while nobody plans.
+    """
+
+    def __init__(self, node: Node, model: PlanningModel) -> None:
+        """Subscribe to joint_states."""
+        self._model = model
+        self._known = frozenset(model.joints)
+        self._lock = threading.Lock()
+        self._positions: dict[str, float] = {}
+        self._velocities: dict[str, float] = {}
+        self._stamp_s = 0.0
+        self._arrived_s = -math.inf
+        """On the system's clock, which is that of the middleware's time stamps."""
+        self._polled = PolledSubscriptions(node)
+        self._subscription = self._polled.subscribe(
+            JointState,
+            "joint_states",
+            QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
+        )
+
+    def positions(self) -> dict[str, float]:
+        """Return the latest position of each active joint that has been heard, rad or m."""
+        with self._lock:
+            self._take()
+            return dict(self._positions)
+
+    def largest_speed(self) -> float:
+        """Return the largest latest speed of a joint, rad/s or m/s; 0 where none is published."""
+        with self._lock:
+            self._take()
+            return max(map(abs, self._velocities.values()), default=0.0)
+
+    @property
+    def stamp_s(self) -> float:
+        """The stamp of the latest message in s: the robot's time."""
+        with self._lock:
+            self._take()
+            return self._stamp_s
+
+    def missing(self) -> tuple[str, ...]:
+        """Return the active joints whose positions nobody has published yet."""
+        known = self.positions()
+        return tuple(joint for joint in self._model.joints if joint not in known)
+
+    def wait_for_fresh(self, timeout_s: float) -> str:
+        """Wait until the state is at most 50 ms old; return what is wrong after the timeout.
+
+        Returns:
+            "", or a sentence: joint states have stopped, or joints are missing.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while True:
+            missing = self.missing()
+            age_s = time.time() - self._arrived_s
+            if age_s < FRESH_S and not missing:
+                return ""
+            if time.monotonic() >= deadline_s:
+                break
+            time.sleep(POLL_S)
+        if math.isinf(age_s):
+            return "nobody publishes joint_states: start the robot and its joint_state_broadcaster"
+        if missing:
+            names = listing(missing)
+            return f"The complete state of the robot is not yet known.  Missing {names}"
+        return (
+            f"joint_states stopped {age_s:.1f} s ago; planning starts from the last state (a "
+            "simulation that is paused publishes none)"
+        )
+
+    def _take(self) -> None:
+        for raw, arrival in self._polled.take(self._subscription, DEPTH):
+            message: JointState = deserialize_message(raw, JointState)
+            # As upstream: a message whose lengths differ is dropped, unknown joints are skipped.
+            if len(message.name) != len(message.position):
+                continue
+            self._arrived_s = arrival["received_timestamp"] * 1e-9
+            self._stamp_s = seconds(message.header.stamp)
+            speeds = message.velocity if len(message.velocity) == len(message.name) else ()
+            for index, (name, position) in enumerate(
+                zip(message.name, message.position, strict=True)
+            ):
+                if name in self._known and math.isfinite(position):
+                    self._positions[name] = position
+                    if speeds:
+                        self._velocities[name] = speeds[index]
