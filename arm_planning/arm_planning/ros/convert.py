@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
-from builtin_interfaces.msg import Duration
+from builtin_interfaces.msg import Duration, Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from moveit_msgs.msg import MoveItErrorCodes, RobotState, RobotTrajectory
 from trajectory_msgs.msg import JointTrajectoryPoint
@@ -82,7 +82,7 @@ def vector_message(vector: Iterable[float]) -> Vector3:
     return Vector3(x=x, y=y, z=z)
 
 
-def seconds(duration: Duration) -> float:
+def seconds(duration: Duration | Time) -> float:
     """Return a duration or a time in s."""
     return duration.sec + duration.nanosec / NANOSECONDS
 
@@ -174,7 +174,7 @@ def trajectory_of(message: RobotTrajectory) -> Trajectory:
     """
     given = message.joint_trajectory
     count = len(given.joint_names)
-    points: Sequence[Any] = given.points
+    points: list[Any] = list(given.points)
     for number, point in enumerate(points):
         sizes = {len(point.velocities), len(point.accelerations)} - {0}
         if len(point.positions) != count or not sizes <= {count}:

@@ -1,7 +1,7 @@
 """Converts the shapes of objects from and to messages."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose
@@ -25,12 +25,12 @@ SIZES = {
 
 def placed_shapes(
     owner: str,
-    primitives: Sequence[SolidPrimitive],
-    primitive_poses: Sequence[Pose],
-    meshes: Sequence[Mesh],
-    mesh_poses: Sequence[Pose],
-    planes: Sequence[PlaneMessage] = (),
-    plane_poses: Sequence[Pose] = (),
+    primitives: Iterable[SolidPrimitive],
+    primitive_poses: Iterable[Pose],
+    meshes: Iterable[Mesh],
+    mesh_poses: Iterable[Pose],
+    planes: Iterable[PlaneMessage] = (),
+    plane_poses: Iterable[Pose] = (),
 ) -> tuple[PlacedShape, ...]:
     """Return the shapes of an object; a shape without a pose is at the origin.
 
@@ -75,13 +75,13 @@ def solid_message(shape: Shape) -> SolidPrimitive | Mesh | PlaneMessage:
 
 
 def _placed(
-    owner: str, kind: str, shapes: Sequence[Shape], poses: Sequence[Pose]
+    owner: str, kind: str, shapes: Sequence[Shape], poses: Iterable[Pose]
 ) -> list[PlacedShape]:
-    if len(poses) > len(shapes):
-        raise _refusal(f"{owner} has {len(poses)} {kind} poses for {len(shapes)} shapes")
     what = f"a {kind} of {owner}"
     placed = [pose_of(pose, what) for pose in poses]
-    placed += [RigidTransform()] * (len(shapes) - len(poses))
+    if len(placed) > len(shapes):
+        raise _refusal(f"{owner} has {len(placed)} {kind} poses for {len(shapes)} shapes")
+    placed += [RigidTransform()] * (len(shapes) - len(placed))
     return [PlacedShape(shape, pose) for shape, pose in zip(shapes, placed, strict=True)]
 
 

@@ -1,9 +1,8 @@
 """The planning scene as messages, whole or in the parts that a client asks for."""
 
 from collections.abc import Mapping
-from typing import Any
 
-from geometry_msgs.msg import Pose, TransformStamped
+from geometry_msgs.msg import TransformStamped
 from moveit_msgs.msg import (
     AllowedCollisionEntry,
     AllowedCollisionMatrix,
@@ -19,7 +18,7 @@ from moveit_msgs.msg import (
 from moveit_msgs.msg import (
     PlanningScene as SceneMessage,
 )
-from shape_msgs.msg import Mesh, SolidPrimitive
+from shape_msgs.msg import Mesh, Plane, SolidPrimitive
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import PlanningModel
@@ -75,10 +74,15 @@ def object_message(each: CollisionObject, frame: str) -> ObjectMessage:
     message.type.db, message.type.key = each.type[1], each.type[0]
     message.subframe_names = list(each.subframes)
     message.subframe_poses = [pose_message(pose) for pose in each.subframes.values()]
-    for placed in each.shapes:
-        shapes, poses = _lists(message, solid_message(placed.shape))
-        shapes.append(solid_message(placed.shape))
-        poses.append(pose_message(placed.pose))
+    solids = [(solid_message(placed.shape), pose_message(placed.pose)) for placed in each.shapes]
+    for shapes, poses, kind in (
+        ("primitives", "primitive_poses", SolidPrimitive),
+        ("meshes", "mesh_poses", Mesh),
+        ("planes", "plane_poses", Plane),
+    ):
+        mine = [(solid, pose) for solid, pose in solids if isinstance(solid, kind)]
+        setattr(message, shapes, [solid for solid, _ in mine])
+        setattr(message, poses, [pose for _, pose in mine])
     return message
 
 
@@ -117,14 +121,6 @@ def colour_messages(colours: Mapping[str, tuple[float, float, float, float]]) ->
         message.color.r, message.color.g, message.color.b, message.color.a = red, green, blue, alpha
         messages.append(message)
     return messages
-
-
-def _lists(message: ObjectMessage, shape: Any) -> tuple[list[Any], list[Pose]]:
-    if isinstance(shape, SolidPrimitive):
-        return message.primitives, message.primitive_poses
-    if isinstance(shape, Mesh):
-        return message.meshes, message.mesh_poses
-    return message.planes, message.plane_poses
 
 
 def _padding(
