@@ -7,6 +7,7 @@ from setuptools import find_packages, setup
 PACKAGE = "arm_planning"
 NEIGHBOURS = ["../arm_node", "../arm_description"]
 REQUIREMENTS = [
+    "mujoco-core[rendering]>=4.0,<5",
     "numpy>=2",
     "ros-jazzy-common-interfaces==5.3.6",
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
