@@ -56,17 +56,17 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let workers begin with the files that start processes: in the end each has small ones left.
+    """Let workers begin with the slow files, then those that start processes.
 
-    One worker would else be idle while the other one does the last long file.
+    Each has small ones left in the end: one worker would else be idle while another one does the
+    last long file.
     """
     if hasattr(config, "workerinput"):
-        long = {
-            item.path
-            for item in items
-            if item.get_closest_marker("ros") or item.get_closest_marker("slow")
-        }
-        items.sort(key=lambda item: item.path not in long)
+        slow, ros = (
+            {item.path for item in items if item.get_closest_marker(mark)}
+            for mark in ("slow", "ros")
+        )
+        items.sort(key=lambda item: (item.path not in slow, item.path not in ros))
 
 
 @pytest.hookimpl(tryfirst=True)
