@@ -7,9 +7,9 @@ from typing import Unpack
 
 from launch_py.actions.execute_process import ExecuteProcess, ProcessOptions
 from launch_py.errors import StartError
-from launch_py.output.screen import ReadySummary
 from launch_py.plan.readiness import ProbedCondition
 from launch_py.plan.steps import ProcessStep, StopDelays
+from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.child_process import ChildSpec
 
 

@@ -20,10 +20,10 @@ from programs import Program
 
 from launch_py.launch_description import LaunchDescription, expand_description
 from launch_py.launch_description_sources import read_launch_file
-from launch_py.output import ReadySummary
-from launch_py.output.log_folder import LogFolder
-from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import LaunchPlan
+from launch_py.screen import ReadySummary
+from launch_py.screen.log_folder import LogFolder
+from launch_py.screen.reporter import Reporter
 from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.supervisor import Supervisor
 from launch_py.testing import FakeClock, FakeRunner, RecordingScreen

@@ -5,15 +5,15 @@ import io
 import pytest
 
 from launch_py.command.command_line import run
-from launch_py.output import PlainScreen
-from launch_py.output.log_folder import LogFolder
-from launch_py.output.reporter import Reporter
 from launch_py.printable import (
     printable,
     printable_coloured,
     printable_message,
     without_colours,
 )
+from launch_py.screen import PlainScreen
+from launch_py.screen.log_folder import LogFolder
+from launch_py.screen.reporter import Reporter
 
 CLEAR, TITLE, COLOUR = "\x1b[2J", "\x1b]0;owned\x07", "\x1b[31mred\x1b[0m"
 

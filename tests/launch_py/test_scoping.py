@@ -169,7 +169,7 @@ def test_files_and_names(context, tmp_path):
 
 
 def test_the_log_folder_is_known_before_it_exists(context):
-    from launch_py.output.log_folder import LogFolder
+    from launch_py.screen.log_folder import LogFolder
 
     folder = LogFolder(Path(context.base_environment["ROS_LOG_DIR"]))
     assert str(folder.path) == LaunchLogDir().perform(context)

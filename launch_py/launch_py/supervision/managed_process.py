@@ -8,10 +8,10 @@ from enum import Enum
 from typing import Protocol
 
 from launch_py.errors import StartError
-from launch_py.output.reporter import Reporter
 from launch_py.plan.readiness import Finished, LogLine, Notified, ProbedCondition, Readiness
 from launch_py.plan.restart_policy import RestartHistory
 from launch_py.plan.steps import ProcessStep, StopDelays
+from launch_py.screen.reporter import Reporter
 from launch_py.supervision.child_process import ChildSpec
 from launch_py.supervision.event_loop import EventLoop, Timer
 

@@ -27,8 +27,8 @@ from launch_py.fast_dds.participants import (
     own_processes,
     processes_with,
 )
-from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import ProcessStep, StopDelays
+from launch_py.screen.reporter import Reporter
 from launch_py.supervision import linux
 from launch_py.supervision.event_loop import EventLoop, Timer
 from launch_py.supervision.runner import LocalRunner, ProbeClient

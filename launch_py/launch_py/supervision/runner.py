@@ -18,9 +18,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from launch_py.output.log_folder import LogFolder
 from launch_py.plan.readiness import ProbedCondition
 from launch_py.plan.steps import GeneratedFile, ProcessStep
+from launch_py.screen.log_folder import LogFolder
 from launch_py.supervision import linux
 from launch_py.supervision.child_process import ChildProcess, ChildSpec, LineSplitter
 from launch_py.supervision.event_loop import EventLoop

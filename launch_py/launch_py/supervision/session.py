@@ -15,10 +15,10 @@ from pathlib import Path
 
 from launch_py.fast_dds.removal import SharedMemoryLedger
 from launch_py.fast_dds.shared_memory import watch_folder
-from launch_py.output import PlainScreen, ReadySummary, Screen, TerminalScreen
-from launch_py.output.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
-from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import LaunchPlan
+from launch_py.screen import PlainScreen, ReadySummary, Screen, TerminalScreen
+from launch_py.screen.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
+from launch_py.screen.reporter import Reporter
 from launch_py.supervision import linux
 from launch_py.supervision.child_process import READ_BYTES, LineSplitter
 from launch_py.supervision.event_loop import EventLoop

@@ -8,8 +8,6 @@ from typing import TypeVar
 
 from launch_py.errors import LaunchError
 from launch_py.events import ShutdownEvent
-from launch_py.output.reporter import Reporter
-from launch_py.output.screen import ReadySummary
 from launch_py.plan.readiness import Finished
 from launch_py.plan.steps import (
     DeferredStep,
@@ -25,6 +23,8 @@ from launch_py.plan.steps import (
     Trigger,
     TriggerKind,
 )
+from launch_py.screen.reporter import Reporter
+from launch_py.screen.screen import ReadySummary
 from launch_py.supervision.event_handling import (
     HANDLER_TIMEOUT_S,
     HandlerResult,

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import pytest
 
 from launch_py.fast_dds.participants import PID_BITS
-from launch_py.output.log_folder import LogFolder
-from launch_py.output.reporter import Reporter
 from launch_py.plan.steps import ProcessStep
+from launch_py.screen.log_folder import LogFolder
+from launch_py.screen.reporter import Reporter
 from launch_py.supervision import name_guard
 from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.name_guard import LOOK_TIMEOUT_S, SETTLE_TIMEOUT_S, NameGuard

@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-from launch_py.output import PlainScreen, ReadySummary, TerminalScreen
+from launch_py.screen import PlainScreen, ReadySummary, TerminalScreen
 from launch_py.testing import FakeClock
 
 SUMMARY = ReadySummary(

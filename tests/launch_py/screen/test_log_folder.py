@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from launch_py.errors import StartError
-from launch_py.output.log_folder import LogFolder
+from launch_py.screen.log_folder import LogFolder
 from launch_py.system.child_environment import log_root
 
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
-from launch_py.output.log_folder import LogFolder, reason
-from launch_py.output.screen import OWN_NAME, ReadySummary, Screen
 from launch_py.printable import printable_coloured
+from launch_py.screen.log_folder import LogFolder, reason
+from launch_py.screen.screen import OWN_NAME, ReadySummary, Screen
 
 BURST = 400_000
 """How many characters of a process may be shown at once. Each line counts as LINE more."""

@@ -4,9 +4,9 @@ import io
 
 import pytest
 
-from launch_py.output import PlainScreen
-from launch_py.output.log_folder import LogFolder
-from launch_py.output.reporter import OutputRateLimiter, Reporter
+from launch_py.screen import PlainScreen
+from launch_py.screen.log_folder import LogFolder
+from launch_py.screen.reporter import OutputRateLimiter, Reporter
 from launch_py.testing import FakeClock
 
 
