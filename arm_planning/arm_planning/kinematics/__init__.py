@@ -1,1 +1,1 @@
-"""Forward and inverse kinematics of groups, with MuJoCo."""
+"""Forward and inverse kinematics of planning groups, on MuJoCo's kinematics."""

@@ -1,0 +1,357 @@
+"""Inverse kinematics: positions of a group's joints that bring a link to a pose.
+
+A search descends from the seed first, then from starts near the target, then from random ones (see
+`descent` and `starts`). Its length is counted in steps, not in time: the same call gives the same
+answer on a busy machine, and a timeout is turned into a number of steps. Wall time only ends a
+search that a slow `free` holds up.
+"""
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.urdf.robot import Robot
+from arm_node.names import listing
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.kinematics.chain import Chain
+from arm_planning.kinematics.descent import MAX_STEPS, Descent, Outcome, Target
+from arm_planning.kinematics.pose_target import checked_pose
+from arm_planning.kinematics.search import Orientation, Search
+from arm_planning.kinematics.shortfall import shortfall
+from arm_planning.kinematics.starts import Starts
+from arm_planning.robot.model import JointGroup, JointLimits, JointPositions, PlanningModel
+
+Array = NDArray[np.float64]
+Free = Callable[[Array], bool]
+"""Says of positions of the group, (n,), whether the robot is free of collisions there."""
+
+TIMEOUT_S = 0.05
+"""MoveIt's default of kinematics_solver_timeout."""
+MAX_TIMEOUT_S = 60.0
+STEPS_PER_S = 20_000
+"""What a timeout is worth; a step takes 12 to 25 us."""
+FREE_STEPS = 5
+"""What a call of `free` costs, in steps."""
+GUARD = 20.0
+"""A search ends after this many times its timeout, whatever it has found."""
+HOPELESS_STEPS = 200
+"""For a target farther away than the arm is long: enough to say how near it comes."""
+ROTATION_SHARE = 0.25
+"""One radian counts as this share of the arm's length; 0.15 to 0.4 do as well."""
+NEAREST_WEIGHT = 1000.0
+"""Weight of the position where the orientation only has to be near: it is off by 1e-7 m then."""
+NEAREST_TRIES = 12
+"""Solutions to choose the nearest orientation from."""
+SAME_RAD = 1e-3
+"""Orientations that differ by less from the target's are equally near."""
+ALIKE = 1e-2
+"""Solutions whose joints all differ by less than this are one, in rad or m."""
+CLOSE_M = 1e-4
+"""Distance from which a position is brought to the exact place; farther, it is out of reach."""
+
+
+class InverseKinematics:
+    """Finds positions of a group's joints within their limits. For one thread at a time.
+
+    Joints of the group that do not move the tip keep the seed's positions; mimic joints follow.
+
+    Args:
+        model: the robot.
+        group: name of the group; arrays have the order of its joints.
+        tip: the link to place; "" for the group's own tip.
+        positions: positions of joints outside of the group; 0 for those not named.
+        clock: seconds that pass, for `GUARD`.
+
+    Raises:
+        PlanningError: INVALID_GROUP_NAME or INVALID_LINK_NAME: there is no such group or link, the
+            group has no tip, or none of its joints moves the link.
+    """
+
+    def __init__(
+        self,
+        model: PlanningModel,
+        group: str,
+        tip: str = "",
+        positions: JointPositions | None = None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.group = model.group(group)
+        self.tip = _checked_tip(model, self.group, tip)
+        names, fixed = self.group.joints, dict(positions or {})
+        self._whole = Chain(model.robot, self.tip, names, fixed)
+        self._moving = np.flatnonzero(self._whole.moving)
+        if not len(self._moving):
+            message = f"no joint of group '{group}' moves link '{self.tip}'"
+            raise PlanningError(ErrorCode.INVALID_LINK_NAME, message)
+        self._names = tuple(names[index] for index in self._moving)
+        self._chain = Chain(model.robot, self.tip, self._names, fixed)
+        lower, upper = self.group.lower[self._moving], self.group.upper[self._moving]
+        turning = np.array([model.robot.joint(name).type.turns for name in self._names])
+        self._lower, self._upper, self._turning = lower, upper, turning
+        self._descent = Descent(self._chain, lower, upper)
+        free = [self._chain.turns_freely(index) for index in range(len(turning))]
+        self._turns = np.flatnonzero(turning & free).tolist()
+        self._rotation_length = ROTATION_SHARE * self._chain.reach_m or 1.0
+        self._starts: Starts | None = None
+        self._clock = clock
+
+    @classmethod
+    def for_link(cls, robot: Robot, link: str, joints: Sequence[str]) -> "InverseKinematics":
+        """Return the inverse kinematics of some joints of a robot without groups.
+
+        Args:
+            robot: the robot.
+            link: name of the link to place.
+            joints: names of the joints, in the order of all arrays; other joints stay at 0.
+
+        Raises:
+            UrdfError: the link or a joint does not exist.
+            PlanningError: a joint's position is not one number, or no joint moves the link.
+        """
+        limits = tuple(_urdf_limits(robot, joint) for joint in joints)
+        wraps = tuple(robot.joint(joint).type.wraps for joint in joints)
+        tip = robot.link(link).name
+        group = JointGroup("joints", tuple(joints), wraps, limits, (tip,), robot.root, tip)
+        return cls(PlanningModel(robot, robot.root, tuple(joints), {group.name: group}), group.name)
+
+    def pose(self, q: Sequence[float] | Array) -> Array:
+        """Return the tip's pose in the root's frame, (4, 4), for positions of the group, (n,)."""
+        return self._whole.pose(np.asarray(q, dtype=float))
+
+    def solve(
+        self,
+        target: RigidTransform | Array,
+        seed: Sequence[float] | Array,
+        *,
+        timeout_s: float = TIMEOUT_S,
+        random_seed: int = 0,
+        free: Free | None = None,
+        orientation: Orientation = Orientation.EXACT,
+    ) -> Array:
+        """Return positions within the limits that bring the tip to a pose, (n,).
+
+        The pose is reached within 1e-6 m and 1e-5 rad, where the arm is stretched out within ten
+        times as much. The search starts at the seed, and of equal
+        turns of a joint the one next to the seed is returned.
+
+        Args:
+            target: pose in the root link's frame; as an array a homogeneous transform, (4, 4).
+            seed: where to start, (n,); moved inside the limits.
+            timeout_s: length of the search, as `STEPS_PER_S` steps a second; 0 for the default.
+            random_seed: seed of the random starts.
+            free: says whether the robot is free of collisions; only such positions are returned.
+            orientation: whether the orientation is to be met exactly, or as nearly as it can be
+                at the position, or does not matter.
+
+        Raises:
+            PlanningError: NO_IK_SOLUTION: the message says how near the best one comes, and why.
+                INVALID_GOAL_CONSTRAINTS, INVALID_ROBOT_STATE: the target or the seed is not valid.
+                TIMED_OUT: `free` took too long.
+        """
+        search = self._search(target, seed, timeout_s, random_seed, free, orientation)
+        if orientation is Orientation.NEAREST:
+            return self._with_nearest_orientation(search)
+        for q, _ in self._solutions(search):
+            return q
+        raise self._none(search)
+
+    def solutions(
+        self,
+        target: RigidTransform | Array,
+        seed: Sequence[float] | Array,
+        *,
+        most: int = 8,
+        timeout_s: float = TIMEOUT_S,
+        random_seed: int = 0,
+        free: Free | None = None,
+        orientation: Orientation = Orientation.EXACT,
+    ) -> list[Array]:
+        """Return different solutions, those nearest to the seed first.
+
+        The whole timeout is used, so that the nearest are among those found. Of an arm with more
+        joints than the target takes, they are a sample.
+
+        Args:
+            target: as in `solve`.
+            seed: as in `solve`.
+            most: number of solutions to return at most.
+            timeout_s: as in `solve`.
+            random_seed: as in `solve`.
+            free: as in `solve`.
+            orientation: as in `solve`; NEAREST also returns local minima of the angle.
+
+        Raises:
+            PlanningError: as in `solve`, if there is none.
+        """
+        search = self._search(target, seed, timeout_s, random_seed, free, orientation)
+        found: list[Array] = []
+        for q, _ in self._solutions(search):
+            if all(np.abs(q - other).max() > ALIKE for other in found):
+                found.append(q)
+        if not found:
+            raise self._none(search)
+        return sorted(found, key=search.distance)[:most]
+
+    def _with_nearest_orientation(self, search: Search) -> Array:
+        found: list[tuple[Array, Outcome]] = []
+        for q, outcome in self._solutions(search):
+            found.append((q, outcome))
+            if outcome.off_rad < SAME_RAD or len(found) == NEAREST_TRIES:
+                break
+        if not found:
+            raise self._none(search)
+        least = min(outcome.off_rad for _, outcome in found) + SAME_RAD
+        return min((q for q, o in found if o.off_rad <= least), key=search.distance)
+
+    def _search(
+        self,
+        pose: RigidTransform | Array,
+        seed: Sequence[float] | Array,
+        timeout_s: float,
+        random_seed: int,
+        free: Free | None,
+        orientation: Orientation,
+    ) -> Search:
+        position, quaternion = checked_pose(pose)
+        length = 0.0 if orientation is Orientation.ANY else self._rotation_length
+        weight = NEAREST_WEIGHT if orientation is Orientation.NEAREST else 1.0
+        timeout_s = _checked_timeout(timeout_s)
+        return Search(
+            target=Target(position, quaternion, weight, length),
+            orientation=orientation,
+            seed=self._checked_seed(seed),
+            random_seed=random_seed,
+            free=free,
+            steps=self._steps(position, timeout_s),
+            until_s=self._clock() + GUARD * timeout_s,
+        )
+
+    def _checked_seed(self, seed: Sequence[float] | Array) -> Array:
+        q = np.asarray(seed, dtype=float)
+        names = self.group.joints
+        if q.shape != (len(names),):
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"a seed of group '{self.group.name}' has {len(names)} positions, for "
+                f"{listing(names)}; it has the shape {q.shape}",
+            )
+        for name, position in zip(names, q.tolist(), strict=True):
+            if not math.isfinite(position):
+                raise PlanningError(
+                    ErrorCode.INVALID_ROBOT_STATE,
+                    f"the seed's position of joint '{name}' is not finite: {position}",
+                )
+        return np.minimum(np.maximum(q, self.group.lower), self.group.upper)
+
+    def _steps(self, position: Array, timeout_s: float) -> int:
+        steps = max(MAX_STEPS, round(timeout_s * STEPS_PER_S))
+        return min(steps, HOPELESS_STEPS) if self._chain.is_too_short_for(position) else steps
+
+    def _solutions(self, search: Search) -> Iterator[tuple[Array, Outcome]]:
+        """Yield solutions of all joints of the group, (n,), until the steps are used up."""
+        for start in self._all_starts(search):
+            outcome = self._descend(search, start)
+            if not outcome.is_at(search.target, nearest=search.orientation is Orientation.NEAREST):
+                search.note(outcome)
+            else:
+                q = self._beside_seed(outcome.q, search.seed)
+                if self._is_free(search, q):
+                    yield q, outcome
+            if search.steps <= 0:
+                return
+
+    def _all_starts(self, search: Search) -> Iterator[Array]:
+        yield search.seed[self._moving]
+        if self._starts is None:
+            self._starts = Starts(self._chain, self._lower, self._upper, self._turning)
+        yield from self._starts.towards(search.target, search.random_seed)
+
+    def _descend(self, search: Search, start: Array) -> Outcome:
+        outcome = self._descent.run(search.target, start, min(MAX_STEPS, search.steps))
+        search.steps -= outcome.steps
+        if search.orientation is not Orientation.NEAREST or outcome.off_m > CLOSE_M:
+            return outcome
+        # Brings the position, against which the orientation was weighed, to the exact place.
+        place = replace(search.target, position_weight=1.0, rotation_length=0.0)
+        return self._descent.run(place, outcome.q)
+
+    def _beside_seed(self, moved: Array, seed: Array) -> Array:
+        """Return the positions of all joints of the group, each on the turn next to the seed's."""
+        q = seed.copy()
+        q[self._moving] = np.minimum(np.maximum(moved, self._lower), self._upper)
+        for index in self._turns:
+            joint, lower, upper = self._moving[index], self._lower[index], self._upper[index]
+            q[joint] = _nearest_turn(float(q[joint]), float(seed[joint]), lower, upper)
+        return q
+
+    def _is_free(self, search: Search, q: Array) -> bool:
+        if search.free is None:
+            return True
+        search.steps -= FREE_STEPS
+        is_free = search.free(q)
+        if not is_free:
+            search.blocked += 1
+            if self._clock() > search.until_s:
+                raise PlanningError(
+                    ErrorCode.TIMED_OUT,
+                    f"no solution for link '{self.tip}' is free among the first {search.blocked}, "
+                    f"and the collision checks took {GUARD:.0f} times the timeout",
+                )
+        return is_free
+
+    def _none(self, search: Search) -> PlanningError:
+        return PlanningError(
+            ErrorCode.NO_IK_SOLUTION,
+            shortfall(search, self.tip, self._names, self._lower, self._upper, self._chain),
+        )
+
+
+def _checked_tip(model: PlanningModel, group: JointGroup, tip: str) -> str:
+    if not (name := tip or group.tip):
+        raise PlanningError(
+            ErrorCode.INVALID_LINK_NAME,
+            f"group '{group.name}' is not a chain: name the link to place; it has "
+            f"{listing(group.links)}",
+        )
+    links = [link.name for link in model.robot.links]
+    if name not in links:
+        raise PlanningError(
+            ErrorCode.INVALID_LINK_NAME, f"no link '{name}'; the robot has {listing(links)}"
+        )
+    return name
+
+
+def _urdf_limits(robot: Robot, name: str) -> JointLimits:
+    joint = robot.joint(name)
+    if not joint.type.is_scalar:
+        raise PlanningError(
+            ErrorCode.INVALID_ROBOT_STATE,
+            f"joint '{name}' is {joint.type}: its position is not a single number",
+        )
+    limit = joint.limit
+    if limit is None:
+        return JointLimits(-math.inf, math.inf, math.inf, math.inf)
+    return JointLimits(limit.lower, limit.upper, limit.velocity, math.inf)
+
+
+def _checked_timeout(timeout_s: float) -> float:
+    if math.isnan(timeout_s):
+        raise PlanningError(ErrorCode.FAILURE, "the timeout is not a number")
+    return min(timeout_s, MAX_TIMEOUT_S) if timeout_s > 0.0 else TIMEOUT_S
+
+
+def _nearest_turn(angle: float, seed: float, lower: float, upper: float) -> float:
+    """Return the angle plus the full turns that bring it next to a seed, inside the limits."""
+    turns = round((seed - angle) / math.tau)
+    if not turns:
+        return angle
+    for number in range(turns, 0, -1 if turns > 0 else 1):
+        if lower <= (turned := angle + number * math.tau) <= upper:
+            return turned
+    return angle

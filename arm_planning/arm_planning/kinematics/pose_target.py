@@ -1,0 +1,73 @@
+"""Poses that users ask for, checked: position and unit quaternion."""
+
+import math
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+
+Array = NDArray[np.float64]
+
+UNIT_WITHIN = 1e-3
+"""How far a quaternion's length, or a product of a rotation's columns, may be off."""
+
+
+def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
+    """Return the position, (3,), and the unit quaternion w, x, y, z, (4,), of a pose.
+
+    Args:
+        pose: the pose; an array is a homogeneous transform, (4, 4).
+
+    Raises:
+        PlanningError: INVALID_GOAL_CONSTRAINTS: a number is not finite, or the rotation is none.
+    """
+    if isinstance(pose, RigidTransform):
+        x, y, z, w = pose.rotation
+        return _checked_position(np.array(pose.position)), _checked_quaternion(
+            np.array((w, x, y, z))
+        )
+    matrix = np.asarray(pose, dtype=float)
+    if matrix.shape != (4, 4):
+        raise _refused(f"a pose is a transform of shape (4, 4), not {matrix.shape}")
+    position, rotation = _checked_position(matrix[:3, 3].copy()), matrix[:3, :3]
+    if not np.isfinite(rotation).all():
+        raise _refused("the target's rotation has a number that is not finite")
+    if np.abs(rotation.T @ rotation - np.eye(3)).max() > UNIT_WITHIN or (
+        np.linalg.det(rotation) < 0.0
+    ):
+        raise _refused("the target's rotation matrix is not orthonormal and right-handed")
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).reshape(9))
+    return position, _checked_quaternion(quaternion)
+
+
+def _checked_position(position: Array) -> Array:
+    if not np.isfinite(position).all():
+        raise _refused(f"the target's position has a number that is not finite: {_text(position)}")
+    return position
+
+
+def _checked_quaternion(wxyz: Array) -> Array:
+    w, x, y, z = wxyz.tolist()
+    if not np.isfinite(wxyz).all():
+        raise _refused(
+            f"the target's quaternion has a number that is not finite: {_text((x, y, z, w))}"
+        )
+    length = math.hypot(w, x, y, z)
+    if abs(length - 1.0) > UNIT_WITHIN:
+        raise _refused(
+            f"the target's quaternion (x, y, z, w) = {_text((x, y, z, w))} has length "
+            f"{length:.3g} instead of 1"
+        )
+    return wxyz / length
+
+
+def _text(numbers: Array | tuple[float, ...]) -> str:
+    return "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
+
+
+def _refused(message: str) -> PlanningError:
+    return PlanningError(ErrorCode.INVALID_GOAL_CONSTRAINTS, message)

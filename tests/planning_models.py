@@ -1,0 +1,40 @@
+"""Robots with planning groups, for tests of motion planning."""
+
+import math
+
+from arm_description import parse_urdf
+from arm_description.urdf.robot import Robot
+from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+
+
+def model_of(urdf: str | Robot, **groups: tuple[tuple[str, ...], str]) -> PlanningModel:
+    """A model whose groups are given as names of joints and the tip, "" for none."""
+    robot = parse_urdf(urdf) if isinstance(urdf, str) else urdf
+    active = tuple(
+        joint.name
+        for joint in robot.joints_in_tree_order
+        if joint.type.is_scalar and joint.mimic is None
+    )
+    return PlanningModel(
+        robot,
+        robot.root,
+        active,
+        {name: group_of(robot, name, joints, tip) for name, (joints, tip) in groups.items()},
+    )
+
+
+def group_of(robot: Robot, name: str, joints: tuple[str, ...], tip: str) -> JointGroup:
+    """A group with the limits of the URDF, and 3 per s^2."""
+    found = [robot.joint(joint) for joint in joints]
+    limits = tuple(
+        JointLimits(
+            -math.inf if joint.type.wraps or joint.limit is None else joint.limit.lower,
+            math.inf if joint.type.wraps or joint.limit is None else joint.limit.upper,
+            joint.limit.velocity if joint.limit is not None else 3.0,
+            3.0,
+        )
+        for joint in found
+    )
+    wraps = tuple(joint.type.wraps for joint in found)
+    links = tuple(joint.child for joint in found)
+    return JointGroup(name, joints, wraps, limits, links, found[0].parent, tip)
