@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from arm_planning.robot.srdf import Srdf
+
 
 @dataclass(frozen=True, slots=True)
 class AllowedCollisions:
@@ -26,3 +28,15 @@ class AllowedCollisions:
             return self.pairs[pair]
         known = [self.defaults[name] for name in pair if name in self.defaults]
         return bool(known) and all(known)
+
+
+def allowed_collisions(srdf: Srdf) -> AllowedCollisions:
+    """Return which links may touch by an SRDF.
+
+    Links that may touch everything come first, then the pairs that are checked all the same, then
+    the pairs that may touch, as in MoveIt.
+    """
+    return AllowedCollisions(
+        pairs={pair: False for pair in srdf.enabled} | {pair: True for pair in srdf.disabled},
+        defaults={link: True for link in srdf.touching},
+    )
