@@ -23,7 +23,6 @@ PARAMETERS = {
             "joint_state_broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
             "position_controller": {"type": "position_controllers/JointGroupPositionController"},
             "second_controller": {"type": "position_controllers/JointGroupPositionController"},
-            "strange_controller": {"type": "strange_controllers/StrangeController"},
         }
     },
     "position_controller": {"ros__parameters": {"joints": ["j0", "j1", "j2", "j3"]}},

@@ -4,7 +4,7 @@
 
 Writes "ready" on standard output once the services are there. A line on its standard input acts
 on it: "pause", "resume", "block" and "unblock" (the loop thread), and what the hardware does next:
-"fail read", "fail write", "deactivate", "recover", "unmeasure STATE" and "measure".
+"fail read", "fail write", "deactivate" and "recover".
 """
 
 import argparse
@@ -71,10 +71,6 @@ def obey(loop: ControlLoop, hardware: FakeHardware) -> None:
                 hardware.write_result = HardwareReturn.ERROR
             case ["deactivate"]:
                 hardware.write_result = HardwareReturn.DEACTIVATE
-            case ["unmeasure", state]:
-                hardware.unmeasured = {state}
-            case ["measure"]:
-                hardware.unmeasured = set()
             case ["recover"]:
                 hardware.read_result = hardware.write_result = HardwareReturn.OK
         sys.stdout.write(f"{line.strip()} done\n")

@@ -264,30 +264,6 @@ def test_components_start_in_their_initial_states(component: Any) -> None:
     assert [i.is_available for i in component("Lift").state_interfaces] == [False, False]
 
 
-def test_components_walk_through_the_states_between(set_state: Any, component: Any) -> None:
-    active = set_state("Lift", id=3)
-    assert (active.ok, active.state.label) == (True, "active")
-    assert all(i.is_available for i in component("Lift").command_interfaces)
-    unconfigured = set_state("Lift", label="unconfigured")
-    assert (unconfigured.ok, unconfigured.state.id) == (True, 1)
-    assert not any(i.is_available for i in component("Lift").command_interfaces)
-    assert not set_state("Nothing", id=3).ok
-
-
-def test_a_component_that_is_cleaned_up_takes_its_controllers_along(
-    control: Any, set_state: Any
-) -> None:
-    set_state("Lift", id=3)
-    control.start("lift", "jsb")
-    set_state("Lift", id=1)
-    assert control.states() == {"jsb": "inactive", "lift": "inactive"}
-    answer = control.switch(["lift"])
-    assert answer.message == (
-        "Unable to activate controller 'lift' since the command interface 'lift/position' "
-        "is not available."
-    )
-
-
 def test_inactive_hardware_is_watched_but_not_commanded(control: Any, set_state: Any) -> None:
     set_state("Lift", label="inactive")
     try:

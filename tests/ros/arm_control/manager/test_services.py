@@ -86,21 +86,9 @@ def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> Non
     }
 
 
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [
-        ("nothere", "The 'type' param was not defined for 'nothere'. It is defined for "),
-        (
-            "strange_controller",
-            "no controller type 'strange_controllers/StrangeController'; known: ",
-        ),
-    ],
-)
-def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(
-    control: Any, manager: Any, name: str, reason: str
-) -> None:
-    assert not control.load(name)
-    manager.wait_for_line(reason)
+def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(control: Any, manager: Any) -> None:
+    assert not control.load("nothere")
+    manager.wait_for_line("The 'type' param was not defined for 'nothere'. It is defined for ")
 
 
 @pytest.mark.parametrize(
@@ -133,23 +121,9 @@ def test_a_switch_is_done_as_soon_as_possible_or_not(control: Any) -> None:
             assert answer.ok, answer.message
 
 
-def test_a_name_is_loaded_only_once(control: Any, manager: Any) -> None:
-    control.load("position_controller")
-    assert not control.load("position_controller")
-    manager.wait_for_line(
-        "A controller named 'position_controller' was already loaded inside the controller manager"
-    )
-
-
 @pytest.mark.parametrize("action", ["configure", "unload"])
 def test_an_unknown_name_is_refused(control: Any, action: str) -> None:
     assert not getattr(control, action)("nothere")
-
-
-def test_an_active_controller_is_not_configured(control: Any, manager: Any) -> None:
-    control.start("position_controller")
-    assert not control.configure("position_controller")
-    manager.wait_for_line("can not be configured from 'active' state")
 
 
 def test_an_inactive_controller_reads_its_parameters_again(
@@ -179,15 +153,12 @@ def test_the_type_may_be_set_while_it_runs(control: Any, set_parameter: Any) -> 
     assert control.states() == {"late": "unconfigured"}
 
 
-@pytest.mark.parametrize(
-    ("strictness", "end"), [(STRICT, ""), (BEST_EFFORT, "\n"), (0, "\n")], ids=str
-)
-def test_switching_an_unknown_name(control: Any, strictness: int, end: str) -> None:
-    answer = control.switch(["nothere"], [], strictness)
+def test_an_unknown_name_is_left_out_by_default(control: Any) -> None:
+    answer = control.switch(["nothere"], [], strictness=0)
     assert not answer.ok
     assert answer.message == (
         "Could not activate controller with name 'nothere' "
-        f"because no controller with this name exists{end}"
+        "because no controller with this name exists\n"
     )
 
 

@@ -1,6 +1,5 @@
 """Gripper controllers on the simulated arm's last joint, from a client's goal to its result."""
 
-import math
 from typing import Any
 
 import pytest
@@ -67,15 +66,6 @@ def test_a_joint_that_cannot_go_on_aborts_the_goal(active: Any, grip: Any, manag
     manager.wait_for_line("joint 'j3': position command -4 rad is beyond its limit of -3.14 rad")
 
 
-def test_a_joint_that_cannot_go_on_is_a_success_where_stalling_is_allowed(
-    active: Any, grip: Any, set_parameter: Any
-) -> None:
-    assert set_parameter(f"/{GRIPPER}", "allow_stalling", True).successful
-    answer = grip(BEYOND_ITS_LIMIT).wait()
-    assert answer.status == SUCCEEDED
-    assert (answer.result.reached_goal, answer.result.stalled) == (False, True)
-
-
 def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> None:
     goal = grip(BEYOND_ITS_LIMIT)
     assert goal.cancel() == 1
@@ -83,28 +73,6 @@ def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> 
     assert answer.status == CANCELED
     assert (answer.result.position, answer.result.effort) == (0.0, 0.0)
     assert not answer.result.stalled
-
-
-def test_a_new_goal_cancels_the_one_before(patient: Any, grip: Any) -> None:
-    first = grip(BEYOND_ITS_LIMIT)
-    second = grip(-0.3)
-    assert first.wait().status == CANCELED
-    assert second.wait().status == SUCCEEDED
-
-
-def test_deactivation_aborts_the_goal(patient: Any, grip: Any) -> None:
-    goal = grip(BEYOND_ITS_LIMIT)
-    assert patient.switch([], [GRIPPER]).ok
-    answer = goal.wait()
-    assert answer.status == ABORTED
-    assert not answer.result.reached_goal
-
-
-def test_a_goal_that_is_not_a_number_is_rejected_with_the_reason(
-    active: Any, grip: Any, manager: Any
-) -> None:
-    assert not grip(math.nan).accepted
-    manager.wait_for_line("Received action goal whose position is not finite: nan")
 
 
 def test_the_action_works_again_after_another_configure(

@@ -4,31 +4,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
-import yaml
 
 NAME = "joint_trajectory_controller"
 JOINTS = ("j0", "j1", "j2", "j3")
 FIELDS = ("positions", "velocities", "accelerations")
 
 Point = tuple[Any, ...]
-
-CYCLE_S = 0.002
-"""Of the simulated arm: its links are so light that gains on efforts are unstable at 200 Hz."""
-
-DECELERATION = 1.0
-EFFORT_GAINS = {"j0": (10.0, 0.6), "j1": (10.0, 0.6), "j2": (4.0, 0.2), "j3": (1.0, 0.05)}
-"""Proportional and derivative, by the inertia that each joint moves."""
-
-GAINS = {
-    "velocity_commands": {j: {"p": 10.0, "ff_velocity_scale": 1.0} for j in JOINTS},
-    "effort_commands": {j: {"p": p, "d": d, "i": p} for j, (p, d) in EFFORT_GAINS.items()},
-}
-COMMANDS = {
-    "position_commands": ["position"],
-    "velocity_commands": ["velocity"],
-    "effort_commands": ["effort"],
-    "position_and_effort_commands": ["position", "effort"],
-}
 
 PARAMETERS = {
     "controller_manager": {
@@ -149,50 +130,3 @@ def states(client: Any) -> Any:
     # So deep that an executor which is held up misses none.
     latched = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return client.subscribe(JointTrajectoryControllerState, f"/{NAME}/controller_state", latched)
-
-
-def parameters_of(name: str) -> dict[str, Any]:
-    limits: dict[str, Any] = {j: {"goal": 0.02, "trajectory": 0.8} for j in JOINTS}
-    for limit in limits.values():
-        limit["max_deceleration_on_cancel"] = DECELERATION
-    return {
-        "joints": list(JOINTS),
-        "command_interfaces": COMMANDS[name],
-        "state_interfaces": ["position", "velocity"],
-        "allow_partial_joints_goal": True,
-        "gains": GAINS.get(name, {j: {"p": 0.0} for j in JOINTS}),  # rcl reads no empty map
-        "constraints": {
-            **limits,
-            "goal_time": 20.0,
-            "stopped_velocity_tolerance": 0.05,
-            "decelerate_on_cancel": name == "position_commands",
-        },
-    }
-
-
-@pytest.fixture(scope="module")
-def simulate(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Callable[[float], Any]:
-    """Return a function that starts the arm at a real-time factor, with all the controllers."""
-    kind = "joint_trajectory_controller/JointTrajectoryController"
-    file = tmp_path_factory.mktemp("parameters") / "controllers.yaml"
-    manager = {"update_rate": round(1 / CYCLE_S), **{name: {"type": kind} for name in COMMANDS}}
-    nodes = {"controller_manager": manager, **{name: parameters_of(name) for name in COMMANDS}}
-    content = {node: {"ros__parameters": parameters} for node, parameters in nodes.items()}
-    file.write_text(yaml.dump(content, Dumper=_NoAliases))
-
-    def start(factor: float) -> Any:
-        launched = run(
-            *("-m", "arm_cli", "launch", "arm_gazebo", "arm_world.launch.py", "camera:=none"),
-            *("hold_joints:=true", f"controllers:={file}", f"real_time_factor:={factor}"),
-        )
-        launched.wait_for_line("arm_gazebo_node is ready")
-        return launched
-
-    return start
-
-
-class _NoAliases(yaml.SafeDumper):
-    """rcl reads no YAML aliases."""
-
-    def ignore_aliases(self, data: object) -> bool:
-        return True

@@ -35,14 +35,6 @@ def test_a_goal_is_reached(active: Any, send: Any, states: Any) -> None:
     )
 
 
-def test_joints_may_come_in_any_order(active: Any, send: Any, states: Any) -> None:
-    assert send((0.1, (4, 3, 2, 1)), joints=("j3", "j2", "j1", "j0")).result() == REACHED
-    states.wait_until(
-        lambda messages: messages and list(messages[-1].feedback.positions) == [1, 2, 3, 4],
-        "each at its own",
-    )
-
-
 def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
     goal = send((0.5, THERE))
     goal.result()
@@ -59,69 +51,9 @@ def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: A
     assert len(last.actual.velocities) == 4
 
 
-def test_no_goal_succeeds_on_a_state_that_is_not_a_number(
-    active: Any, send: Any, manager: Any, client: Any
-) -> None:
-    from diagnostic_msgs.msg import DiagnosticArray
-
-    reports = client.subscribe(DiagnosticArray, "/diagnostics")
-    manager.tell("unmeasure j1/velocity")
-    try:
-        status, _, sentence = send((0.1, THERE)).result()
-        assert status == ABORTED
-        assert "state j1/velocity is not a number, so the goal cannot be checked" in sentence
-        reports.wait_until(
-            lambda messages: any(
-                "Measured state j1/velocity is not a number" in status.message
-                for message in messages
-                for status in message.status
-            ),
-            "the report on the state",
-        )
-        manager.wait_for_line("Measured state j1/velocity is not a number")
-    finally:
-        manager.tell("measure")
-    assert send((0.1, HERE)).result() == REACHED
-
-
-@pytest.mark.parametrize(
-    ("points", "joints", "reason"),
-    [
-        ([], ("j0", "j1", "j2", "j3"), "Empty trajectory received."),
-        (
-            [(1.0, (0.0,))],
-            ("j0",),
-            "Joints on incoming trajectory don't match the controller joints.",
-        ),
-        (
-            [(1.0, HERE)],
-            ("j0", "j1", "j2", "j9"),
-            "Incoming joint j9 doesn't match the controller's joints.",
-        ),
-        (
-            [(1.0, HERE), (1.0, HERE)],
-            ("j0", "j1", "j2", "j3"),
-            "Time between points 0 and 1 is not strictly increasing",
-        ),
-        (
-            [(1.0, (0.0, float("nan"), 0.0, 0.0))],
-            ("j0", "j1", "j2", "j3"),
-            "The positions of joint j1 at point #0 are not finite: nan.",
-        ),
-        (
-            [(1.0, (0.0, 0.0, 1e300, 0.0))],
-            ("j0", "j1", "j2", "j3"),
-            "The positions of joint j2 at point #0 are too large: 1e+300.",
-        ),
-        ([(1.0, HERE)], ("j0", "j1", "j0", "j3"), "Incoming joint j0 is named more than once."),
-    ],
-    ids=["empty", "too few joints", "unknown joint", "time", "nan", "too large", "twice"],
-)
-def test_an_invalid_goal_is_rejected_with_the_reason(
-    active: Any, send: Any, manager: Any, points: Any, joints: Any, reason: str
-) -> None:
-    assert not send(*points, joints=joints).accepted
-    manager.wait_for_line(reason)
+def test_an_invalid_goal_is_rejected_with_the_reason(active: Any, send: Any, manager: Any) -> None:
+    assert not send((1.0, HERE), joints=("j0", "j1", "j2", "j9")).accepted
+    manager.wait_for_line("Incoming joint j9 doesn't match the controller's joints.")
 
 
 def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(
@@ -185,10 +117,6 @@ def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
     assert goal.result() == (ABORTED, -4, "Aborted due to path tolerance violation")
 
 
-def test_a_goal_without_any_motion_is_reached_at_once(active: Any, send: Any) -> None:
-    assert send((0.0, THERE)).result() == REACHED
-
-
 def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:
     longest_s = 2.0e9
     goal = send((1.0, HERE), (longest_s, THERE))
@@ -218,13 +146,6 @@ def test_a_flood_of_goals_leaves_the_last_one(
     assert send((0.1, HERE)).result() == REACHED
     assert "callback failed" not in manager.output
     assert "Traceback" not in manager.output
-
-
-def test_deactivation_aborts_the_goal(active: Any, send: Any) -> None:
-    goal = send((FOR_EVER_S, THERE))
-    goal.wait_until_running()
-    assert active.switch([], [NAME]).ok
-    assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
 
 
 def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:

@@ -1,6 +1,5 @@
 """Topics, service and parameters of the joint trajectory controller."""
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -238,84 +237,11 @@ def test_speed_scaling_stops_the_trajectory_and_lets_it_go_on(
     assert goal.result()[1] == 0
 
 
-def test_it_takes_over_from_another_controller_and_hands_back(active: Any) -> None:
-    active.load("position_controller")
-    active.configure("position_controller")
-    answer = active.switch(["position_controller"])
-    assert answer.message == (
-        "Unable to activate controller 'position_controller' since the command interface "
-        "'j0/position' is currently claimed by another controller."
-    )
-    assert active.switch(["position_controller"], [NAME]).ok
-    assert active.switch([NAME], ["position_controller"]).ok
-    assert active.states() == {NAME: "active", "position_controller": "inactive"}
-
-
-def test_its_parameters_are_those_of_a_real_one(loaded: Any, client: Any) -> None:
-    from rcl_interfaces.srv import DescribeParameters, GetParameters
-    from rclpy.parameter import parameter_value_to_python
-
-    expected = {
-        "action_monitor_rate": (20.0, True),
-        "allow_integration_in_goal_trajectories": (False, False),
-        "allow_nonzero_velocity_at_trajectory_end": (False, False),
-        "allow_partial_joints_goal": (False, False),
-        "cmd_timeout": (0.0, False),
-        "command_interfaces": (["position"], True),
-        "command_joints": ([], True),
-        "constraints.decelerate_on_cancel": (False, True),
-        "constraints.goal_time": (0.0, False),
-        "constraints.j0.goal": (0.0, False),
-        "constraints.j0.max_deceleration_on_cancel": (0.0, True),
-        "constraints.j3.trajectory": (0.0, False),
-        "constraints.stopped_velocity_tolerance": (0.01, False),
-        "gains.j0.antiwindup_strategy": ("legacy", True),
-        "gains.j0.i_clamp_min": (-math.inf, False),
-        "gains.j3.p": (0.0, False),
-        "interpolate_from_desired_state": (False, True),
-        "interpolation_method": ("splines", True),
-        "joints": (JOINTS, True),
-        "open_loop_control": (False, True),
-        "set_last_command_interface_value_as_state_on_activation": (True, False),
-        "speed_scaling.command_interface": ("", True),
-        "state_interfaces": (["position", "velocity"], True),
-    }
-    names = list(expected)
-    answer = client.call(
-        GetParameters, f"/{NAME}/get_parameters", GetParameters.Request(names=names)
-    )
-    described = client.call(
-        DescribeParameters, f"/{NAME}/describe_parameters", DescribeParameters.Request(names=names)
-    )
-    values: list[Any] = [parameter_value_to_python(value) for value in answer.values]
-    values = [value if isinstance(value, (str, float, bool)) else list(value) for value in values]
-    read_only = [descriptor.read_only for descriptor in described.descriptors]
-    assert dict(zip(names, zip(values, read_only, strict=True), strict=True)) == expected
-
-
-def test_a_parameter_changes_while_it_is_active(active: Any, send: Any, set_parameter: Any) -> None:
-    assert not send((0.1, (0.0,)), joints=("j0",)).accepted
-    assert set_parameter(f"/{NAME}", "allow_partial_joints_goal", True).successful
-    assert send((0.1, (0.0,)), joints=("j0",)).result()[1] == 0
-
-
 def test_a_tolerance_changes_while_it_is_active(active: Any, send: Any, set_parameter: Any) -> None:
     with_a_jump = ((0.0, (9, 9, 9, 9)), (0.1, HERE))
     assert send(*with_a_jump).result()[1] == 0
     assert set_parameter(f"/{NAME}", "constraints.j0.trajectory", 0.01).successful
     assert send(*with_a_jump).result()[1] == -4
-
-
-def test_a_value_out_of_range_is_refused_with_the_reason(active: Any, set_parameter: Any) -> None:
-    result = set_parameter(f"/{NAME}", "constraints.goal_time", -1.0)
-    assert not result.successful
-    assert result.reason == "parameter 'constraints.goal_time' must be at least 0, but is -1.0"
-
-
-def test_a_read_only_parameter_stays(active: Any, set_parameter: Any) -> None:
-    result = set_parameter(f"/{NAME}", "joints", ["j0"])
-    assert not result.successful
-    assert "read-only" in result.reason
 
 
 def test_parameters_cannot_change_while_the_loop_is_blocked(
