@@ -164,17 +164,22 @@ def test_the_frustum_of_the_camera_can_be_hidden(visitor):
         visitor.step_back()
         return not nothing_but_faces_is_drawn(visitor)
 
+    visitor.switch("Cameras", True)
     visitor.wait_until(seen, "its edges are drawn")
-    visitor.tick("Cameras")
+    visitor.switch("Cameras", False)
     visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no edges are drawn")
     assert nothing_but_faces_is_drawn(visitor)
 
 
 def test_the_collision_switch_shows_wire_frames(visitor):
+    # Frustums of cameras have edges, too.
+    visitor.switch("Cameras", False)
+    visitor.switch("Collision", False)
+    visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no edges are drawn")
     before = visitor.drawn()["instances"]
-    visitor.tick("Collision")
+    visitor.switch("Collision", True)
     visitor.wait_until(lambda: visitor.drawn()["instances"] > before, "wire frames are drawn")
-    visitor.tick("Collision")
+    visitor.switch("Collision", False)
     visitor.wait_until(lambda: nothing_but_faces_is_drawn(visitor), "no wire frames are drawn")
     assert nothing_but_faces_is_drawn(visitor)
 
@@ -211,14 +216,14 @@ def test_time_rates_and_the_node_graph_are_shown(visitor):
     factor = visitor.page.locator("tr", has_text="Real-time factor")
     visitor.wait_until(lambda: re.search(r"\d\.\d\d$", factor.inner_text()), "the time's factor")
     visitor.open_tab("System")
-    visitor.tick("Rates")
+    visitor.switch("Rates", True)
     states = visitor.page.locator("tr", has_text="/joint_states")
     visitor.wait_until(lambda: re.search(r"\d\.\d Hz$", states.inner_text()), "a topic's rate")
-    visitor.tick("Rates")
-    visitor.tick("Node graph")
+    visitor.switch("Rates", False)
+    visitor.switch("Node graph", True)
     node = visitor.page.locator("svg text", has_text="/joint_state_broadcaster").first
     node.wait_for()
-    visitor.tick("Node graph")
+    visitor.switch("Node graph", False)
     node.wait_for(state="hidden")
     assert not node.is_visible()
     visitor.open_tab("Robot")
@@ -257,7 +262,7 @@ def test_the_page_continues_when_the_simulation_restarts(
 
 def test_a_saved_configuration_is_opened_again(visitor, tmp_path):
     visitor.open_tab("Robot")
-    collision = visitor.page.get_by_role("checkbox", name="Collision", exact=True)
+    collision = visitor.checkbox("Collision")
     collision.wait_for(state="attached")
     shown = collision.is_checked()
     with visitor.page.expect_download() as started:
@@ -266,8 +271,7 @@ def test_a_saved_configuration_is_opened_again(visitor, tmp_path):
     started.value.save_as(path)
     assert f"Collision Enabled: {str(shown).lower()}" in path.read_text()
     assert "Distance" in path.read_text()
-    visitor.tick("Collision")
-    visitor.wait_until(lambda: collision.is_checked() != shown, "the switch is the other way")
+    visitor.switch("Collision", not shown)
     with visitor.page.expect_file_chooser() as chooser:
         visitor.button("Open Config").dispatch_event("click")
     chooser.value.set_files(path)
@@ -278,7 +282,7 @@ def test_an_address_opens_the_page_with_its_view(visitor):
     base = visitor.page.url.partition("?")[0]
     visitor.visit(f"{base}?initialCameraPosition=2,3,2.5&initialCameraLookAt=0,0,0.25")
     visitor.open_tab("Robot")
-    visitor.page.get_by_role("checkbox", name="Collision", exact=True).wait_for(state="attached")
+    visitor.checkbox("Collision").wait_for(state="attached")
     link = visitor.page.locator("a[href*='initialCameraPosition']")
 
     def address() -> str:
