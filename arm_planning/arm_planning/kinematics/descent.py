@@ -49,7 +49,7 @@ class Target:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class DescentEnd:
     """Where a descent ends.
 
     Attributes:
@@ -90,30 +90,30 @@ class Descent:
         self._step, self._factor = np.zeros(n), np.zeros((n, n + 7))
         self._index = np.zeros(n, np.int32)
 
-    def run(self, target: Target, start: Array, most: int = MAX_STEPS) -> Outcome:
+    def run(self, target: Target, start: Array, most: int = MAX_STEPS) -> DescentEnd:
         """Return the best positions on the way down from a start within the limits, (n,).
 
         It ends at the target, at a local minimum, or after `most` evaluations.
         """
         q, trust, cost, slow, steps = start, TRUST, math.inf, 0, 0
-        best, gradient = Outcome(start, math.inf, math.inf, 0), np.zeros_like(start)
+        best, gradient = DescentEnd(start, math.inf, math.inf, 0), np.zeros_like(start)
         while steps < most:
             steps += 1
             off_m, off_rad, new = self._evaluate(target, q)
             if new < cost:
                 if off_m < DONE_M and (off_rad < DONE_RAD or not target.rotation_length):
-                    return Outcome(q, off_m, off_rad, steps)
+                    return DescentEnd(q, off_m, off_rad, steps)
                 slow = slow + 1 if new > SLOW * cost else 0
                 if new < 0.25 * cost and steps > 1:
                     trust = min(2.0 * trust, MAX_TRUST)
-                best, cost = Outcome(q, off_m, off_rad, steps), new
+                best, cost = DescentEnd(q, off_m, off_rad, steps), new
                 gradient = self._linearise(target, cost)
             else:
                 trust *= SHRINK
             if slow >= PATIENCE or trust < MIN_TRUST:
                 break
             q = best.q + self._minimise(gradient, best.q, trust)
-        return Outcome(best.q, best.off_m, best.off_rad, steps)
+        return DescentEnd(best.q, best.off_m, best.off_rad, steps)
 
     def _evaluate(self, target: Target, q: Array) -> tuple[float, float, float]:
         """Return the distance, the angle and the weighted squared error of a state."""

@@ -19,7 +19,7 @@ from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.kinematics.chain import Chain
-from arm_planning.kinematics.descent import MAX_STEPS, Descent, Outcome, Target
+from arm_planning.kinematics.descent import MAX_STEPS, Descent, DescentEnd, Target
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.kinematics.search import Orientation, Search
 from arm_planning.kinematics.shortfall import shortfall
@@ -49,6 +49,8 @@ NEAREST_TRIES = 12
 """Solutions to choose the nearest orientation from."""
 SAME_RAD = 1e-3
 """Orientations that differ by less from the target's are equally near."""
+STALE = 10
+"""Solutions in a row that are not new, after which there are hardly any others."""
 ALIKE = 1e-2
 """Solutions whose joints all differ by less than this are one, in rad or m."""
 CLOSE_M = 1e-4
@@ -66,6 +68,11 @@ class InverseKinematics:
         tip: the link to place; "" for the group's own tip.
         positions: positions of joints outside of the group; 0 for those not named.
         clock: seconds that pass, for `GUARD`.
+
+    Attributes:
+        group: the group.
+        tip: the link that is placed.
+        turning: whether each joint of the group turns, (n,); the others slide.
 
     Raises:
         PlanningError: INVALID_GROUP_NAME or INVALID_LINK_NAME: there is no such group or link, the
@@ -92,7 +99,8 @@ class InverseKinematics:
         self._names = tuple(names[index] for index in self._moving)
         self._chain = Chain(model.robot, self.tip, self._names, fixed)
         lower, upper = self.group.lower[self._moving], self.group.upper[self._moving]
-        turning = np.array([model.robot.joint(name).type.turns for name in self._names])
+        self.turning = np.array([model.robot.joint(name).type.turns for name in names])
+        turning = self.turning[self._moving]
         self._lower, self._upper, self._turning = lower, upper, turning
         self._descent = Descent(self._chain, lower, upper)
         free = [self._chain.turns_freely(index) for index in range(len(turning))]
@@ -123,6 +131,13 @@ class InverseKinematics:
     def pose(self, q: Sequence[float] | Array) -> Array:
         """Return the tip's pose in the root's frame, (4, 4), for positions of the group, (n,)."""
         return self._whole.pose(np.asarray(q, dtype=float))
+
+    def tip_pose(self, q: Sequence[float] | Array) -> RigidTransform:
+        """Return the same pose as position and quaternion."""
+        self._whole.place(np.asarray(q, dtype=float))
+        w, x, y, z = self._whole.quaternion.tolist()
+        px, py, pz = self._whole.position.tolist()
+        return RigidTransform((px, py, pz), (x, y, z, w))
 
     def solve(
         self,
@@ -161,6 +176,32 @@ class InverseKinematics:
             return q
         raise self._none(search)
 
+    def follow(
+        self,
+        target: RigidTransform | Array,
+        seed: Sequence[float] | Array,
+        *,
+        orientation: Orientation = Orientation.EXACT,
+    ) -> Array:
+        """Return the solution that one descent from the seed leads to, (n,).
+
+        For a target near the seed's pose, it is the solution on the same branch.
+
+        Args:
+            target: as in `solve`.
+            seed: as in `solve`.
+            orientation: as in `solve`.
+
+        Raises:
+            PlanningError: as in `solve`; the descent ends elsewhere.
+        """
+        search = self._search(target, seed, TIMEOUT_S, 0, None, orientation)
+        outcome = self._descend(search, search.seed[self._moving])
+        if outcome.is_at(search.target, nearest=orientation is Orientation.NEAREST):
+            return self._beside_seed(outcome.q, search.seed)
+        search.note(outcome)
+        raise self._none(search)
+
     def solutions(
         self,
         target: RigidTransform | Array,
@@ -174,8 +215,8 @@ class InverseKinematics:
     ) -> list[Array]:
         """Return different solutions, those nearest to the seed first.
 
-        The whole timeout is used, so that the nearest are among those found. Of an arm with more
-        joints than the target takes, they are a sample.
+        The search goes on until it has twice as many, or until several descents in a row lead to
+        none that is new. Of an arm with more joints than the target takes, they are a sample.
 
         Args:
             target: as in `solve`.
@@ -191,15 +232,20 @@ class InverseKinematics:
         """
         search = self._search(target, seed, timeout_s, random_seed, free, orientation)
         found: list[Array] = []
+        stale = 0
         for q, _ in self._solutions(search):
-            if all(np.abs(q - other).max() > ALIKE for other in found):
+            is_new = all(np.abs(q - other).max() > ALIKE for other in found)
+            stale = 0 if is_new else stale + 1
+            if is_new:
                 found.append(q)
+            if stale == STALE or len(found) == 2 * most:
+                break
         if not found:
             raise self._none(search)
         return sorted(found, key=search.distance)[:most]
 
     def _with_nearest_orientation(self, search: Search) -> Array:
-        found: list[tuple[Array, Outcome]] = []
+        found: list[tuple[Array, DescentEnd]] = []
         for q, outcome in self._solutions(search):
             found.append((q, outcome))
             if outcome.off_rad < SAME_RAD or len(found) == NEAREST_TRIES:
@@ -253,7 +299,7 @@ class InverseKinematics:
         steps = max(MAX_STEPS, round(timeout_s * STEPS_PER_S))
         return min(steps, HOPELESS_STEPS) if self._chain.is_too_short_for(position) else steps
 
-    def _solutions(self, search: Search) -> Iterator[tuple[Array, Outcome]]:
+    def _solutions(self, search: Search) -> Iterator[tuple[Array, DescentEnd]]:
         """Yield solutions of all joints of the group, (n,), until the steps are used up."""
         for start in self._all_starts(search):
             outcome = self._descend(search, start)
@@ -272,7 +318,7 @@ class InverseKinematics:
             self._starts = Starts(self._chain, self._lower, self._upper, self._turning)
         yield from self._starts.towards(search.target, search.random_seed)
 
-    def _descend(self, search: Search, start: Array) -> Outcome:
+    def _descend(self, search: Search, start: Array) -> DescentEnd:
         outcome = self._descent.run(search.target, start, min(MAX_STEPS, search.steps))
         search.steps -= outcome.steps
         if search.orientation is not Orientation.NEAREST or outcome.off_m > CLOSE_M:

@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.kinematics.descent import Outcome, Target
+from arm_planning.kinematics.descent import DescentEnd, Target
 
 Array = NDArray[np.float64]
 
@@ -43,17 +43,17 @@ class Search:
     free: Callable[[Array], bool] | None
     steps: int
     until_s: float
-    best: Outcome | None = None
+    best: DescentEnd | None = None
     blocked: int = 0
 
     def distance(self, q: Array) -> float:
         """Return how far positions are from the seed."""
         return float(np.linalg.norm(q - self.seed))
 
-    def note(self, outcome: Outcome) -> None:
+    def note(self, outcome: DescentEnd) -> None:
         """Keep a descent that ended short of a solution, if it is the nearest."""
         if self.best is None or self._size(outcome) < self._size(self.best):
             self.best = outcome
 
-    def _size(self, outcome: Outcome) -> float:
+    def _size(self, outcome: DescentEnd) -> float:
         return outcome.off_m + self.target.rotation_length * outcome.off_rad

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from arm_node.names import listing
 from arm_planning.kinematics.chain import Chain
-from arm_planning.kinematics.descent import Outcome
+from arm_planning.kinematics.descent import DescentEnd
 from arm_planning.kinematics.search import Orientation, Search
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ def _too_short(search: Search, chain: Chain) -> str:
     )
 
 
-def _at_limits(best: Outcome, joints: Sequence[str], lower: Array, upper: Array) -> str:
+def _at_limits(best: DescentEnd, joints: Sequence[str], lower: Array, upper: Array) -> str:
     at_limit = (best.q - lower < AT_LIMIT) | (upper - best.q < AT_LIMIT)
     names = [name for name, at in zip(joints, at_limit, strict=True) if at]
     if not names:
