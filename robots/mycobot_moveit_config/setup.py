@@ -23,6 +23,6 @@ setup(
         *(f"{Path(path).name} @ {Path(path).resolve().as_uri()}" for path in NEIGHBOURS),
     ],
     zip_safe=True,
-    description="The controllers of the myCobot 280 and what starts them; without MoveIt.",
+    description="The controllers of the myCobot 280, their launch file, and files for planning.",
     license="Apache-2.0",
 )
