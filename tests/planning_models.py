@@ -2,9 +2,13 @@
 
 import math
 
-from arm_description import parse_urdf
+from arm_description import expand_xacro, parse_urdf
+from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Robot
 from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+from arm_planning.scene.allowed_collisions import AllowedCollisions
+
+MYCOBOT = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 
 
 def model_of(urdf: str | Robot, **groups: tuple[tuple[str, ...], str]) -> PlanningModel:
@@ -38,3 +42,17 @@ def group_of(robot: Robot, name: str, joints: tuple[str, ...], tip: str) -> Join
     wraps = tuple(joint.type.wraps for joint in found)
     links = tuple(joint.child for joint in found)
     return JointGroup(name, joints, wraps, limits, links, found[0].parent, tip)
+
+
+def mycobot() -> PlanningModel:
+    """The myCobot 280 with the group `arm`."""
+    robot = parse_urdf(expand_xacro(ResourceFinder().find(MYCOBOT)))
+    names = tuple(joint.name for joint in robot.joints_in_tree_order if "link" in joint.name)
+    arm = tuple(name for name in names if robot.joint(name).type.is_scalar)
+    return model_of(robot, arm=(arm, "gripper_base"))
+
+
+def neighbours(model: PlanningModel) -> AllowedCollisions:
+    """Links that a joint connects may touch."""
+    pairs = [tuple(sorted((joint.parent, joint.child))) for joint in model.robot.joints]
+    return AllowedCollisions({(first, second): True for first, second in pairs})

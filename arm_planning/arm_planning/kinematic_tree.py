@@ -5,6 +5,7 @@ Collision checks add shapes to it; kinematics compile it as it is.
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
@@ -56,7 +57,11 @@ class PositionMap:
         return self.matrix @ q + self.constant
 
 
-def kinematic_tree(robot: Robot, tips: Collection[str] | None = None) -> KinematicTree:
+def kinematic_tree(
+    robot: Robot,
+    tips: Collection[str] | None = None,
+    built_in: JointPositions = MappingProxyType({}),
+) -> KinematicTree:
     """Return the bodies and joints of a robot.
 
     Floating and planar joints stay at their origin, as in `arm_description.forward_kinematics`.
@@ -64,6 +69,7 @@ def kinematic_tree(robot: Robot, tips: Collection[str] | None = None) -> Kinemat
     Args:
         robot: the robot.
         tips: the links to keep, with everything between them and the root; None for all.
+        built_in: positions of scalar joints that do not move: they get no joint.
 
     Raises:
         PlanningError: the robot has too many links.
@@ -84,7 +90,9 @@ def kinematic_tree(robot: Robot, tips: Collection[str] | None = None) -> Kinemat
             pos=joint.origin.xyz, quat=wxyz_from_rpy(joint.origin.rpy)
         )
         bodies[joint.child] = body
-        if joint.type.is_scalar:
+        if joint.name in built_in:
+            _displace(body, joint, built_in[joint.name])
+        elif joint.type.is_scalar:
             joints[joint.name] = _add_joint(body, joint)
     return KinematicTree(spec, bodies, joints)
 
@@ -118,6 +126,17 @@ def _add_joint(body: mujoco.MjsBody, joint: Joint) -> mujoco.MjsJoint:
     body.mass, body.inertia, body.explicitinertial = 1.0, (1.0, 1.0, 1.0), True
     kind = mujoco.mjtJoint.mjJNT_SLIDE if joint.type.slides else mujoco.mjtJoint.mjJNT_HINGE
     return body.add_joint(type=kind, axis=joint.axis)
+
+
+def _displace(body: mujoco.MjsBody, joint: Joint, position: float) -> None:
+    axis = np.asarray(joint.axis)
+    if joint.type.slides:
+        body.pos = body.pos + joint.origin.matrix()[:3, :3] @ axis * position
+        return
+    turn, quaternion = np.zeros(4), np.zeros(4)
+    mujoco.mju_axisAngle2Quat(turn, axis, position)
+    mujoco.mju_mulQuat(quaternion, body.quat, turn)
+    body.quat = quaternion
 
 
 def _links_above(robot: Robot, tips: Collection[str]) -> set[str]:

@@ -54,6 +54,16 @@ def test_only_what_carries_the_tips_is_kept():
     assert set(tree.joints) == {"turn", "slide"}
 
 
+def test_joints_that_are_built_in_are_none():
+    description = parse_urdf(ARM)
+    fixed = {"turn": 0.4, "slide": -0.2}
+    tree = kinematic_tree(description, built_in=fixed)
+    assert set(tree.joints) == {"grip", "follow"}
+    expected = forward_kinematics(description, {**fixed, "grip": 0.7})
+    for name, pose in poses(tree, np.array([0.7, -1.3])).items():
+        assert pose == pytest.approx(expected[name][:3], abs=1e-12), name
+
+
 def test_joints_that_do_not_vary_stay_where_they_are_and_mimics_follow_them():
     positions = position_map(parse_urdf(ARM), ("turn", "grip", "follow"), ("turn",), {"grip": 0.5})
     assert positions(np.array([0.3])) == pytest.approx((0.3, 0.5, -0.9))

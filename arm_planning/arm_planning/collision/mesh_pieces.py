@@ -1,0 +1,216 @@
+"""Meshes as convex pieces, because MuJoCo collides convex shapes only.
+
+* A mesh file of a link: the convex hull of each of its parts.
+* A mesh of an object: each connected part that is closed and convex is one piece and is solid.
+  Every other part is a surface: each of its triangles is a thin plate. So a concave box is not
+  filled up, but what is wholly inside of a closed surface does not touch it.
+"""
+
+import hashlib
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.errors import MeshFileError, ResourceNotFoundError
+from arm_description.mesh.file import check_mesh_file, read_mesh_file
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.robot import Mesh
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.scene.shapes import TriangleMesh
+
+Array = NDArray[np.float64]
+Pieces = tuple[Array, ...]
+"""The corners of each convex piece, shapes (n, 3), m."""
+
+HALF_PLATE_M = 5e-5
+"""Half the thickness of a plate, which a triangle or a flat part of a mesh becomes."""
+MAX_PLATES = 5_000
+"""Most triangles of an object's mesh that are plates: each is a shape of the model."""
+MAX_REMEMBERED = 1_000
+CONVEX_WITHIN = 1e-6
+"""How far a corner may stand out of a face of a convex part, in parts of the part's size."""
+FLAT = 1e-6
+"""Ratio of thickness to size below which a part is flat."""
+SAME_PLACE = 1e-9
+"""Distance below which corners are one corner, in parts of the mesh's size."""
+PRODUCTS_AT_ONCE = 4_000_000
+
+
+class MeshPieces:
+    """Cuts meshes into convex pieces, and remembers the pieces.
+
+    Keep one for all the models of a robot: reading and cutting a mesh takes much longer than the
+    rest of a model.
+
+    Args:
+        resources: finds the mesh files of links.
+    """
+
+    def __init__(self, resources: ResourceFinder | None = None) -> None:
+        self._resources = resources or ResourceFinder()
+        self._known: dict[object, Pieces] = {}
+
+    def of_file(self, mesh: Mesh) -> Pieces:
+        """Return the hulls of the parts of a link's mesh file, scaled.
+
+        Raises:
+            PlanningError: the file is missing or cannot be used; the message names it.
+        """
+        return self._remembered((mesh.uri, mesh.scale), lambda: self._read(mesh))
+
+    def of_object(self, mesh: TriangleMesh) -> Pieces:
+        """Return the pieces of an object's mesh.
+
+        Raises:
+            PlanningError: it is not a mesh, or has too many triangles.
+        """
+        content = hashlib.blake2b(np.ascontiguousarray(mesh.vertices).tobytes())
+        content.update(np.ascontiguousarray(mesh.triangles).tobytes())
+        return self._remembered(content.digest(), lambda: convex_pieces(mesh))
+
+    def _remembered(self, key: object, make: Callable[[], Pieces]) -> Pieces:
+        if key not in self._known:
+            if len(self._known) >= MAX_REMEMBERED:
+                self._known.pop(next(iter(self._known)))
+            self._known[key] = make()
+        return self._known[key]
+
+    def _read(self, mesh: Mesh) -> Pieces:
+        try:
+            path = self._resources.find(mesh.uri)
+            check_mesh_file(path)
+            parts = read_mesh_file(path)
+        except (ResourceNotFoundError, MeshFileError, OSError) as error:
+            message = f"cannot use the mesh {mesh.uri}: {error}"
+            raise PlanningError(ErrorCode.COLLISION_CHECKING_UNAVAILABLE, message) from error
+        return tuple(
+            hull(part.vertices * np.asarray(mesh.scale)) for part in parts if len(part.vertices)
+        )
+
+
+def convex_pieces(mesh: TriangleMesh) -> Pieces:
+    """Cut a mesh into convex pieces.
+
+    Raises:
+        PlanningError: it has no triangles or broken ones, or too many that need plates.
+    """
+    corners, triangles = _merged(mesh)
+    pieces: list[Array] = []
+    plates: list[Array] = []
+    for part in _parts(triangles, len(corners)):
+        used, local = np.unique(part, return_inverse=True)
+        points = corners[used]
+        if _is_closed(part) and _is_convex(points, local.reshape(-1, 3)):
+            pieces.append(hull(points))
+        else:
+            plates.extend(thickened(corner) for corner in corners[part])
+    if len(plates) > MAX_PLATES:
+        raise PlanningError(
+            ErrorCode.INVALID_OBJECT_NAME,
+            f"the mesh has {len(plates)} triangles in parts that are not convex; at most "
+            f"{MAX_PLATES} are checked; simplify it or cut it into convex parts",
+        )
+    return (*pieces, *plates)
+
+
+def hull(points: Array) -> Array:
+    """Return the corners of the convex hull of points, (n, 3); flat points get a thickness."""
+    points = thickened(points)
+    spec = mujoco.MjSpec()
+    spec.add_mesh(
+        name="hull",
+        uservert=points.ravel(),
+        userface=np.array([0, 1, 2], np.int32),
+        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+    )
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="hull")
+    model = spec.compile()
+    count = int(model.mesh_graph[0])
+    corners = model.mesh_vert[model.mesh_graph[2 + count : 2 + 2 * count]].astype(np.float64)
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, model.mesh_quat[0])
+    return corners @ rotation.reshape(3, 3).T + model.mesh_pos[0]
+
+
+def thickened(points: Array) -> Array:
+    """Return points with a volume: those in a plane become a plate, those in a line a rod."""
+    spread = points - points.mean(axis=0)
+    _, axes = np.linalg.eigh(spread.T @ spread)
+    sizes = np.ptp(spread @ axes, axis=0)
+    for axis in axes.T[sizes <= max(FLAT * float(sizes.max()), 1e-7)]:
+        points = np.concatenate([points - HALF_PLATE_M * axis, points + HALF_PLATE_M * axis])
+    return points
+
+
+def _merged(mesh: TriangleMesh) -> tuple[Array, NDArray[np.int64]]:
+    """Return corners at different places and the triangles between them that have an area."""
+    vertices, triangles = mesh.vertices, mesh.triangles
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or triangles.shape[1:] != (3,):
+        raise _broken("its vertices or triangles do not have three numbers each")
+    if not len(triangles) or not len(vertices):
+        raise _broken("it has no triangles")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise _broken(f"a triangle has a corner that is not among its {len(vertices)} vertices")
+    if not np.isfinite(vertices).all():
+        raise _broken("a vertex is not finite")
+    size = float(np.ptp(vertices, axis=0).max())
+    if size <= 0.0:
+        raise _broken("all its vertices are at one place")
+    grid = np.round((vertices - vertices.min(axis=0)) / (size * SAME_PLACE)).astype(np.int64)
+    _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
+    joined = place.reshape(-1)[triangles]
+    a, b, c = joined.T
+    joined = joined[(a != b) & (b != c) & (c != a)]
+    if not len(joined):
+        raise _broken("all its triangles are without an area")
+    return vertices[first], joined
+
+
+def _parts(triangles: NDArray[np.int64], corners: int) -> list[NDArray[np.int64]]:
+    """Return the triangles of each connected part."""
+    label = np.arange(corners)
+    while True:
+        lowest = label[triangles].min(axis=1)
+        lower = label.copy()
+        for corner in triangles.T:
+            np.minimum.at(lower, corner, lowest)
+        lower = lower[lower]
+        if (lower == label).all():
+            break
+        label = lower
+    of_triangle = label[triangles[:, 0]]
+    order = np.argsort(of_triangle, kind="stable")
+    cuts = np.flatnonzero(np.diff(of_triangle[order])) + 1
+    return np.split(triangles[order], cuts)
+
+
+def _is_closed(triangles: NDArray[np.int64]) -> bool:
+    """Return whether each edge belongs to two triangles."""
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    return bool((counts == 2).all())
+
+
+def _is_convex(points: Array, triangles: NDArray[np.int64]) -> bool:
+    """Return whether all points lie on one side of each triangle."""
+    a, b, c = (points[corner] for corner in triangles.T)
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)
+    size = float(np.ptp(points, axis=0).max())
+    # A sliver has no direction to judge by; its neighbours are judged.
+    solid = lengths > FLAT * size * size * FLAT
+    normals, a = normals[solid] / lengths[solid, None], a[solid]
+    rows = max(1, PRODUCTS_AT_ONCE // len(points))
+    for start in range(0, len(normals), rows):
+        normal = normals[start : start + rows]
+        heights = normal @ points.T - np.sum(normal * a[start : start + rows], axis=1)[:, None]
+        out, inward = heights.max(axis=1), -heights.min(axis=1)
+        if (np.minimum(out, inward) > CONVEX_WITHIN * size).any():
+            return False
+    return True
+
+
+def _broken(reason: str) -> PlanningError:
+    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, f"the mesh cannot be used: {reason}")

@@ -1,0 +1,288 @@
+"""A MuJoCo model of what can collide: links, attached bodies and objects in the world.
+
+Each is a body of its own. Only the joints that vary are joints; the others are built in at their
+positions. Pairs that may touch are left out, so that any contact is a collision.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_node.names import describe_known
+from arm_planning.collision.contact import BodyKind
+from arm_planning.collision.geoms import Geom, link_geoms, object_geoms, object_pose
+from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
+from arm_planning.robot.model import PlanningModel
+from arm_planning.scene.objects import AttachedBody
+from arm_planning.scene.scene import PlanningScene
+
+Array = NDArray[np.float64]
+FIRST_TRIANGLE = np.array([0, 1, 2], np.int32)
+
+SEARCHED_CORNERS = 300
+"""Pieces of meshes with at most this many corners are searched corner by corner. It takes as long
+as MuJoCo's walk along their edges, which needs 0.2 to 3 ms for each piece and compilation."""
+CCD_ITERATIONS = 200
+CCD_TOLERANCE = 1e-7
+"""With MuJoCo's own 35 and 1e-6 distances of finely meshed pieces came out 0.1 mm too large."""
+MEMORY_BYTES = 1 << 23
+"""Room for some thousands of contacts."""
+
+SELF, ROBOT, WORLD = 1, 2, 4
+"""Bits of MuJoCo's contype and conaffinity. A geom of the robot has SELF against other parts of the
+robot and ROBOT against the world; a grown copy takes over the second."""
+WHOLE = (SELF | ROBOT, SELF | WORLD)
+SELF_ONLY = (SELF, SELF)
+GROWN = (ROBOT, WORLD)
+OF_WORLD = (WORLD, ROBOT)
+AFFINITY_SHIFT = 3
+"""A geom's group carries both bits through the compiler, which makes hulls for geoms with bits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What a body of the MuJoCo model is.
+
+    Attributes:
+        name: name of the link or object.
+        kind: what it is.
+        moves: whether a variable joint moves it; all do that are part of a model without a group.
+    """
+
+    name: str
+    kind: BodyKind
+    moves: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CompiledScene:
+    """A model and the meaning of its bodies and coordinates.
+
+    Attributes:
+        model: the compiled model.
+        bodies: by MuJoCo's id; None for the world's own body.
+        links: MuJoCo's id of the body of each link.
+        coordinates: MuJoCo's coordinates as a function of the joints that vary.
+    """
+
+    model: mujoco.MjModel
+    bodies: tuple[Body | None, ...]
+    links: dict[str, int]
+    coordinates: PositionMap
+
+
+@dataclass(slots=True)
+class _Part:
+    """A body while the specification is made; `carrier` is the link that carries it."""
+
+    name: str
+    kind: BodyKind
+    body: mujoco.MjsBody
+    moves: bool
+    carrier: str = ""
+    touch: frozenset[str] = frozenset()
+    has_geoms: bool = False
+
+
+class SceneCompiler:
+    """Compiles a robot and its surroundings.
+
+    Args:
+        model: the robot.
+        scene: where everything is.
+        varying: active joints that can move; all others stay at their positions in the scene.
+        meshes: cuts meshes; keep it, because it remembers them.
+    """
+
+    def __init__(
+        self,
+        model: PlanningModel,
+        scene: PlanningScene,
+        varying: Sequence[str],
+        meshes: MeshPieces,
+    ) -> None:
+        self._robot = model.robot
+        self._scene = scene
+        self._meshes = meshes
+        names = [joint.name for joint in self._robot.joints_in_tree_order if joint.type.is_scalar]
+        positions = position_map(self._robot, names, varying, scene.positions)
+        moving = (positions.matrix != 0.0).sum(axis=1) > 0
+        built_in = {
+            name: float(positions.constant[row])
+            for row, name in enumerate(names)
+            if not moving[row]
+        }
+        self._coordinates = PositionMap(positions.matrix[moving], positions.constant[moving])
+        self._tree = kinematic_tree(self._robot, built_in=built_in)
+        self._spec = self._tree.spec
+        self._links: dict[str, _Part] = {}
+        self._attached: list[_Part] = []
+        self._objects: list[_Part] = []
+        self._assets: dict[int, tuple[str, Array]] = {}
+
+    def compile(self) -> CompiledScene:
+        """Return the compiled scene.
+
+        Raises:
+            PlanningError: a mesh or a shape cannot be used, or a body is attached to a link that
+                does not exist.
+        """
+        self._set_options()
+        self._add_links()
+        self._add_attached()
+        self._add_objects()
+        self._leave_out_allowed_pairs()
+        model = self._spec.compile()
+        _set_bits(model)
+        bodies: list[Body | None] = [None] * model.nbody
+        for part in self._parts():
+            bodies[part.body.id] = Body(part.name, part.kind, part.moves)
+        return CompiledScene(
+            model,
+            tuple(bodies),
+            {name: part.body.id for name, part in self._links.items()},
+            self._coordinates,
+        )
+
+    def _set_options(self) -> None:
+        option, compiler = self._spec.option, self._spec.compiler
+        # Links next to each other are checked, too, unless they may touch.
+        option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
+        option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MULTICCD)
+        option.ccd_iterations, option.ccd_tolerance = CCD_ITERATIONS, CCD_TOLERANCE
+        self._spec.memory = MEMORY_BYTES
+        compiler.degree = False
+        compiler.boundmass = compiler.boundinertia = 1.0
+
+    def _parts(self) -> Iterator[_Part]:
+        yield from self._links.values()
+        yield from self._attached
+        yield from self._objects
+
+    def _add_links(self) -> None:
+        moving = {self._robot.root: False}
+        for joint in self._robot.joints_in_tree_order:
+            moving[joint.child] = moving[joint.parent] or joint.name in self._tree.joints
+        for name, body in self._tree.bodies.items():
+            body.name = f"link {name}"
+            self._add_link(name, body, moving[name])
+
+    def _add_link(self, name: str, body: mujoco.MjsBody, moves: bool) -> None:
+        part = _Part(name, BodyKind.ROBOT_LINK, body, moves, carrier=name)
+        self._links[name] = part
+        scale = self._scene.scale.get(name, 1.0)
+        padding_m = self._scene.padding.get(name, 0.0)
+        for geom in link_geoms(self._robot.link(name), self._meshes):
+            if scale == 1.0 and padding_m == 0.0:
+                self._add_geom(part, geom, WHOLE)
+            else:
+                self._add_geom(part, geom, SELF_ONLY)
+                self._add_geom(part, geom.grown(scale, padding_m), GROWN)
+
+    def _add_attached(self) -> None:
+        for attached in self._scene.attached.values():
+            thing = attached.object
+            link = self._link_of(attached)
+            body = link.body.add_body(name=f"attached {thing.id}", **_placement(object_pose(thing)))
+            part = _Part(
+                thing.id,
+                BodyKind.ROBOT_ATTACHED,
+                body,
+                link.moves,
+                carrier=attached.link,
+                touch=attached.touch_links,
+            )
+            self._attached.append(part)
+            for geom in object_geoms(thing, self._meshes):
+                if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+                    raise PlanningError(
+                        ErrorCode.INVALID_OBJECT_NAME,
+                        f"object '{thing.id}' has a plane, which cannot be attached to a link",
+                    )
+                self._add_geom(part, geom, WHOLE)
+
+    def _link_of(self, attached: AttachedBody) -> _Part:
+        if attached.link not in self._links:
+            raise PlanningError(
+                ErrorCode.INVALID_LINK_NAME,
+                f"object '{attached.object.id}' is attached to '{attached.link}': "
+                f"no such link; {describe_known(attached.link, self._links, 'the robot has')}",
+            )
+        return self._links[attached.link]
+
+    def _add_objects(self) -> None:
+        for thing in self._scene.objects.values():
+            body = self._spec.worldbody.add_body(
+                name=f"object {thing.id}", **_placement(object_pose(thing))
+            )
+            part = _Part(thing.id, BodyKind.WORLD_OBJECT, body, moves=False)
+            self._objects.append(part)
+            for geom in object_geoms(thing, self._meshes):
+                self._add_geom(part, geom, OF_WORLD)
+
+    def _add_geom(self, part: _Part, geom: Geom, bits: tuple[int, int]) -> None:
+        part.has_geoms = True
+        added = part.body.add_geom(type=geom.type, **_placement(geom.pose))
+        added.group = bits[0] | bits[1] << AFFINITY_SHIFT
+        hull = geom.corners is not None and len(geom.corners) > SEARCHED_CORNERS
+        added.contype = added.conaffinity = int(hull)
+        added.mass = 0.0
+        if geom.corners is None:
+            added.size = geom.size
+        else:
+            added.meshname = self._asset(geom.corners)
+
+    def _asset(self, corners: Array) -> str:
+        """Return the mesh of a piece, which several bodies may have."""
+        if id(corners) not in self._assets:
+            name = f"mesh {len(self._assets)}"
+            self._spec.add_mesh(
+                name=name,
+                uservert=corners.ravel(),
+                userface=FIRST_TRIANGLE,
+                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+            )
+            # The corners are kept, so that no other array gets their id.
+            self._assets[id(corners)] = (name, corners)
+        return self._assets[id(corners)][0]
+
+    def _leave_out_allowed_pairs(self) -> None:
+        robot = [part for part in (*self._links.values(), *self._attached) if part.has_geoms]
+        for first, second in combinations(robot, 2):
+            if self._allowed(first, second):
+                self._spec.add_exclude(bodyname1=first.body.name, bodyname2=second.body.name)
+        allowed = self._scene.allowed
+        for thing in self._objects:
+            for part in robot:
+                if allowed.may_touch(thing.name, part.name) or thing.name in part.touch:
+                    self._spec.add_exclude(bodyname1=thing.body.name, bodyname2=part.body.name)
+
+    def _allowed(self, first: _Part, second: _Part) -> bool:
+        """Return whether two parts of the robot may touch; what is attached may touch its link."""
+        rigid = BodyKind.ROBOT_ATTACHED in (first.kind, second.kind)
+        return (
+            (rigid and first.carrier == second.carrier)
+            or second.name in first.touch
+            or first.name in second.touch
+            or self._scene.allowed.may_touch(first.name, second.name)
+        )
+
+
+def _placement(pose: Array) -> dict[str, Array]:
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, pose[:3, :3].ravel())
+    return {"pos": pose[:3, 3], "quat": quaternion}
+
+
+def _set_bits(model: mujoco.MjModel) -> None:
+    model.geom_contype[:] = model.geom_group & (1 << AFFINITY_SHIFT) - 1
+    model.geom_conaffinity[:] = model.geom_group >> AFFINITY_SHIFT
+    model.body_contype[:] = model.body_conaffinity[:] = 0
+    np.bitwise_or.at(model.body_contype, model.geom_bodyid, model.geom_contype)
+    np.bitwise_or.at(model.body_conaffinity, model.geom_bodyid, model.geom_conaffinity)
