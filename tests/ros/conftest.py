@@ -37,6 +37,14 @@ def launch_for_file(
     yield from _launcher(tmp_path_factory.mktemp("launch"))
 
 
+@pytest.fixture(scope="class")
+def launch_for_class(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Callable[..., Program]]:
+    """Start `arm launch ARGUMENTS`, which ends with the last test of the class at the latest."""
+    yield from _launcher(tmp_path_factory.mktemp("launch"))
+
+
 def _launcher(folder: Path) -> Iterator[Callable[..., Program]]:
     started: list[Program] = []
 

@@ -89,53 +89,84 @@ def is_abandoned(file: Path) -> bool:
     return file.exists()
 
 
-def test_a_float64_multi_array_moves_the_arm(launch, client):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
-    launch("camera:=none").wait_until_ready()
-    states = client.subscribe(JointState, "/joint_states")
-    client.publisher(Float64MultiArray, "/position_controller/commands").publish(
-        Float64MultiArray(data=POSE)
-    )
-    reached = states.wait_until(
-        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
-    )
-    assert reached[-1].name == ["j0", "j1", "j2", "j3"]
-    assert reached[-1].header.frame_id == "base_link"
-    assert len(reached[-1].velocity) == len(reached[-1].effort) == 4
+@pytest.fixture(scope="class")
+def arm(launch_for_class):
+    """`arm launch`, for tests that change nothing of it."""
+    launch_for_class().wait_until_ready()
 
 
-def test_stamps_are_simulation_time_and_follow_the_clock(launch, client):
-    from controller_manager_msgs.msg import ControllerManagerActivity
-    from diagnostic_msgs.msg import DiagnosticArray
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from rosgraph_msgs.msg import Clock
-    from sensor_msgs.msg import JointState
+@pytest.mark.usefixtures("arm")
+class TestAsItStarts:
+    def test_a_float64_multi_array_moves_the_arm_and_nothing_overrides_it(self, client):
+        """The controller node has no pose of its own, so the first command stands."""
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import Float64MultiArray
 
-    launch("camera:=none").wait_until_ready()
-    clock = client.subscribe(Clock, "/clock")
-    states = client.subscribe(JointState, "/joint_states")
-    samples = states.wait_for(100)
-    state_ns = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in samples]
-    ticks = clock.wait_until(
-        lambda m: len(m) >= 100 and tick_ns(m[-1]) > state_ns[0], "the clock of the states"
-    )
-    clock_ns = [tick_ns(m) for m in ticks]
-    assert all(b > a for a, b in itertools.pairwise(clock_ns))
-    steps_ns = [b - a for a, b in itertools.pairwise(state_ns)]
-    # A subscription may miss one on a busy machine.
-    assert min(steps_ns) == 10_000_000
-    assert not any(step % 10_000_000 for step in steps_ns)
-    assert set(state_ns) & set(clock_ns)
-    # The manager's own messages use the same clock.
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    reports = client.subscribe(DiagnosticArray, "/diagnostics")
-    activity = client.subscribe(
-        ControllerManagerActivity, "/controller_manager/activity", latched
-    ).wait_for(1)
-    stamps_s = [m.header.stamp.sec for m in (*activity, *reports.wait_for(1))]
-    clock.wait_until(lambda m: m[-1].clock.sec >= max(stamps_s), "the clock reaches the reports")
+        topic = "/position_controller/commands"
+        states = client.subscribe(JointState, "/joint_states")
+        commands = client.subscribe(Float64MultiArray, topic)
+        # The controller's subscription, and the one above.
+        client.publisher(Float64MultiArray, topic, matches=2).publish(Float64MultiArray(data=POSE))
+        reached = states.wait_until(
+            lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005),
+            "the pose is reached",
+        )
+        assert reached[-1].name == ["j0", "j1", "j2", "j3"]
+        assert reached[-1].header.frame_id == "base_link"
+        assert len(reached[-1].velocity) == len(reached[-1].effort) == 4
+        states.clear()
+        held = states.wait_for(100)
+        assert np.allclose([m.position for m in held], POSE, atol=0.01)
+        assert len(commands.messages) == 1
+
+    def test_stamps_are_simulation_time_and_follow_the_clock(self, client):
+        from controller_manager_msgs.msg import ControllerManagerActivity
+        from diagnostic_msgs.msg import DiagnosticArray
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from rosgraph_msgs.msg import Clock
+        from sensor_msgs.msg import JointState
+
+        clock = client.subscribe(Clock, "/clock")
+        states = client.subscribe(JointState, "/joint_states")
+        samples = states.wait_for(100)
+        state_ns = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in samples]
+        ticks = clock.wait_until(
+            lambda m: len(m) >= 100 and tick_ns(m[-1]) > state_ns[0], "the clock of the states"
+        )
+        clock_ns = [tick_ns(m) for m in ticks]
+        assert all(b > a for a, b in itertools.pairwise(clock_ns))
+        steps_ns = [b - a for a, b in itertools.pairwise(state_ns)]
+        # A subscription may miss one on a busy machine.
+        assert min(steps_ns) == 10_000_000
+        assert not any(step % 10_000_000 for step in steps_ns)
+        assert set(state_ns) & set(clock_ns)
+        # The manager's own messages use the same clock.
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        reports = client.subscribe(DiagnosticArray, "/diagnostics")
+        activity = client.subscribe(
+            ControllerManagerActivity, "/controller_manager/activity", latched
+        ).wait_for(1)
+        stamps_s = [m.header.stamp.sec for m in (*activity, *reports.wait_for(1))]
+        clock.wait_until(
+            lambda m: m[-1].clock.sec >= max(stamps_s), "the clock reaches the reports"
+        )
+
+    def test_the_frames_of_the_arm_are_in_tf(self, client):
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from tf2_msgs.msg import TFMessage
+
+        latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        static = client.subscribe(TFMessage, "/tf_static", latched)
+        moving = client.subscribe(TFMessage, "/tf")
+        fixed = {t.child_frame_id for m in static.wait_for(1) for t in m.transforms}
+        assert {"base_link", "camera_link", "camera_optical_frame", "crawer_left"} <= fixed
+        frames = moving.wait_for(2)[-1].transforms
+        assert {t.child_frame_id for t in frames} == {
+            "base_turn_rot",
+            "dyn2_r",
+            "dyn3_r",
+            "dyn4_r",
+        }
 
 
 def test_the_camera_sends_pictures_and_a_matching_camera_info(launch, client):
@@ -154,25 +185,6 @@ def test_the_camera_sends_pictures_and_a_matching_camera_info(launch, client):
     assert (info.width, info.height) == (320, 240)
     pixels = np.frombuffer(image.data, np.uint8).reshape(240, 320, 3)
     assert pixels.std() > 10, "the picture shows something"
-
-
-def test_the_frames_of_the_arm_are_in_tf(launch, client):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from tf2_msgs.msg import TFMessage
-
-    launch("camera:=front").wait_until_ready()
-    latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    static = client.subscribe(TFMessage, "/tf_static", latched)
-    moving = client.subscribe(TFMessage, "/tf")
-    fixed = {t.child_frame_id for m in static.wait_for(1) for t in m.transforms}
-    assert {"base_link", "camera_link", "camera_optical_frame", "crawer_left"} <= fixed
-    frames = moving.wait_for(2)[-1].transforms
-    assert {t.child_frame_id for t in frames} == {
-        "base_turn_rot",
-        "dyn2_r",
-        "dyn3_r",
-        "dyn4_r",
-    }
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -226,53 +238,6 @@ def test_the_initial_pose_is_a_launch_argument(launch, client):
     launch("camera:=none", "j1_pos:=0.5", "j2_pos:=0.5", "j3_pos:=1.0").wait_until_ready()
     first = client.subscribe(JointState, "/joint_states").wait_for(1)[0]
     assert first.position == pytest.approx([0.0, 0.5, 0.5, 1.0], abs=0.01)
-
-
-def test_the_controller_node_does_not_override_another_commander(launch, client):
-    """The controller node of `arm launch` has no pose of its own, so the first command stands."""
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
-    launch("camera:=none").wait_until_ready()
-    states = client.subscribe(JointState, "/joint_states")
-    commands = client.subscribe(Float64MultiArray, "/position_controller/commands")
-    topic = "/position_controller/commands"
-    # The controller's subscription, and the one above.
-    client.publisher(Float64MultiArray, topic, matches=2).publish(Float64MultiArray(data=POSE))
-    states.wait_until(
-        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
-    )
-    states.clear()
-    held = states.wait_for(100)
-    assert np.allclose([m.position for m in held], POSE, atol=0.01)
-    assert len(commands.messages) == 1
-
-
-def test_parameters_of_the_controller_node_move_the_arm(launch, client):
-    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-    from rcl_interfaces.srv import SetParameters
-    from sensor_msgs.msg import JointState
-
-    launch("camera:=none").wait_until_ready()
-    states = client.subscribe(JointState, "/joint_states")
-    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE_ARRAY, double_array_value=POSE)
-    answer = client.call(
-        SetParameters,
-        "/arm_controller_node/set_parameters",
-        SetParameters.Request(parameters=[Parameter(name="desired_param", value=value)]),
-    )
-    assert answer.results[0].successful, answer.results[0].reason
-    states.wait_until(
-        lambda m: bool(m) and np.allclose(m[-1].position, POSE, atol=0.005), "the pose is reached"
-    )
-    value.double_array_value = [0.0, 0.0]
-    refused = client.call(
-        SetParameters,
-        "/arm_controller_node/set_parameters",
-        SetParameters.Request(parameters=[Parameter(name="desired_param", value=value)]),
-    )
-    assert not refused.results[0].successful
-    assert "4" in refused.results[0].reason
 
 
 def test_the_mock_arm_follows_commands_at_once(launch, client):

@@ -58,13 +58,13 @@ def test_unclaimed_joints_hold_by_default(launch, client):
     assert np.allclose([m.position for m in states], [0.0, 0.5, 0.5, 0.0], atol=0.005)
 
 
-@pytest.mark.parametrize("rate_hz", [30, 225])
-def test_the_original_s_update_rates_work(launch, client, tmp_path, rate_hz):
+def test_an_update_rate_that_no_step_divides_works(launch, client, tmp_path):
     from sensor_msgs.msg import JointState
 
-    launch(
-        "camera:=none", f"controllers:={write_controllers(tmp_path, rate_hz)}"
-    ).wait_until_ready()
+    rate_hz = 225  # The original's.
+
+    path = write_controllers(tmp_path, rate_hz)
+    launch("camera:=none", f"controllers:={path}").wait_until_ready()
     states = client.subscribe(JointState, "/joint_states").wait_for(2 * rate_hz)
     stamps = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in states])
     assert np.median(np.diff(stamps)) == pytest.approx(1 / rate_hz, rel=1e-3)
@@ -134,13 +134,6 @@ def test_rviz_opens_if_installed(launch, tmp_path):
     launched.wait_for_line("shows -d /my/lab.rviz --ros-args -p use_sim_time:=true")
     launched.wait_until_ready()
     assert launched.stop() == 0, launched.output
-
-
-def test_an_update_rate_of_zero_is_refused(launch, tmp_path):
-    launched = launch("camera:=none", f"controllers:={write_controllers(tmp_path, 0)}")
-    assert launched.wait() != 0
-    assert "update_rate" in launched.output
-    assert "Traceback" not in launched.output
 
 
 def test_stopping_with_a_trajectory_controller_leaves_no_traceback(launch):

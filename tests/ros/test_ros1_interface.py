@@ -42,32 +42,54 @@ def test_four_topics_move_the_arm_and_states_come_at_50_hz(launch, client):
     assert periods.min() == 1
 
 
-def test_the_original_s_node_exceeds_a_limit_and_gets_one_warning(launch, client):
-    from controller_manager_msgs.srv import ListControllers
-    from sensor_msgs.msg import JointState
+@pytest.fixture(scope="class")
+def simulation(launch_for_class):
+    """The arm of ROS 1 with its controllers; the last of its tests ends it."""
+    launched = launch_for_class("interface:=ros1", "camera:=none")
+    launched.wait_until_ready()
+    return launched
 
-    simulation = launch("interface:=ros1", "camera:=none")
-    simulation.wait_until_ready()
-    listed = client.call(
-        ListControllers, "/arm/controller_manager/list_controllers", ListControllers.Request()
-    )
-    assert {c.name: c.state for c in listed.controller if c.type == TYPE} == {
-        f"j{i}p_controller": "active" for i in range(4)
-    }
 
-    states = client.subscribe(JointState, "/arm/joint_states")
-    node = launch(
-        *("arm_controller", "arm_controller_node.launch.py"), "interface:=ros1", "replace:=true"
-    )
-    node.wait_for_line("Publishing positions: [-5.000000, 0.500000, -1.200000, -1.000000]")
-    states.wait_until(
-        lambda m: bool(m) and is_at(m[-1], [LIMIT, *ORIGINAL_POSE[1:]]), "the arm is folded"
-    )
-    node.wait_for_line("Joint State: 'j0' Position: -2.57")
-    assert node.stop(signal.SIGINT) == 0
-    assert simulation.stop(signal.SIGINT) == 0
-    warning = "joint 'j0': position command -5 rad is beyond its limit of -2.57 rad"
-    assert simulation.output.count(warning) == 1
+@pytest.mark.usefixtures("simulation")
+class TestOneLaunch:
+    def test_arm_control_finds_the_manager_of_ros_1_by_itself(self):
+        done = subprocess.run(
+            [sys.executable, "-m", "arm_cli", "control", "list_controllers"],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60.0,
+        )
+        assert done.returncode == 0, done.stderr
+        assert "j0p_controller" in done.stdout
+        assert done.stderr == "there is no /controller_manager: asking /arm/controller_manager\n"
+
+    def test_the_original_s_node_exceeds_a_limit_and_gets_one_warning(
+        self, launch, client, simulation
+    ):
+        from controller_manager_msgs.srv import ListControllers
+        from sensor_msgs.msg import JointState
+
+        listed = client.call(
+            ListControllers, "/arm/controller_manager/list_controllers", ListControllers.Request()
+        )
+        assert {c.name: c.state for c in listed.controller if c.type == TYPE} == {
+            f"j{i}p_controller": "active" for i in range(4)
+        }
+
+        states = client.subscribe(JointState, "/arm/joint_states")
+        node = launch(
+            *("arm_controller", "arm_controller_node.launch.py"), "interface:=ros1", "replace:=true"
+        )
+        node.wait_for_line("Publishing positions: [-5.000000, 0.500000, -1.200000, -1.000000]")
+        states.wait_until(
+            lambda m: bool(m) and is_at(m[-1], [LIMIT, *ORIGINAL_POSE[1:]]), "the arm is folded"
+        )
+        node.wait_for_line("Joint State: 'j0' Position: -2.57")
+        assert node.stop(signal.SIGINT) == 0
+        assert simulation.stop(signal.SIGINT) == 0
+        warning = "joint 'j0': position command -5 rad is beyond its limit of -2.57 rad"
+        assert simulation.output.count(warning) == 1
 
 
 def test_the_side_camera_is_on_the_topics_of_ros_1(launch, client):
@@ -79,20 +101,6 @@ def test_the_side_camera_is_on_the_topics_of_ros_1(launch, client):
     (info, *_) = client.subscribe(CameraInfo, "/camera/camera_info").wait_for(1)
     assert (info.width, info.height) == (800, 800)
     assert info.k[0] == pytest.approx(400.0 / np.tan(1.3962634 / 2.0))
-
-
-def test_arm_control_finds_the_manager_of_ros_1_by_itself(launch):
-    launch("interface:=ros1", "camera:=none").wait_until_ready()
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "control", "list_controllers"],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60.0,
-    )
-    assert done.returncode == 0, done.stderr
-    assert "j0p_controller" in done.stdout
-    assert done.stderr == "there is no /controller_manager: asking /arm/controller_manager\n"
 
 
 def test_several_managers_are_named(launch, tmp_path):
