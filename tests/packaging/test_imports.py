@@ -35,6 +35,8 @@ OPTIONAL = {
     "arm_sim/arm_sim/sweep": ["sweep", "ray"],
 }
 """Parts of the product that need extras, which no other part imports."""
+PEERS = {"toppra"}
+"""What benchmarks compare the suite with; each script says how to install it."""
 BRINGS = {"gpu": {"gymnasium"}}
 """What an extra installs for other parts of the product that need it, too."""
 DISTRIBUTIONS = {"warp": "warp-lang"}
@@ -147,7 +149,7 @@ def test_what_tests_tools_and_the_manual_import_is_in_an_extra():
         for group in ("test", "docs", "dev")
         for each in EXTRAS[group]
     }
-    strange = modules_of(BESIDE, but=OF_ROS) - neighbours(BESIDE)
+    strange = modules_of(BESIDE, but=OF_ROS) - neighbours(BESIDE) - PEERS
     assert undeclared(strange, DECLARED | extras) == set()
     assert extras & DECLARED == set()
 
