@@ -22,30 +22,57 @@ DONE_M, DONE_RAD = 1e-6, 1e-5
 """Errors below which a descent ends: a last step is cheap, but slow near a stretched arm."""
 TRUST, MAX_TRUST, MIN_TRUST = 1.0, 1.5, 1e-3
 """Largest step of a joint: at the start, at most, and where the search gives up; rad or m."""
-SHRINK = 0.35
+GOOD, EXPAND, SHRINK = 0.25, 2.0, 0.35
+"""A step that leaves less than GOOD of the squared error makes the next ones longer."""
 DAMPING = 0.1
 """Damping of J^T J as a share of the squared error: it vanishes at the target."""
 MIN_DAMPING = 1e-8
-SLOW, PATIENCE = 0.98, 4
-"""Gives up after this many steps in a row that leave so much of the squared error."""
 MAX_STEPS = 60
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Target:
     """A pose to reach.
 
     Attributes:
         position: in the root's frame, m, (3,).
-        quaternion: w, x, y, z, (4,).
-        position_weight: factor of the position's error.
+        back: conjugate of its quaternion, w, x, y, z, (4,).
         rotation_length: length in m that one radian of error counts as; 0: any orientation will do.
+        weights: factors of the three errors of the position and the three of the rotation, (6, 1).
     """
 
     position: Array
-    quaternion: Array
-    position_weight: float
+    back: Array
     rotation_length: float
+    weights: Array
+
+
+def target_of(
+    position: Array, quaternion: Array, rotation_length: float, position_weight: float = 1.0
+) -> Target:
+    """Return a target for a position, (3,), and a quaternion w, x, y, z, (4,)."""
+    back = quaternion.copy()
+    back[1:] *= -1.0
+    weights = np.full((6, 1), rotation_length)
+    weights[:3] = position_weight
+    return Target(position, back, rotation_length, weights)
+
+
+@dataclass(frozen=True, slots=True)
+class Patience:
+    """When a descent gives up: after so many slow steps in a row.
+
+    Attributes:
+        slow: share of the squared error that a slow step leaves, at least.
+        steps: how many.
+    """
+
+    slow: float
+    steps: int
+
+
+HASTY, PATIENT = Patience(0.7, 2), Patience(0.99, 4)
+"""Where another start is at hand, and where the nearest pose is wanted."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,63 +110,63 @@ class Descent:
         n = len(lower)
         self._chain = chain
         self._lower, self._upper = lower, upper
-        self._error, self._turn, self._back = np.zeros(6), np.zeros(4), np.zeros(4)
+        self._error, self._turn = np.zeros(6), np.zeros(4)
         self._offset, self._rotation = self._error[:3], self._error[3:]
-        self._hessian = np.zeros((n, n))
+        self._gradient, self._hessian = np.zeros(n), np.zeros((n, n))
         self._diagonal = self._hessian.reshape(-1)[:: n + 1]
         self._step, self._factor = np.zeros(n), np.zeros((n, n + 7))
         self._index = np.zeros(n, np.int32)
 
-    def run(self, target: Target, start: Array, most: int = MAX_STEPS) -> DescentEnd:
+    def run(
+        self, target: Target, start: Array, most: int = MAX_STEPS, patience: Patience = HASTY
+    ) -> DescentEnd:
         """Return the best positions on the way down from a start within the limits, (n,).
 
-        It ends at the target, at a local minimum, or after `most` evaluations.
+        It ends at the target, near a local minimum, or after `most` evaluations.
         """
+        # Squares, because each step takes 10 us and a root a third of one.
+        done_m, done_rad = DONE_M**2, DONE_RAD**2 if target.rotation_length else math.inf
+        position_weight, rotation_weight = target.weights[0, 0] ** 2, target.rotation_length**2
         q, trust, cost, slow, steps = start, TRUST, math.inf, 0, 0
-        best, gradient = DescentEnd(start, math.inf, math.inf, 0), np.zeros_like(start)
+        best, off_m, off_rad = start, math.inf, math.inf
         while steps < most:
             steps += 1
-            off_m, off_rad, new = self._evaluate(target, q)
+            metres, angle = self._evaluate(target, q)
+            new = position_weight * metres + rotation_weight * angle
             if new < cost:
-                if off_m < DONE_M and (off_rad < DONE_RAD or not target.rotation_length):
-                    return DescentEnd(q, off_m, off_rad, steps)
-                slow = slow + 1 if new > SLOW * cost else 0
-                if new < 0.25 * cost and steps > 1:
-                    trust = min(2.0 * trust, MAX_TRUST)
-                best, cost = DescentEnd(q, off_m, off_rad, steps), new
-                gradient = self._linearise(target, cost)
+                slow = slow + 1 if new > patience.slow * cost else 0
+                if new < GOOD * cost and steps > 1:
+                    trust = min(EXPAND * trust, MAX_TRUST)
+                best, cost, off_m, off_rad = q, new, metres, angle
+                if metres < done_m and angle < done_rad:
+                    break
+                self._linearise(target, cost)
             else:
                 trust *= SHRINK
-            if slow >= PATIENCE or trust < MIN_TRUST:
+            if slow >= patience.steps or trust < MIN_TRUST:
                 break
-            q = best.q + self._minimise(gradient, best.q, trust)
-        return DescentEnd(best.q, best.off_m, best.off_rad, steps)
+            q = best + self._minimise(best, trust)
+        return DescentEnd(best, math.sqrt(off_m), math.sqrt(off_rad), steps)
 
-    def _evaluate(self, target: Target, q: Array) -> tuple[float, float, float]:
-        """Return the distance, the angle and the weighted squared error of a state."""
+    def _evaluate(self, target: Target, q: Array) -> tuple[float, float]:
+        """Return the squares of the distance and of the angle of a state."""
         chain = self._chain
         chain.place(q)
-        np.subtract(target.position, chain.position, out=self._offset)
-        mujoco.mju_negQuat(self._back, chain.quaternion)
-        mujoco.mju_mulQuat(self._turn, target.quaternion, self._back)
+        np.subtract(chain.position, target.position, out=self._offset)
+        mujoco.mju_mulQuat(self._turn, chain.quaternion, target.back)
         mujoco.mju_quat2Vel(self._rotation, self._turn, 1.0)
-        metres, angle = self._offset.dot(self._offset), self._rotation.dot(self._rotation)
-        cost = target.position_weight**2 * metres + target.rotation_length**2 * angle
-        return math.sqrt(metres), math.sqrt(angle), cost
+        return self._offset.dot(self._offset), self._rotation.dot(self._rotation)
 
-    def _linearise(self, target: Target, cost: float) -> Array:
-        """Set the Hessian of the placed state, and return the gradient."""
+    def _linearise(self, target: Target, cost: float) -> None:
+        """Set the Hessian and the gradient of the placed state."""
         jacobian = self._chain.jacobian()
-        if target.position_weight != 1.0:
-            jacobian[:3] *= target.position_weight
-            self._offset *= target.position_weight
-        jacobian[3:] *= target.rotation_length
-        self._rotation *= target.rotation_length
+        jacobian *= target.weights
+        self._error *= target.weights[:, 0]
         np.dot(jacobian.T, jacobian, out=self._hessian)
         self._diagonal += min(DAMPING * cost, DAMPING) + MIN_DAMPING
-        return -(self._error @ jacobian)
+        np.dot(self._error, jacobian, out=self._gradient)
 
-    def _minimise(self, gradient: Array, q: Array, trust: float) -> Array:
+    def _minimise(self, q: Array, trust: float) -> Array:
         """Return the step with the least linearised error inside limits and trust region."""
         # MuJoCo starts from what the result holds: without this, answers depend on the past.
         self._step.fill(0.0)
@@ -148,7 +175,7 @@ class Descent:
             self._factor,
             self._index,
             self._hessian,
-            gradient,
+            self._gradient,
             np.maximum(self._lower - q, -trust),
             np.minimum(self._upper - q, trust),
         )

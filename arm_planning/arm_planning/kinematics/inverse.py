@@ -19,7 +19,14 @@ from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.kinematics.chain import Chain
-from arm_planning.kinematics.descent import MAX_STEPS, Descent, DescentEnd, Target
+from arm_planning.kinematics.descent import (
+    HASTY,
+    MAX_STEPS,
+    PATIENT,
+    Descent,
+    DescentEnd,
+    target_of,
+)
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.kinematics.search import Orientation, Search
 from arm_planning.kinematics.shortfall import shortfall
@@ -53,6 +60,8 @@ STALE = 10
 """Solutions in a row that are not new, after which there are hardly any others."""
 ALIKE = 1e-2
 """Solutions whose joints all differ by less than this are one, in rad or m."""
+PLACE = np.array([[1.0], [1.0], [1.0], [0.0], [0.0], [0.0]])
+"""Weights of the position alone."""
 CLOSE_M = 1e-4
 """Distance from which a position is brought to the exact place; farther, it is out of reach."""
 
@@ -98,7 +107,8 @@ class InverseKinematics:
             raise PlanningError(ErrorCode.INVALID_LINK_NAME, message)
         self._names = tuple(names[index] for index in self._moving)
         self._chain = Chain(model.robot, self.tip, self._names, fixed)
-        lower, upper = self.group.lower[self._moving], self.group.upper[self._moving]
+        self._lowest, self._highest = self.group.lower, self.group.upper
+        lower, upper = self._lowest[self._moving], self._highest[self._moving]
         self.turning = np.array([model.robot.joint(name).type.turns for name in names])
         turning = self.turning[self._moving]
         self._lower, self._upper, self._turning = lower, upper, turning
@@ -269,7 +279,7 @@ class InverseKinematics:
         weight = NEAREST_WEIGHT if orientation is Orientation.NEAREST else 1.0
         timeout_s = _checked_timeout(timeout_s)
         return Search(
-            target=Target(position, quaternion, weight, length),
+            target=target_of(position, quaternion, length, weight),
             orientation=orientation,
             seed=self._checked_seed(seed),
             random_seed=random_seed,
@@ -287,13 +297,13 @@ class InverseKinematics:
                 f"a seed of group '{self.group.name}' has {len(names)} positions, for "
                 f"{listing(names)}; it has the shape {q.shape}",
             )
-        for name, position in zip(names, q.tolist(), strict=True):
-            if not math.isfinite(position):
-                raise PlanningError(
-                    ErrorCode.INVALID_ROBOT_STATE,
-                    f"the seed's position of joint '{name}' is not finite: {position}",
-                )
-        return np.minimum(np.maximum(q, self.group.lower), self.group.upper)
+        if not np.isfinite(q).all():
+            bad = int(np.isfinite(q).argmin())
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"the seed's position of joint '{names[bad]}' is not finite: {q[bad]}",
+            )
+        return np.minimum(np.maximum(q, self._lowest), self._highest)
 
     def _steps(self, position: Array, timeout_s: float) -> int:
         steps = max(MAX_STEPS, round(timeout_s * STEPS_PER_S))
@@ -319,13 +329,16 @@ class InverseKinematics:
         yield from self._starts.towards(search.target, search.random_seed)
 
     def _descend(self, search: Search, start: Array) -> DescentEnd:
-        outcome = self._descent.run(search.target, start, min(MAX_STEPS, search.steps))
+        nearest = search.orientation is Orientation.NEAREST
+        patience = PATIENT if nearest else HASTY
+        outcome = self._descent.run(search.target, start, min(MAX_STEPS, search.steps), patience)
         search.steps -= outcome.steps
-        if search.orientation is not Orientation.NEAREST or outcome.off_m > CLOSE_M:
+        if not nearest or outcome.off_m > CLOSE_M:
             return outcome
         # Brings the position, against which the orientation was weighed, to the exact place.
-        place = replace(search.target, position_weight=1.0, rotation_length=0.0)
-        return self._descent.run(place, outcome.q)
+        return self._descent.run(
+            replace(search.target, rotation_length=0.0, weights=PLACE), outcome.q
+        )
 
     def _beside_seed(self, moved: Array, seed: Array) -> Array:
         """Return the positions of all joints of the group, each on the turn next to the seed's."""
@@ -352,6 +365,9 @@ class InverseKinematics:
         return is_free
 
     def _none(self, search: Search) -> PlanningError:
+        if search.best is not None:
+            best = self._descent.run(search.target, search.best.q, patience=PATIENT)
+            search.best = best
         return PlanningError(
             ErrorCode.NO_IK_SOLUTION,
             shortfall(search, self.tip, self._names, self._lower, self._upper, self._chain),

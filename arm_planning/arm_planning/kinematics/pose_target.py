@@ -12,7 +12,7 @@ from arm_planning.errors import ErrorCode, PlanningError
 Array = NDArray[np.float64]
 
 UNIT_WITHIN = 1e-3
-"""How far a quaternion's length, or a product of a rotation's columns, may be off."""
+"""How far a quaternion's length, or a number of a rotation matrix, may be off."""
 
 
 def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
@@ -32,16 +32,16 @@ def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
     matrix = np.asarray(pose, dtype=float)
     if matrix.shape != (4, 4):
         raise _refused(f"a pose is a transform of shape (4, 4), not {matrix.shape}")
-    position, rotation = _checked_position(matrix[:3, 3].copy()), matrix[:3, :3]
+    position, rotation = _checked_position(matrix[:3, 3].copy()), matrix[:3, :3].reshape(9)
     if not np.isfinite(rotation).all():
         raise _refused("the target's rotation has a number that is not finite")
-    if np.abs(rotation.T @ rotation - np.eye(3)).max() > UNIT_WITHIN or (
-        np.linalg.det(rotation) < 0.0
-    ):
+    quaternion, back = np.empty(4), np.empty(9)
+    mujoco.mju_mat2Quat(quaternion, rotation)
+    # The matrix of a quaternion is a rotation; the given one is if it is the same.
+    mujoco.mju_quat2Mat(back, quaternion)
+    if np.abs(back - rotation).max() > UNIT_WITHIN:
         raise _refused("the target's rotation matrix is not orthonormal and right-handed")
-    quaternion = np.empty(4)
-    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).reshape(9))
-    return position, _checked_quaternion(quaternion)
+    return position, quaternion
 
 
 def _checked_position(position: Array) -> Array:

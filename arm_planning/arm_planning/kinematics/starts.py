@@ -37,19 +37,24 @@ class Starts:
         self._lower = np.where(np.isfinite(lower), lower, np.minimum(-reach, upper - 2.0 * reach))
         self._upper = np.where(np.isfinite(upper), upper, np.maximum(reach, lower + 2.0 * reach))
         self._states = self._sample(np.random.default_rng(0), SAMPLES)
-        self._positions, self._quaternions = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
+        self._positions, self._conjugates = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
         for row, state in enumerate(self._states):
             chain.place(state)
-            self._positions[row], self._quaternions[row] = chain.position, chain.quaternion
+            self._positions[row], self._conjugates[row] = chain.position, chain.quaternion
+        self._conjugates[:, 1:] *= -1.0
         self._squares = (self._positions**2).sum(axis=1)
 
     def towards(self, target: Target, seed: int) -> Iterator[Array]:
         """Yield starts without end, (n,) each; the same for the same target and seed."""
         # |p - t|^2 without |t|^2; 8 (1 - |q t|) is about the squared angle.
-        nearness = self._squares - 2.0 * (self._positions @ target.position)
+        nearness = self._squares - self._positions @ (2.0 * target.position)
         if target.rotation_length:
-            alike = np.abs(self._quaternions @ target.quaternion)
-            nearness -= 8.0 * target.rotation_length**2 * alike
+            alike = np.abs(self._conjugates @ (8.0 * target.rotation_length**2 * target.back))
+            nearness -= alike
+        # Most searches need one start, so the others are put in order later.
+        first = int(nearness.argmin())
+        yield self._states[first]
+        nearness[first] = math.inf
         near = np.argpartition(nearness, NEAREST)[:NEAREST]
         yield from self._states[near[np.argsort(nearness[near], kind="stable")]]
         random = np.random.default_rng(seed)
