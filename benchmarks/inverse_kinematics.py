@@ -1,8 +1,8 @@
 """Inverse kinematics of the myCobot 280 and of made-up arms of 4 to 7 joints, beside TRAC-IK.
 
 Random reachable poses, each from a random seed; both solvers get the same ones, in turns of 50,
-with 50 ms for each. A pose counts as found within 1e-4 m and 1e-3 rad, inside the limits to 1e-6 rad
-(TRAC-IK's Python package keeps limits as float32). The peer is only measured where it is installed:
+with 50 ms for each. A pose counts as found within 1e-4 m and 1e-3 rad, inside the limits to 1e-6
+rad (TRAC-IK's Python package keeps limits as float32). The peer is measured where it is installed:
 
     pip install pytracik==0.0.3
     python benchmarks/inverse_kinematics.py
