@@ -1,15 +1,14 @@
 """Tell setuptools which packages to build and which commands build them.
 
-Only the backend runs it (``pip install ./arm_interfaces``). The other metadata are in
+Only the backend runs it, as in ``pip install ./arm_interfaces``. The other metadata are in
 ``pyproject.toml``.
 """
 
-from pathlib import Path
-
 from interface_build import command, interface_package
+from interface_build.project import DEFINITIONS
 from setuptools import Extension, setup
 
-PACKAGES = interface_package.find_packages(Path(__file__).parent / "interfaces")
+PACKAGES = interface_package.find_packages(DEFINITIONS)
 
 setup(
     ext_modules=[Extension(package.extension_name, sources=[]) for package in PACKAGES],

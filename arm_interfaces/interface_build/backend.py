@@ -2,26 +2,20 @@
 
 import platform
 import sys
-import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 
 from setuptools import build_meta
 
 from interface_build.errors import BuildError
+from interface_build.project import read_project
 from interface_build.toolchain import find_toolchain
 
 build_sdist = build_meta.build_sdist
 get_requires_for_build_sdist = build_meta.get_requires_for_build_sdist
 prepare_metadata_for_build_wheel = build_meta.prepare_metadata_for_build_wheel
 
-_PROJECT = Path(__file__).parent.parent / "pyproject.toml"
 # The generators accept any EmPy, but the next major version may not run their templates.
 _BUILD_ONLY = ["empy>=4.2,<5"]
-_NOT_EDITABLE = (
-    "arm_interfaces cannot be installed editable, because its modules are compiled and not in the "
-    "source tree; install it without -e, and again after changing a definition"
-)
 
 _Settings = Mapping[str, str | list[str] | None] | None
 
@@ -33,9 +27,8 @@ def get_requires_for_build_wheel(config_settings: _Settings = None) -> list[str]
     same version, so one list serves both.
     """
     _check_machine()
-    project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
     own = build_meta.get_requires_for_build_wheel(config_settings)
-    return [*own, *_BUILD_ONLY, *project["dependencies"]]
+    return [*own, *_BUILD_ONLY, *read_project().dependencies]
 
 
 def build_wheel(
@@ -52,7 +45,7 @@ def build_wheel(
 
 def get_requires_for_build_editable(config_settings: _Settings = None) -> list[str]:
     """Refuse before anything is downloaded."""
-    raise SystemExit(_NOT_EDITABLE)
+    raise SystemExit(_not_editable())
 
 
 def build_editable(
@@ -61,14 +54,22 @@ def build_editable(
     metadata_directory: str | None = None,
 ) -> str:
     """Refuse; pip looks for this hook before it calls the one for its requirements."""
-    raise SystemExit(_NOT_EDITABLE)
+    raise SystemExit(_not_editable())
+
+
+def _not_editable() -> str:
+    """Say why an editable installation is refused."""
+    return (
+        f"{read_project().name} cannot be installed editable, because its modules are compiled and "
+        "not in the source tree; install it without -e, and again after changing a definition"
+    )
 
 
 def _check_machine() -> None:
     """Exit with one sentence if the ROS 2 wheels or the compilers are missing."""
     if sys.platform != "linux" or platform.machine() != "x86_64":
         raise SystemExit(
-            "arm_interfaces needs the ROS 2 wheels, which exist for Linux on x86_64 only; "
+            f"{read_project().name} needs the ROS 2 wheels, which exist for Linux on x86_64 only; "
             f"this is {sys.platform} on {platform.machine()}"
         )
     try:

@@ -10,10 +10,9 @@ from setuptools.command.egg_info import egg_info
 from interface_build import share_folder
 from interface_build.interface_package import InterfacePackage, find_packages
 from interface_build.progress import BuildProgress
+from interface_build.project import DEFINITIONS, read_project
 from interface_build.scratch import scratch_folder
 from interface_build.toolchain import find_toolchain
-
-_DEFINITIONS = Path(__file__).parent.parent / "interfaces"
 
 
 class Build(build):
@@ -47,7 +46,7 @@ class BuildInterfaces(build_ext):
         Raises:
             BuildError: a tool is missing or failed.
         """
-        packages = find_packages(_DEFINITIONS)
+        packages = find_packages(DEFINITIONS)
         _build_packages(packages, Path(self.build_lib))
         markers = scratch_folder("markers")
         self.distribution.data_files = [
@@ -64,7 +63,7 @@ def _build_packages(packages: tuple[InterfacePackage, ...], target: Path) -> Non
     from interface_build.ros_prefix import find_ros_prefix
     from interface_build.work_folder import WorkFolder
 
-    progress = BuildProgress(sys.stderr)
+    progress = BuildProgress(read_project().name, sys.stderr)
     toolchain = find_toolchain()
     prefix = find_ros_prefix()
     count = sum(len(package.interfaces) for package in packages)

@@ -40,7 +40,10 @@ _TYPE_SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspec
 
 
 def describe(package: InterfacePackage, work: WorkFolder, prefix: RosPrefix) -> None:
-    """Write the IDL files and the type descriptions, which all other steps need."""
+    """Write the IDL files and the type descriptions, which all other steps need.
+
+    The packages that this one uses must be described.
+    """
     _install_caches()
     work.create()
     with contextlib.redirect_stdout(io.StringIO()):
@@ -48,7 +51,11 @@ def describe(package: InterfacePackage, work: WorkFolder, prefix: RosPrefix) -> 
             convert = _CONVERTERS[interface.kind]
             folder = work.generated / interface.kind
             convert(package.root, package.name, Path(interface.source), folder)
-        includes = [f"{name}:{path}" for name, path in prefix.description_folders().items()]
+        described = {
+            **prefix.description_folders(),
+            **{name: work.beside(name).generated for name in package.uses},
+        }
+        includes = [f"{name}:{path}" for name, path in described.items()]
         arguments = _arguments(package, work, work.generated)
         arguments["include_paths"] = includes
         path = _write_arguments(work, "rosidl_generator_type_description", arguments)

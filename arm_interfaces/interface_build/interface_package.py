@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 KINDS = ("msg", "srv", "action")
 
@@ -36,11 +37,19 @@ class Interface:
 
 @dataclass(frozen=True, slots=True)
 class InterfacePackage:
-    """A ROS package that contains only definitions."""
+    """A ROS package that contains only definitions.
+
+    Attributes:
+        name: the package's name.
+        root: its folder in the source tree.
+        interfaces: its definitions, messages first.
+        uses: the packages of the same source tree that its definitions use.
+    """
 
     name: str
     root: Path
     interfaces: tuple[Interface, ...]
+    uses: tuple[str, ...]
 
     @property
     def extension_name(self) -> str:
@@ -60,8 +69,23 @@ def find_packages(folder: Path) -> tuple[InterfacePackage, ...]:
     A large package that started last would leave the other cores idle at the end.
     """
     roots = sorted(path.parent.resolve() for path in folder.glob("*/package.xml"))
-    packages = [InterfacePackage(root.name, root, _find_interfaces(root)) for root in roots]
+    names = {root.name for root in roots}
+    packages = [
+        InterfacePackage(
+            name=root.name,
+            root=root,
+            interfaces=_find_interfaces(root),
+            uses=tuple(name for name in _find_depends(root) if name in names),
+        )
+        for root in roots
+    ]
     return tuple(sorted(packages, key=lambda package: -len(package.interfaces)))
+
+
+def _find_depends(root: Path) -> list[str]:
+    """List the packages that the manifest names."""
+    manifest = ElementTree.parse(root / "package.xml")
+    return [name for depend in manifest.iter("depend") if (name := depend.text)]
 
 
 def _find_interfaces(root: Path) -> tuple[Interface, ...]:

@@ -70,13 +70,15 @@ def link_libraries(
 ) -> None:
     """Compile the extension module and link all three libraries into the folder ``target``.
 
+    The packages that this one uses must be linked, in folders beside ``target``.
+
     Raises:
         CompileError: a linker run failed.
     """
     target.mkdir(parents=True, exist_ok=True)
     names = LibraryNames(package.name)
     objects = [path for unit in find_units(package, work) for path in unit.object_files]
-    toolchain.link(objects, target / names.code, _code_flags(names, prefix))
+    toolchain.link(objects, target / names.code, _code_flags(package, target, prefix))
     toolchain.link([], target / names.stub, _flags(names.stub, target, [names.code]))
 
     extension = work.objects / "extension.o"
@@ -85,19 +87,21 @@ def link_libraries(
     toolchain.link([extension], target / names.extension, flags)
 
 
-def _code_flags(names: LibraryNames, prefix: RosPrefix) -> list[str]:
-    """Return flags that link the wheels' libraries that the objects use."""
+def _code_flags(package: InterfacePackage, target: Path, prefix: RosPrefix) -> list[str]:
+    """Return flags that link the libraries of the wheels and of this build that the objects use."""
     folder = prefix.library_folder
     messages = sorted(
         path.name for path in folder.glob("lib*__rosidl_*.so") if not path.stem.endswith("_cpp")
     )
     return [
-        f"-Wl,-soname,{names.code}",
+        f"-Wl,-soname,{LibraryNames(package.name).code}",
         f"-L{folder}",
         "-Wl,--as-needed",
         *(f"-l:{name}" for name in messages),
         *(f"-l{name}" for name in _RUNTIME_LIBRARIES),
         f"-Wl,-rpath,{_ROS_LIBRARIES_FROM_PACKAGE}",
+        *(str(target.parent / name / LibraryNames(name).code) for name in package.uses),
+        *(f"-Wl,-rpath,$ORIGIN/../{name}" for name in package.uses),
     ]
 
 

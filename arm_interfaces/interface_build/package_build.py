@@ -32,6 +32,21 @@ class BuildStep:
 
 
 @dataclass(frozen=True, slots=True)
+class Stage:
+    """Steps of one package that may run in parallel.
+
+    Attributes:
+        key: the package and the name of the stage.
+        steps: the steps.
+        after: keys of the stages that must be over before this one starts.
+    """
+
+    key: tuple[str, str]
+    steps: tuple[BuildStep, ...]
+    after: frozenset[tuple[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
 class PackageBuild:
     """The inputs for the build of one package; sent to the worker processes.
 
@@ -49,21 +64,32 @@ class PackageBuild:
     toolchain: Toolchain
     target: Path
 
-    def stages(self) -> list[list[BuildStep]]:
-        """Return the stages; the steps of a stage may run in parallel."""
+    def stages(self) -> list[Stage]:
+        """Return the stages with what each needs: descriptions, headers and libraries."""
         name = self.package.name
-        return [
-            [BuildStep(f"described {name}", self._describe)],
-            [
-                BuildStep(f"generated {name} {label}", functools.partial(self._generate, label))
-                for label in generation.GENERATORS
-            ],
-            [
-                BuildStep(f"compiled {name} {unit.name}", functools.partial(self._compile, unit))
-                for unit in find_units(self.package, self.work)
-            ],
-            [BuildStep(f"finished {name}", self._finish)],
+        describe = [BuildStep(f"described {name}", self._describe)]
+        generate = [
+            BuildStep(f"generated {name} {label}", functools.partial(self._generate, label))
+            for label in generation.GENERATORS
         ]
+        compile_units = [
+            BuildStep(f"compiled {name} {unit.name}", functools.partial(self._compile, unit))
+            for unit in find_units(self.package, self.work)
+        ]
+        finish = [BuildStep(f"finished {name}", self._finish)]
+        return [
+            self._stage("describe", describe, used="describe"),
+            self._stage("generate", generate, own="describe"),
+            self._stage("compile", compile_units, own="generate", used="generate"),
+            self._stage("finish", finish, own="compile", used="finish"),
+        ]
+
+    def _stage(self, name: str, steps: list[BuildStep], own: str = "", used: str = "") -> Stage:
+        """Return a stage that follows one of this package and one of each package that it uses."""
+        after = {(package, used) for package in self.package.uses if used}
+        if own:
+            after.add((self.package.name, own))
+        return Stage((self.package.name, name), tuple(steps), frozenset(after))
 
     @property
     def _includes(self) -> tuple[Path, ...]:

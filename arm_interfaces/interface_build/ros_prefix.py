@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from interface_build.errors import MissingRosError
+from interface_build.project import read_project
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,6 @@ def find_ros_prefix() -> RosPrefix:
             if headers.is_dir() and templates.is_dir():
                 return RosPrefix(folder)
     raise MissingRosError(
-        "arm_interfaces needs the ROS 2 wheels to build, but they were not found; "
+        f"{read_project().name} needs the ROS 2 wheels to build, but they were not found; "
         "install it with 'pip install' and build isolation, which downloads them"
     )

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from interface_build.errors import CompileError, MissingToolError
+from interface_build.project import read_project
 
 _INSTALL_HINT = "on Debian and Ubuntu: apt install gcc g++ python3-dev"
 _FLAGS = ("-fPIC", "-w", "-DNDEBUG")
@@ -69,7 +70,7 @@ def find_toolchain() -> Toolchain:
         missing.append(f"Python.h (looked for {python_header()})")
     if missing:
         raise MissingToolError(
-            f"arm_interfaces compiles ROS 2 messages and lacks {' and '.join(missing)}; "
+            f"{read_project().name} compiles ROS 2 messages and lacks {' and '.join(missing)}; "
             f"{_INSTALL_HINT}"
         )
     return toolchain

@@ -44,6 +44,10 @@ class WorkFolder:
         """The include folders that precede the wheels'."""
         return self.generated.parent, self.introspection.parent
 
+    def beside(self, package: str) -> "WorkFolder":
+        """Return the folder of another package of the same build."""
+        return WorkFolder(self.root, package)
+
     def create(self) -> None:
         """Make all folders."""
         for folder in (self.generated, self.introspection, self.arguments, self.objects):
