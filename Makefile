@@ -6,7 +6,7 @@ RUN := $(PYTHON) -m
 .PHONY: install check docs format test
 
 install:
-	$(RUN) pip install ./arm_interfaces '.[test,dev,docs]'
+	$(RUN) pip install ./arm_interfaces ./arm_moveit_interfaces '.[test,dev,docs]'
 
 check:
 	$(RUN) ruff check .

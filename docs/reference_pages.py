@@ -37,7 +37,7 @@ from originals_table import table_page
 ROOT = Path(__file__).parents[1]
 RESULTS = "<!-- benchmarks/RESULTS.md -->"
 WORKAROUNDS = "<!-- arm_node.workarounds -->"
-INTERFACES = ROOT / "arm_interfaces" / "interfaces"
+INTERFACES = [ROOT / name / "interfaces" for name in ("arm_interfaces", "arm_moveit_interfaces")]
 BY_JOINT = {"joints": ("<joint>",), "dof_names": ("<dof>",)}
 """Parameters whose values are part of other parameters' names."""
 LAUNCH_FILES = (
@@ -221,7 +221,9 @@ def _docstring(documented: Any) -> str:
 
 def message_pages() -> Pages:
     """Write a page for each interface package that the suite compiles."""
-    for package in sorted(path for path in INTERFACES.iterdir() if path.is_dir()):
+    for package in sorted(
+        path.parent for folder in INTERFACES for path in folder.glob("*/package.xml")
+    ):
         lines = [f"# {package.name}", ""]
         for suffix in ("msg", "srv", "action"):
             for definition in sorted(package.rglob(f"*.{suffix}")):

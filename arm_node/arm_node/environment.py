@@ -18,6 +18,9 @@ INTERFACE_PACKAGES = (
 )
 """Interface packages that the rclpy wheels lack and the distribution arm-interfaces provides."""
 
+PLANNING_PACKAGES = ("moveit_msgs", "octomap_msgs", "object_recognition_msgs")
+"""Those of motion planning, which the distribution arm-moveit-interfaces provides."""
+
 MIDDLEWARE = "rmw_fastrtps_cpp"
 PACKAGES = Path("share", "ament_index", "resource_index", "packages")
 """Where a prefix has a file for each of its packages."""
@@ -41,15 +44,22 @@ class InvalidDomainError(UnusableEnvironmentError):
     """ROS_DOMAIN_ID is not a valid domain."""
 
 
-def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
+def prepare_environment(
+    environ: MutableMapping[str, str] = os.environ, packages: Sequence[str] = ()
+) -> None:
     """Make rclpy usable in this process, however it was started.
 
     Must run before rclpy is imported. Adds this Python's prefix to AMENT_PREFIX_PATH, which the
     wheels do not set and ament_index needs for every look-up. Sets ROS_LOG_DIR if the process has
     no HOME, because rclpy would not start. Removes files that would hang rclpy; see `torn_ports`.
 
+    Args:
+        environ: the process's environment.
+        packages: interface packages that the process needs besides `INTERFACE_PACKAGES`, such as
+            `PLANNING_PACKAGES`.
+
     Raises:
-        MissingInterfacesError: an interface package of arm-interfaces is not installed.
+        MissingInterfacesError: an interface package is not installed.
         InvalidDomainError: ROS_DOMAIN_ID is not a number from 0 to 232.
         MissingMiddlewareError: the package that RMW_IMPLEMENTATION names is not installed.
     """
@@ -61,16 +71,28 @@ def prepare_environment(environ: MutableMapping[str, str] = os.environ) -> None:
     _check_middleware(environ.get("RMW_IMPLEMENTATION", ""), prefixes)
     if "HOME" not in environ and "ROS_LOG_DIR" not in environ and "ROS_HOME" not in environ:
         environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir()) / f"ros-log-{os.getuid()}")
-    missing = [name for name in INTERFACE_PACKAGES if importlib.util.find_spec(name) is None]
+    check_interfaces((*INTERFACE_PACKAGES, *packages))
+    remove_torn_ports()
+    import_messages_lazily()
+
+
+def check_interfaces(packages: Sequence[str]) -> None:
+    """Check that interface packages are installed.
+
+    Raises:
+        MissingInterfacesError: one is not installed; the message names the pip command.
+    """
+    missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
+        planning = {name in PLANNING_PACKAGES for name in missing}
+        folders = ["./arm_interfaces"] * (False in planning)
+        folders += ["./arm_moveit_interfaces"] * (True in planning)
         raise MissingInterfacesError(
             f"the ROS interface package{'s' if len(missing) > 1 else ''} {', '.join(missing)} "
             f"{'are' if len(missing) > 1 else 'is'} not installed for {sys.executable}; "
-            "run 'pip install ./arm_interfaces' from the arm suite's folder, "
+            f"run 'pip install {' '.join(folders)}' from the arm suite's folder, "
             "or source a ROS 2 Jazzy that has them"
         )
-    remove_torn_ports()
-    import_messages_lazily()
 
 
 def _check_domain(text: str) -> None:

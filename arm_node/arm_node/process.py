@@ -161,6 +161,7 @@ def run_process(
     application: Application,
     argv: Sequence[str] | None = None,
     user_errors: tuple[type[Exception], ...] = (),
+    packages: Sequence[str] = (),
 ) -> int:
     """Run an application until SIGINT, SIGTERM, SIGHUP or its own `stop`; return the exit code.
 
@@ -173,6 +174,7 @@ def run_process(
         user_errors: errors with messages for the user: one FATAL line, no traceback, exit code 1.
             Refusals by rclpy (a parameter's type, a name, a topic with two types) are handled the
             same way.
+        packages: further interface packages that it needs, see `prepare_environment`.
     """
     # Objects made at the start stay alive: collecting them repeatedly would cost start-up time, and
     # later cause a pause in the middle of a control period.
@@ -180,7 +182,7 @@ def run_process(
     # Before the imports below, which take some tenths of a second, so that Ctrl-C works now.
     with _signals_set(StopEvent()) as stop:
         try:
-            prepare_environment()
+            prepare_environment(packages=packages)
             use_local_profile(os.environ)
         except UnusableEnvironmentError as error:
             sys.stderr.write(f"{printable_message(str(error))}\n")

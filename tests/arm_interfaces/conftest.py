@@ -18,9 +18,11 @@ import pytest
 import yaml
 
 FOLDER = Path(__file__).parent
-EXPECTED_TYPES: dict[str, dict[str, Any]] = yaml.safe_load(
-    (FOLDER / "expected_types.yaml").read_text(encoding="utf-8")
-)
+EXPECTED_TYPES: dict[str, dict[str, Any]] = {
+    name: record
+    for file in ("expected_types.yaml", "expected_moveit_types.yaml")
+    for name, record in yaml.safe_load((FOLDER / file).read_text(encoding="utf-8")).items()
+}
 WAIT_TIMEOUT_S = 30.0
 
 

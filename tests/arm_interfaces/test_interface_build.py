@@ -1,5 +1,6 @@
 """The parts of the build that can be tried without building."""
 
+import functools
 import importlib
 import io
 import subprocess
@@ -10,13 +11,14 @@ from typing import Any
 
 import pytest
 
-DISTRIBUTION = Path(__file__).parents[2] / "arm_interfaces"
+ROOT = Path(__file__).parents[2]
+DISTRIBUTIONS = [ROOT / "arm_interfaces", ROOT / "arm_moveit_interfaces"]
 
 
 @pytest.fixture
 def build_module(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Import a module of the build, which is never installed."""
-    monkeypatch.syspath_prepend(str(DISTRIBUTION))
+    monkeypatch.syspath_prepend(str(DISTRIBUTIONS[0]))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
     def load(name: str) -> ModuleType:
@@ -25,21 +27,107 @@ def build_module(monkeypatch: pytest.MonkeyPatch) -> Any:
     return load
 
 
+@pytest.fixture(params=DISTRIBUTIONS, ids=lambda folder: folder.name)
+def distribution(request: pytest.FixtureRequest) -> Path:
+    """A distribution of interface packages."""
+    return request.param
+
+
 @pytest.fixture
-def packages(build_module: Any) -> Any:
-    """The packages of the source tree."""
-    return build_module("interface_package").find_packages(DISTRIBUTION / "interfaces")
+def packages(build_module: Any, distribution: Path) -> Any:
+    """The packages of a distribution."""
+    return build_module("interface_package").find_packages(distribution / "interfaces")
 
 
 def test_source_tree_holds_the_recorded_types(
-    packages: Any, expected_types: dict[str, Any]
+    build_module: Any, expected_types: dict[str, Any]
 ) -> None:
+    find_packages = build_module("interface_package").find_packages
     found = {
         f"{package.name}/{interface.kind}/{interface.name}"
-        for package in packages
+        for distribution in DISTRIBUTIONS
+        for package in find_packages(distribution / "interfaces")
         for interface in package.interfaces
     }
     assert found == set(expected_types)
+
+
+def test_a_package_knows_those_of_its_distribution_that_it_uses(build_module: Any) -> None:
+    found = build_module("interface_package").find_packages(DISTRIBUTIONS[1] / "interfaces")
+    uses = {package.name: set(package.uses) for package in found}
+    assert uses["moveit_msgs"] == {"object_recognition_msgs", "octomap_msgs"}
+    assert uses["octomap_msgs"] == set()
+
+
+def test_every_distribution_is_built_by_the_same_code_under_its_own_name(
+    distribution: Path,
+) -> None:
+    code = "from interface_build.project import *; print(DEFINITIONS, read_project().name)"
+    found = subprocess.run(
+        [sys.executable, "-B", "-c", code],
+        cwd=distribution,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    assert found.split() == [str(distribution / "interfaces"), distribution.name]
+    backend = distribution / "interface_build" / "backend.py"
+    assert backend.samefile(DISTRIBUTIONS[0] / "interface_build" / "backend.py")
+
+
+class RecordedBuild:
+    """A build whose steps write their names to a file."""
+
+    def __init__(self, package_build: Any, file: Path, package: str, uses: str = "") -> None:
+        self.stage, self.step = package_build.Stage, package_build.BuildStep
+        self.file, self.package, self.uses = file, package, uses
+
+    def stages(self) -> list[Any]:
+        """Return two stages; the first follows that of another package."""
+        first, second = (self.package, "first"), (self.package, "second")
+        after = frozenset({(self.uses, "first")} if self.uses else ())
+        return [
+            self.stage(first, (self._step("first"),), after),
+            self.stage(second, (self._step("a"), self._step("b")), frozenset({first})),
+        ]
+
+    def _step(self, name: str) -> Any:
+        return self.step(name, functools.partial(self._write, f"{self.package} {name}\n"))
+
+    def _write(self, line: str) -> None:
+        with self.file.open("a") as file:
+            file.write(line)
+
+
+def test_a_stage_starts_when_those_that_it_follows_are_over(
+    build_module: Any, tmp_path: Path
+) -> None:
+    package_build = build_module("package_build")
+    file = tmp_path / "order"
+    builds = [
+        RecordedBuild(package_build, file, "user", uses="used"),
+        RecordedBuild(package_build, file, "used"),
+    ]
+    reported: list[tuple[int, int]] = []
+    build_module("parallel_build").build_all(
+        builds, lambda _label, done, total: reported.append((done, total))
+    )
+    order = file.read_text().splitlines()
+    steps = [f"{package} {step}" for package in ("used", "user") for step in ("a", "b", "first")]
+    assert sorted(order) == steps
+    assert order[0] == "used first"
+    assert order.index("user first") < min(order.index("user a"), order.index("user b"))
+    assert reported == [(done, 6) for done in range(1, 7)]
+
+
+def test_packages_that_use_each_other_are_named(build_module: Any, tmp_path: Path) -> None:
+    package_build = build_module("package_build")
+    builds = [
+        RecordedBuild(package_build, tmp_path / "order", "one", uses="other"),
+        RecordedBuild(package_build, tmp_path / "order", "other", uses="one"),
+    ]
+    with pytest.raises(build_module("errors").BuildError, match="in a circle: one, other"):
+        build_module("parallel_build").build_all(builds, lambda *_: None)
 
 
 def test_largest_package_is_built_first(packages: Any) -> None:
@@ -101,7 +189,7 @@ def test_compiler_error_is_shown(build_module: Any, tmp_path: Path) -> None:
 
 def test_progress_tells_how_far_the_build_is(build_module: Any) -> None:
     stream = io.StringIO()
-    build_module("progress").BuildProgress(stream).report("linked x", 3, 4)
+    build_module("progress").BuildProgress("arm_interfaces", stream).report("linked x", 3, 4)
     assert stream.getvalue() == "arm_interfaces: [ 75 %] linked x\n"
 
 
@@ -126,6 +214,48 @@ def test_a_lazy_package_imports_a_class_on_its_first_use(
     assert "lazy_example._second" not in sys.modules
     with pytest.raises(AttributeError, match=r"'lazy_example' has no attribute 'Third'"):
         _ = example.Third
+
+
+def test_templates_read_once_give_the_same_text(build_module: Any) -> None:
+    code = """
+import em, io
+from interface_build import template_cache
+template = '@[for n in names]@[if n == "b"]second@[else]other@[end if]\\n@[end for]@{m = 2}@(m)'
+def expand(names):
+    output = io.StringIO()
+    interpreter = em.Interpreter(
+        config=em.Configuration(defaultStdout=output, useProxy=True), dispatcher=False
+    )
+    interpreter.string(template, locals={"names": names})
+    text = output.getvalue()
+    interpreter.shutdown()
+    return text
+plain = expand("ab"), expand("bc")
+template_cache.install()
+assert (expand("ab"), expand("bc"), expand("ab")) == (*plain, plain[0]), plain
+print(plain[1])
+"""
+    found = subprocess.run(
+        [sys.executable, "-B", "-c", code],
+        cwd=DISTRIBUTIONS[0],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    assert found == "second\nother\n2\n"
+
+
+def test_messages_of_one_package_load_those_of_the_others() -> None:
+    code = (
+        "from moveit_msgs.msg import CollisionObject; "
+        "from rclpy.serialization import deserialize_message, serialize_message; "
+        "one = CollisionObject(id='box'); one.type.key = 'crate'; "
+        "print(deserialize_message(serialize_message(one), CollisionObject).type.key)"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    ).stdout
+    assert found == "crate\n"
 
 
 def test_an_installed_package_imports_only_what_is_used() -> None:

@@ -16,6 +16,9 @@ PACKAGES = [
     "composition_interfaces",
     "pal_statistics_msgs",
     "simulation_interfaces",
+    "moveit_msgs",
+    "object_recognition_msgs",
+    "octomap_msgs",
 ]
 
 

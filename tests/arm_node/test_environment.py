@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from arm_node.environment import (
+    PLANNING_PACKAGES,
     InvalidDomainError,
     MissingInterfacesError,
     MissingMiddlewareError,
@@ -38,6 +39,22 @@ def test_a_missing_interface_package_is_named_with_the_fix(monkeypatch):
     )
     with pytest.raises(MissingInterfacesError, match=r"tf2_msgs is not.*pip install"):
         prepare_environment({"HOME": "/home/me"})
+
+
+def test_further_interface_packages_are_named_with_their_own_fix(monkeypatch):
+    found = importlib.util.find_spec
+    hidden = {"moveit_msgs"}
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name in hidden else found(name)
+    )
+    prepare_environment({"HOME": "/home/me"})
+    with pytest.raises(MissingInterfacesError) as missing:
+        prepare_environment({"HOME": "/home/me"}, PLANNING_PACKAGES)
+    assert "package moveit_msgs is not" in str(missing.value)
+    assert "'pip install ./arm_moveit_interfaces'" in str(missing.value)
+    hidden.add("tf2_msgs")
+    with pytest.raises(MissingInterfacesError, match=r"\./arm_interfaces \./arm_moveit_interfaces"):
+        prepare_environment({"HOME": "/home/me"}, PLANNING_PACKAGES)
 
 
 @pytest.mark.parametrize("text", ["abc", "-1", "233", "1e1", "0x5", "1.0", "\u0663", "4294967296"])

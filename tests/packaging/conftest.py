@@ -170,19 +170,23 @@ def project() -> Project:
 
 @pytest.fixture(scope="session")
 def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the source archives of both distributions, and the suite's wheel.
+    """A folder with the source archives of all distributions, and the suite's wheel.
 
     The wheel is built from its archive, and each in an environment of its own, as for an index.
     """
     folder = tmp_path_factory.mktemp("distributions")
     sources = copy_sources(folder / "sources")
-    interfaces = folder / "interfaces"
-    shutil.copytree(ROOT / "arm_interfaces", interfaces, ignore=shutil.ignore_patterns("build"))
     build = [sys.executable, "-m", "build", "--outdir", folder / "dist"]
     run([*build, sources.root], folder, bare())
-    run([*build, "--sdist", interfaces], folder, bare())
+    for name in ("arm_interfaces", "arm_moveit_interfaces"):
+        left_out = shutil.ignore_patterns("build")
+        # The second has links to the first.
+        shutil.copytree(ROOT / name, folder / "interfaces" / name, symlinks=True, ignore=left_out)
+    for interfaces in sorted((folder / "interfaces").iterdir()):
+        run([*build, "--sdist", interfaces], folder, bare())
     # What is installed from the wheel must not need them.
     shutil.rmtree(sources.root)
+    shutil.rmtree(folder / "interfaces")
     return folder / "dist"
 
 

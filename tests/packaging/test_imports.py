@@ -16,7 +16,8 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-INTERFACES = tomllib.loads((ROOT / "arm_interfaces/pyproject.toml").read_text())["project"]
+INTERFACES = {"interfaces": "arm_interfaces", "planning": "arm_moveit_interfaces"}
+"""The folder of the distribution that an extra names."""
 WHEEL = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
 PRODUCT = [ROOT / path for path in WHEEL["packages"]]
 BESIDE = [ROOT / folder for folder in ("tests", "benchmarks", "tools", "docs", "examples")]
@@ -86,7 +87,7 @@ def provided_by(module: str) -> set[str]:
 
 def is_ros(name: str) -> bool:
     # A ROS distribution's packages come together, with the pinned ones or with a ROS installation.
-    return name.startswith(("ros-", "arm-interfaces"))
+    return name.startswith(("ros-", "arm-interfaces", "arm-moveit-interfaces"))
 
 
 def undeclared(modules: set[str], declared: set[str]) -> set[str]:
@@ -162,8 +163,18 @@ def test_the_manual_says_what_each_dependency_is_for():
     assert declared - named == set()
 
 
-def test_the_extra_names_the_interfaces_of_this_checkout():
-    assert EXTRAS["interfaces"] == [f"{INTERFACES['name']}=={INTERFACES['version']}"]
+@pytest.mark.parametrize(("extra", "folder"), INTERFACES.items())
+def test_an_extra_names_the_interfaces_of_this_checkout(extra: str, folder: str):
+    project = tomllib.loads((ROOT / folder / "pyproject.toml").read_text())["project"]
+    assert EXTRAS[extra] == [f"{project['name']}=={project['version']}"]
+    assert canonicalize_name(folder) == project["name"]
+
+
+def test_the_interfaces_are_bound_to_the_same_wheels_as_the_suite():
+    bound = {need for need in PROJECT["project"]["dependencies"] if need.startswith("ros-")}
+    for folder in INTERFACES.values():
+        needs = tomllib.loads((ROOT / folder / "pyproject.toml").read_text())["project"]
+        assert bound <= set(needs["dependencies"])
 
 
 @pytest.fixture(scope="module")

@@ -49,6 +49,12 @@ SAMPLES = {
     "pal_statistics_msgs": ("pal_statistics_msgs.msg", "Statistics"),
 }
 """One type of each interface package that is missing in the ROS wheels."""
+PLANNING_SAMPLES = {
+    "moveit_msgs": ("moveit_msgs.msg", "PlanningScene"),
+    "octomap_msgs": ("octomap_msgs.msg", "Octomap"),
+    "object_recognition_msgs": ("object_recognition_msgs.msg", "ObjectType"),
+}
+"""The same of those that only motion planning needs."""
 COMPILERS = (("CC", "gcc", "part.c"), ("CXX", "g++", "part.cpp"))
 INSTALL_COMPILERS = (
     "needed only to reinstall arm_interfaces; on Debian and Ubuntu: apt install gcc g++ python3-dev"
@@ -177,16 +183,30 @@ def check_wheels(path: Sequence[str] | None = None) -> Diagnosis:
 
 def check_interfaces(environ: Mapping[str, str]) -> Diagnosis:
     """Load a type of each interface package with its compiled part, in a child process."""
-    name = "arm_interfaces"
-    samples = [word for sample in SAMPLES.values() for word in sample]
-    trial = try_python(["-c", IMPORT_INTERFACES, *samples], environ)
+    return _check_samples("arm_interfaces", SAMPLES, environ)
+
+
+def check_planning_interfaces(environ: Mapping[str, str]) -> Diagnosis:
+    """Load those of motion planning likewise; the suite does without them otherwise."""
+    name = "arm_moveit_interfaces"
+    find = f"from importlib.util import find_spec as f; print(*map(f, {tuple(PLANNING_SAMPLES)!r}))"
+    if set(try_python(["-c", find], environ).out.split()) == {"None"}:
+        return Diagnosis.ok(name, "not installed; only motion planning needs it")
+    return _check_samples(name, PLANNING_SAMPLES, environ)
+
+
+def _check_samples(
+    name: str, samples: Mapping[str, tuple[str, str]], environ: Mapping[str, str]
+) -> Diagnosis:
+    words = [word for sample in samples.values() for word in sample]
+    trial = try_python(["-c", IMPORT_INTERFACES, *words], environ)
     if not trial.worked:
         return Diagnosis.error(
             name,
             f"the interface packages do not load: {trial.complaint}",
-            "pip install ./arm_interfaces from the arm suite's folder; it compiles for a minute",
+            f"pip install ./{name} from the arm suite's folder; it compiles for a minute",
         )
-    return Diagnosis.ok(name, f"{', '.join(SAMPLES)} load")
+    return Diagnosis.ok(name, f"{', '.join(samples)} load")
 
 
 def check_compilers(environ: Mapping[str, str]) -> Diagnosis:

@@ -28,7 +28,7 @@ KINDS = (
 )
 NOT_SEARCHED = ("build", "install", "log", "node_modules")
 IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE")
-SUITE = ("arm-suite", "arm-interfaces")
+SUITE = ("arm-suite", "arm-interfaces", "arm-moveit-interfaces")
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,10 @@ import pytest
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.installation import (
+    PLANNING_SAMPLES,
     check_compilers,
     check_interfaces,
+    check_planning_interfaces,
     check_python,
     check_rclpy,
     check_rendering,
@@ -136,6 +138,27 @@ def test_an_interface_package_that_does_not_load_is_an_error(shadow):
     assert finding.severity is Severity.ERROR
     assert "No module named 'control_msgs.msg'" in finding.sentence
     assert "pip install ./arm_interfaces" in finding.fix
+
+
+def test_the_interface_packages_of_motion_planning_load(environ):
+    finding = check_planning_interfaces(environ)
+    assert finding.severity is Severity.OK, finding
+    assert "moveit_msgs" in finding.sentence
+
+
+def test_one_of_motion_planning_that_does_not_load_is_an_error(shadow):
+    finding = check_planning_interfaces(shadow("moveit_msgs", ""))
+    assert finding.severity is Severity.ERROR
+    assert "pip install ./arm_moveit_interfaces" in finding.fix
+
+
+def test_without_those_of_motion_planning_all_else_works(shadow):
+    hide = "import sys; sys.modules.update(dict.fromkeys(" + repr(list(PLANNING_SAMPLES)) + "))"
+    environ = shadow("hidden", "")
+    Path(environ["PYTHONPATH"], "sitecustomize.py").write_text(hide)
+    finding = check_planning_interfaces(environ)
+    assert finding.severity is Severity.OK
+    assert "only motion planning needs it" in finding.sentence
 
 
 def test_the_compilers_work(environ):
