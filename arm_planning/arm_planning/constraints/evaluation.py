@@ -21,6 +21,7 @@ from arm_planning.constraints.constraints import (
     PositionConstraint,
 )
 from arm_planning.constraints.regions import describe_shape, distance_outside, local_point
+from arm_planning.constraints.tolerances import tightened
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 
 Array = NDArray[np.float64]
@@ -75,6 +76,7 @@ class ConstraintEvaluator:
         pose: LinkPose,
     ) -> None:
         self.constraints = constraints
+        self._model, self._group, self._positions = model, group, positions
         self._joints = JointReader(model, group, positions)
         self._pose = pose
 
@@ -115,6 +117,16 @@ class ConstraintEvaluator:
             tolerances = np.array(each.tolerances)
             parts.extend((error - np.clip(error, -tolerances, tolerances)).tolist())
         return np.array(parts)
+
+    def tightened(self, share: float) -> "ConstraintEvaluator":
+        """Return an evaluator of the same constraints with a share of their tolerances."""
+        return ConstraintEvaluator(
+            tightened(self.constraints, share),
+            self._model,
+            self._group,
+            self._positions,
+            self._pose,
+        )
 
     def _joint_residual(self, each: JointConstraint, q: Array) -> float:
         difference = self._joints.difference(each, q)

@@ -1,0 +1,279 @@
+"""States of a group that satisfy a goal: free, within the limits, near the start first."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_planning.constraints.constraints import Constraints
+from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
+from arm_planning.constraints.joint_goals import snap_to_limits
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.planners.goal_poses import poses_of
+from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
+from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
+
+Array = NDArray[np.float64]
+
+MOST = 8
+"""Goal states to choose from."""
+SAMPLES = 64
+"""Joint positions, or poses, that are drawn for a goal whose middle cannot be reached."""
+ALIKE = 1e-2
+"""Goal states that differ by less in each joint are one, in rad or m."""
+SLACK = 2e-5
+"""How much inverse kinematics may miss a tolerance, rad or m."""
+FULL_TURN = 2.0 * math.pi
+
+
+class Inverse(Protocol):
+    """Inverse kinematics of a group, for any of its links."""
+
+    def __call__(
+        self, link: str, pose: Array, seed: Array, *, most: int, random_seed: int, any_turn: bool
+    ) -> Sequence[Array]:
+        """Return positions, (n,), within the limits that bring a link to a pose.
+
+        Args:
+            link: the link.
+            pose: its pose in the planning frame, (4, 4).
+            seed: where to start, (n,).
+            most: number of different solutions at most, near the seed first; 1: the first found.
+            random_seed: seed of random starts.
+            any_turn: whether the orientation does not matter.
+
+        Raises:
+            PlanningError: there is none; the message says why.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GoalSampler:
+    """Samples goal states; the same ones for the same seed. It is a `GoalSource`.
+
+    Attributes:
+        goals: alternatives; each is met as a whole.
+        path: what holds on the whole way, and so at the goal.
+        model: the robot.
+        group: the group whose positions vary.
+        positions: positions of the robot's other active joints.
+        pose: poses of links.
+        inverse: inverse kinematics; poses are goals of a group only with it.
+        checker: what is free.
+        start: where the path begins, (n,).
+        seed: seed of the random numbers.
+        deadline: when the answer is due.
+        warn: takes sentences about goals that are changed.
+    """
+
+    goals: tuple[Constraints, ...]
+    path: Constraints
+    model: PlanningModel
+    group: JointGroup
+    positions: JointPositions
+    pose: LinkPose
+    inverse: Inverse | None
+    checker: StateChecker
+    start: Array
+    seed: int = 0
+    deadline: Deadline = NO_DEADLINE
+    warn: Callable[[str], None] = lambda _: None
+
+    def nearest(self) -> tuple[Array, ...]:
+        """Return the goal states that the middles of the goals give; there may be none."""
+        found: list[Array] = []
+        for goal in self._alternatives(lambda _: None):
+            judge = _Judge(self, goal)
+            found += filter(judge.accepts, self._first_candidates(goal, judge))
+        return self._sorted(found)
+
+    def all(self) -> tuple[Array, ...]:
+        """Return up to `MOST` different goal states.
+
+        Raises:
+            PlanningError: there is none; the message gives the reason of the first alternative.
+        """
+        found: list[Array] = []
+        judges: list[_Judge] = []
+        for goal in self._alternatives(self.warn):
+            judge = _Judge(self, goal)
+            judges.append(judge)
+            mine: list[Array] = []
+            for candidate in self._candidates(goal, judge):
+                self.deadline.check("looking for a goal state")
+                if judge.accepts(candidate) and _is_new(candidate, mine):
+                    mine.append(candidate)
+                if len(mine) == MOST:
+                    break
+            found += mine
+        if not found:
+            raise judges[0].error()
+        return self._sorted(found)[:MOST]
+
+    def _alternatives(self, warn: Callable[[str], None]) -> list[Constraints]:
+        goals = [snap_to_limits(goal, self.group, warn) for goal in self.goals if goal]
+        if not goals:
+            raise PlanningError(
+                ErrorCode.INVALID_GOAL_CONSTRAINTS,
+                "the request has no goal: it needs constraints on joints, positions or "
+                "orientations",
+            )
+        return goals
+
+    def _sorted(self, states: list[Array]) -> tuple[Array, ...]:
+        return tuple(sorted(states, key=lambda q: float(np.linalg.norm(q - self.start))))
+
+    def _first_candidates(self, goal: Constraints, judge: "_Judge") -> Iterator[Array]:
+        if not goal.positions and not goal.orientations:
+            yield self._joint_candidate(goal, None)
+            return
+        for link, pose, any_turn in poses_of(goal, self.pose, self.start, None):
+            yield from self._inverse(link, pose, any_turn, judge, most=1)
+
+    def _candidates(self, goal: Constraints, judge: "_Judge") -> Iterator[Array]:
+        """Yield the middle of the goal, then samples if it is wide or its middle is no use."""
+        random = np.random.default_rng((self.seed, 2))
+        if not goal.positions and not goal.orientations:
+            yield self._joint_candidate(goal, None)
+            for _ in range(SAMPLES):
+                if judge.accepted:
+                    return
+                yield self._joint_candidate(goal, random)
+            return
+        for link, pose, any_turn in poses_of(goal, self.pose, self.start, None):
+            yield from self._inverse(link, pose, any_turn, judge, most=MOST)
+        for index in range(SAMPLES):
+            if judge.accepted and (index >= MOST or not judge.is_wide):
+                return
+            for link, pose, any_turn in poses_of(
+                goal, self.pose, self._random_state(random), random
+            ):
+                yield from self._inverse(link, pose, any_turn, judge, most=2)
+
+    def _random_state(self, random: np.random.Generator) -> Array:
+        lower = np.maximum(self.group.lower, self.start - math.pi)
+        upper = np.minimum(self.group.upper, self.start + math.pi)
+        return random.uniform(lower, np.maximum(lower, upper))
+
+    def _joint_candidate(self, goal: Constraints, random: np.random.Generator | None) -> Array:
+        """Return the goal of each joint, or a random position in its tolerance.
+
+        A joint that the goal does not name stays at the start, or is anywhere.
+        """
+        q = self.start.copy() if random is None else self._random_state(random)
+        index = {joint: number for number, joint in enumerate(self.group.joints)}
+        for each in goal.joints:
+            if each.joint not in index:
+                continue
+            at = index[each.joint]
+            limits = self.group.limits[at]
+            low = max(each.position - each.below, limits.lower)
+            high = min(each.position + each.above, limits.upper)
+            middle = min(max(each.position, low), high)
+            q[at] = middle if random is None else random.uniform(low, high)
+        return self._beside_start(q)
+
+    def _inverse(
+        self, link: str, pose: Array, any_turn: bool, judge: "_Judge", *, most: int
+    ) -> Iterator[Array]:
+        if self.inverse is None:
+            raise PlanningError(
+                ErrorCode.NO_IK_SOLUTION,
+                f"group '{self.group.name}' has no inverse kinematics; give a goal of its joints",
+            )
+        try:
+            found = self.inverse(
+                link, pose, self.start, most=most, random_seed=self.seed, any_turn=any_turn
+            )
+        except PlanningError as error:
+            judge.unreachable(error)
+            return
+        for q in found:
+            yield self._beside_start(q)
+
+    def _beside_start(self, q: Array) -> Array:
+        """Return positions with each continuous joint within half a turn of the start."""
+        turns = np.round((q - self.start) / FULL_TURN) * FULL_TURN
+        return np.where(self.group.continuous, q - turns, q)
+
+
+class _Judge:
+    """Accepts candidates of one goal, and remembers why it accepted none."""
+
+    def __init__(self, sampler: GoalSampler, goal: Constraints) -> None:
+        self._sampler = sampler
+        self._goal = self._evaluator(goal)
+        self._path = self._evaluator(sampler.path)
+        self.is_wide = any(max(each.tolerances) > 0.1 for each in goal.orientations) or not (
+            goal.positions and goal.orientations
+        )
+        self.accepted = 0
+        self._errors: dict[int, PlanningError] = {}
+
+    def _evaluator(self, constraints: Constraints) -> ConstraintEvaluator:
+        sampler = self._sampler
+        return ConstraintEvaluator(
+            constraints, sampler.model, sampler.group, sampler.positions, sampler.pose
+        )
+
+    def accepts(self, q: Array) -> bool:
+        """Return whether a state is within the limits, satisfies the goal, and is free."""
+        error = self._objection(q)
+        if error is None:
+            self.accepted += 1
+            return True
+        self._errors.setdefault(error[0], PlanningError(error[1], error[2]))
+        return False
+
+    def unreachable(self, error: PlanningError) -> None:
+        """Remember that inverse kinematics found nothing."""
+        self._errors.setdefault(3, PlanningError(error.code, f"goal is out of reach: {error}"))
+
+    def error(self) -> PlanningError:
+        """Return the reason why no state was accepted: of the candidate that came farthest."""
+        if not self._errors:
+            return PlanningError(
+                ErrorCode.GOAL_STATE_INVALID, "no state was found that satisfies the goal"
+            )
+        return self._errors[min(self._errors)]
+
+    def _objection(self, q: Array) -> tuple[int, ErrorCode, str] | None:
+        """Return what speaks against a state; the number is smaller the farther it came."""
+        group, checker = self._sampler.group, self._sampler.checker
+        outside = np.maximum(group.lower - q, q - group.upper)
+        worst = int(np.argmax(outside))
+        if outside[worst] > 0.0:
+            limits = group.limits[worst]
+            return (
+                4,
+                ErrorCode.GOAL_STATE_INVALID,
+                f"goal is outside of the limits: joint '{group.joints[worst]}' at {q[worst]:.4g} "
+                f"has the limits {limits.lower:.4g} and {limits.upper:.4g}",
+            )
+        violation = _violation(self._goal, q)
+        if violation:
+            return 2, ErrorCode.GOAL_CONSTRAINTS_VIOLATED, f"goal cannot be met: {violation}"
+        violation = self._path.violation(q)
+        if violation:
+            return (
+                1,
+                ErrorCode.GOAL_VIOLATES_PATH_CONSTRAINTS,
+                f"goal violates the path constraints: {violation}",
+            )
+        if checker.is_free(q):
+            return None
+        contacts = checker.contacts(q)
+        what = f": {contacts[0]}" if contacts else ""
+        return 0, ErrorCode.GOAL_IN_COLLISION, f"goal is in collision{what}"
+
+
+def _violation(goal: ConstraintEvaluator, q: Array) -> str:
+    return next((each.sentence for each in goal.results(q) if each.excess > SLACK), "")
+
+
+def _is_new(q: Array, others: list[Array]) -> bool:
+    return all(np.abs(q - other).max() > ALIKE for other in others)

@@ -1,0 +1,139 @@
+"""What a planner gets and what it gives: a problem of joint positions, without links or frames."""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_planning.constraints.evaluation import ConstraintEvaluator
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.robot.model import JointGroup
+
+Array = NDArray[np.float64]
+
+
+class Obstruction(Protocol):
+    """Where a path could not be proved free; as text, the end of a sentence."""
+
+    @property
+    def segment(self) -> int:
+        """Index of the way point before it."""
+        ...
+
+
+class StateChecker(Protocol):
+    """Says what is free of collisions; for one thread at a time."""
+
+    def is_free(self, q: Array) -> bool:
+        """Return whether the robot is free at positions of the group, (n,)."""
+        ...
+
+    def is_free_edge(self, a: Array, b: Array) -> bool:
+        """Return whether all states on the straight line between two are free, ends included."""
+        ...
+
+    def prove(self, path: Array) -> Obstruction | None:
+        """Return None if every state on a polyline, (m, n), is proved free."""
+        ...
+
+    def contacts(self, q: Array) -> Sequence[object]:
+        """Return what touches at positions of the group; each is the end of a sentence."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Deadline:
+    """A time by which an answer is due.
+
+    Attributes:
+        end_s: the time, on the clock.
+        clock: returns the present time in s.
+    """
+
+    end_s: float = math.inf
+    clock: Callable[[], float] = time.monotonic
+
+    @classmethod
+    def after(cls, duration_s: float) -> "Deadline":
+        """Return the deadline that is so many seconds from now."""
+        return cls(time.monotonic() + duration_s)
+
+    def check(self, doing: str) -> None:
+        """Raise an error after the deadline.
+
+        Raises:
+            PlanningError: TIMED_OUT; the message says what was being done.
+        """
+        if self.clock() > self.end_s:
+            raise PlanningError(
+                ErrorCode.TIMED_OUT, f"the planning time ended while {doing}; allow more time"
+            )
+
+
+NO_DEADLINE = Deadline()
+
+
+class GoalSource(Protocol):
+    """Gives states that reach the goal; the same ones each time."""
+
+    def nearest(self) -> tuple[Array, ...]:
+        """Return the goal states that are cheap to find, those near the start first.
+
+        Raises:
+            PlanningError: there is none; the message says why.
+        """
+        ...
+
+    def all(self) -> tuple[Array, ...]:
+        """Return different goal states to choose from, those near the start first.
+
+        Raises:
+            PlanningError: there is none; the message says why.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanningProblem:
+    """A path to find.
+
+    Attributes:
+        group: the joints; all arrays follow their order.
+        start: a free state within the limits, (n,).
+        goals: where the path may end.
+        checker: what is free.
+        path: what holds on the whole way, if anything.
+        deadline: when the answer is due. It only ends a search: it never changes a path.
+        seed: the same problem with the same seed has the same answer.
+        attempts: searches with different random numbers; the shortest path counts.
+    """
+
+    group: JointGroup
+    start: Array
+    goals: GoalSource
+    checker: StateChecker
+    path: ConstraintEvaluator | None = None
+    deadline: Deadline = NO_DEADLINE
+    seed: int = 0
+    attempts: int = 1
+
+
+class PathPlanner(Protocol):
+    """A way to find paths."""
+
+    def plan(self, problem: PlanningProblem) -> Array:
+        """Return a path from the start to a goal, (m, n), m at least 2; every state is free.
+
+        Raises:
+            PlanningError: there is no goal state, no path was found, or the time ended.
+        """
+        ...
+
+
+def path_length(path: Array) -> float:
+    """Return the length of a polyline, (m, n), in the joints' units."""
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())

@@ -1,0 +1,101 @@
+"""RRT-Connect: a tree from the start and one from the goals grow until they meet.
+
+J. Kuffner, S. LaValle: RRT-Connect: An efficient approach to single-query path planning, 2000.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_planning.planners.space import Space
+from arm_planning.planners.tree import Tree
+
+Array = NDArray[np.float64]
+
+BLOCK = 256
+"""Random states that are drawn at once."""
+REACH = 1.0
+"""Length of a move of the tree that explores, in the joints' units."""
+
+
+def rrt_connect(
+    space: Space, start: Array, goals: Array, seed: Sequence[int]
+) -> Iterator[Array | None]:
+    """Search for a path, one iteration at each step of the iterator.
+
+    Args:
+        space: where to search.
+        start: where the path begins, (n,).
+        goals: where it may end, (g, n).
+        seed: seed of the random numbers.
+
+    Yields:
+        None after each iteration that found no path; then the path, (m, n), once.
+    """
+    from_start, from_goal = Tree(start[None, :]), Tree(goals)
+    explorer, follower = from_start, from_goal
+    for sample in _samples(space, seed):
+        grown = _explore(space, explorer, sample)
+        if grown is not None:
+            met = _follow(space, follower, explorer.state(grown))
+            if met is not None:
+                yield _joined(explorer.path(grown), follower.path(met), explorer is from_start)
+                return
+        yield None
+        explorer, follower = follower, explorer
+
+
+def _samples(space: Space, seed: Sequence[int]) -> Iterator[Array]:
+    random = np.random.default_rng(seed)
+    while True:
+        yield from random.uniform(space.lower, space.upper, (BLOCK, len(space.lower)))
+
+
+def _explore(space: Space, tree: Tree, sample: Array) -> int | None:
+    """Grow a tree one move towards a sample; return the new state's index."""
+    near = tree.nearest(sample)
+    target = space.project(_towards(tree.state(near), sample, REACH))
+    return None if target is None else _grow(space, tree, near, target)[0]
+
+
+def _follow(space: Space, tree: Tree, target: Array) -> int | None:
+    """Grow a tree towards a state as far as it gets; return the index where it arrives."""
+    near = tree.nearest(target)
+    while True:
+        state = tree.state(near)
+        if np.linalg.norm(target - state) <= REACH:
+            grown, arrived = _grow(space, tree, near, target)
+            return grown if arrived else None
+        aim = space.project(_towards(state, target, REACH))
+        if aim is None or not _nearer(aim, state, target):
+            return None
+        grown, arrived = _grow(space, tree, near, aim)
+        if grown is None or not arrived:
+            return None
+        near = grown
+
+
+def _grow(space: Space, tree: Tree, parent: int, target: Array) -> tuple[int | None, bool]:
+    """Move from a state of a tree; return the last new state, and whether it is the target."""
+    states, arrived = space.move(tree.state(parent), target)
+    grown = None
+    for state in states:
+        grown = parent = tree.add(state, parent)
+    return grown, arrived
+
+
+def _towards(state: Array, target: Array, reach: float) -> Array:
+    difference = target - state
+    distance = float(np.linalg.norm(difference))
+    return target if distance <= reach else state + difference * (reach / distance)
+
+
+def _nearer(a: Array, b: Array, target: Array) -> bool:
+    return bool(np.linalg.norm(target - a) < 0.99 * np.linalg.norm(target - b))
+
+
+def _joined(explored: Array, followed: Array, forwards: bool) -> Array:
+    """Join two branches that end at one state, in the direction from the start to a goal."""
+    first, second = (explored, followed) if forwards else (followed, explored)
+    return np.concatenate([first, second[-2::-1]])

@@ -1,0 +1,140 @@
+"""The states that a path may use: free ones, and those that satisfy constraints on the way."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_planning.constraints.evaluation import ConstraintEvaluator
+from arm_planning.planners.problem import PlanningProblem, StateChecker
+
+Array = NDArray[np.float64]
+
+STEP = 0.05
+"""Distance of two states on a constrained path, rad or m."""
+TIGHTER = 0.9
+"""Share of a tolerance that projected states use: between them, a path may use the rest."""
+PROJECTION_STEPS = 12
+DIFFERENCE = 1e-6
+"""Step of numeric derivatives, rad or m."""
+PROJECTED = 1e-7
+"""Residual below which a state counts as projected; it is far below what `TIGHTER` leaves."""
+TURN = np.pi
+"""How far from the start a continuous joint is sampled, rad."""
+
+
+class Space(Protocol):
+    """The states that a search may use, and how it moves from one to another."""
+
+    lower: Array
+    """Lower bounds of states to sample, (n,)."""
+    upper: Array
+    """Their upper bounds, (n,)."""
+
+    def project(self, q: Array) -> Array | None:
+        """Return a state near to one, (n,), that satisfies the constraints; None without any."""
+        ...
+
+    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go from a state towards another.
+
+        Returns:
+            The states after `a`, (k, n), all moves between them free, and whether the last is `b`.
+        """
+        ...
+
+
+def space_of(problem: PlanningProblem, goals: Array) -> Space:
+    """Return the space in which paths to some goals, (g, n), are searched."""
+    states = np.vstack([problem.start, goals])
+    group = problem.group
+    # Half a turn each way for continuous joints; goals may be farther.
+    lower = np.where(group.continuous, problem.start - TURN, group.lower)
+    upper = np.where(group.continuous, problem.start + TURN, group.upper)
+    lower, upper = np.minimum(lower, states.min(axis=0)), np.maximum(upper, states.max(axis=0))
+    if problem.path is None or not problem.path.constraints:
+        return FreeSpace(problem.checker, lower, upper)
+    return ConstrainedSpace(problem.checker, problem.path, lower, upper)
+
+
+class FreeSpace:
+    """All free states; moves are straight."""
+
+    def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
+        self.lower, self.upper = lower, upper
+        self._checker = checker
+
+    def project(self, q: Array) -> Array | None:
+        """Return the state itself."""
+        return q
+
+    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go straight, or not at all."""
+        if self._checker.is_free_edge(a, b):
+            return b[None, :], True
+        return b[:0].reshape(0, len(b)), False
+
+
+class ConstrainedSpace:
+    """Free states that satisfy constraints; moves are small steps, each projected.
+
+    The projection is Gauss-Newton on how far each component is outside of its tolerance. After
+    D. Berenson et al.: Manipulation planning on constraint manifolds, 2009.
+    """
+
+    def __init__(
+        self, checker: StateChecker, path: ConstraintEvaluator, lower: Array, upper: Array
+    ) -> None:
+        self.lower, self.upper = lower, upper
+        self._checker = checker
+        self._path = path
+        self._tight = path.tightened(TIGHTER)
+
+    def project(self, q: Array) -> Array | None:
+        """Return a state near to one that satisfies the constraints within the limits."""
+        for _ in range(PROJECTION_STEPS):
+            residual = self._tight.residual(q)
+            if np.abs(residual).max() < PROJECTED:
+                return q
+            jacobian = self._jacobian(q, residual)
+            q = np.clip(q - np.linalg.pinv(jacobian, rcond=1e-4) @ residual, self.lower, self.upper)
+        return q if np.abs(self._tight.residual(q)).max() < PROJECTED else None
+
+    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go towards a state in small steps along the constraints, until something blocks."""
+        states = [a]
+        while True:
+            here = states[-1]
+            left = float(np.abs(b - here).max())
+            if left <= STEP:
+                reached = self._is_clear(here, b)
+                if reached:
+                    states.append(b)
+                break
+            there = self.project(here + (b - here) * (STEP / left))
+            # A projection that leads back makes no progress; one that leads far away is a jump.
+            if there is None or not self._is_progress(here, there, b):
+                reached = False
+                break
+            if not self._is_clear(here, there):
+                reached = False
+                break
+            states.append(there)
+        return np.array(states[1:]).reshape(-1, len(a)), reached
+
+    def _is_progress(self, here: Array, there: Array, goal: Array) -> bool:
+        nearer = np.linalg.norm(goal - there) < np.linalg.norm(goal - here) - STEP / 10.0
+        return bool(nearer) and float(np.abs(there - here).max()) < 2.0 * STEP
+
+    def _is_clear(self, a: Array, b: Array) -> bool:
+        """Whether a short move is free and satisfies the constraints, looked at in 4 places."""
+        between = (a + (b - a) * part for part in (0.25, 0.5, 0.75, 1.0))
+        return all(map(self._path.satisfied, between)) and self._checker.is_free_edge(a, b)
+
+    def _jacobian(self, q: Array, residual: Array) -> Array:
+        columns: list[Array] = []
+        for index in range(len(q)):
+            moved = q.copy()
+            moved[index] += DIFFERENCE
+            columns.append((self._tight.residual(moved) - residual) / DIFFERENCE)
+        return np.array(columns).T

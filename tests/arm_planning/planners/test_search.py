@@ -1,0 +1,189 @@
+"""The suite's own planner on an arm in a plane."""
+
+import contextlib
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.arm_planning.planners.planar import PlanarArm, planar_problem
+
+from arm_description.urdf.robot import Box
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.constraints.constraints import (
+    Constraints,
+    OrientationConstraint,
+    PositionConstraint,
+)
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.planners.problem import Deadline, path_length
+from arm_planning.planners.search import RrtConnectPlanner
+from arm_planning.scene.objects import PlacedShape
+
+POSTS = ((1.6, 0.9, 0.3), (1.6, -0.9, 0.3), (-0.5, 2.0, 0.4))
+START, GOAL = [-1.2, 0.3, 0.2], [1.2, -0.3, -0.2]
+PLANNER = RrtConnectPlanner()
+
+
+def dense(path: np.ndarray) -> np.ndarray:
+    """States at every 0.001 rad of a path."""
+    return np.concatenate(
+        [
+            np.linspace(a, b, 2 + int(np.abs(b - a).max() / 1e-3))
+            for a, b in itertools.pairwise(path)
+        ]
+    )
+
+
+def test_a_free_straight_path_is_returned_as_it_is():
+    path = PLANNER.plan(planar_problem(PlanarArm(), START, GOAL))
+    assert path.tolist() == [START, GOAL]
+
+
+def test_a_path_around_obstacles_is_free_everywhere():
+    arm = PlanarArm(POSTS)
+    path = PLANNER.plan(planar_problem(arm, START, GOAL))
+    assert path[0].tolist() == START
+    assert path[-1].tolist() == GOAL
+    assert all(map(arm.is_free, dense(path)))
+
+
+def test_the_path_is_not_much_longer_than_needed():
+    lengths = [
+        path_length(PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, seed=seed)))
+        for seed in range(12)
+    ]
+    assert np.median(lengths) < 1.15 * min(lengths)
+
+
+def test_the_same_seed_gives_the_same_path_and_another_seed_another():
+    paths = [
+        PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, seed=seed)) for seed in (3, 3, 4)
+    ]
+    assert np.array_equal(paths[0], paths[1])
+    assert not np.array_equal(paths[0], paths[2])
+
+
+def test_the_path_ends_at_any_of_the_goals():
+    blocked = [0.5, 0.0, 0.0]
+    arm = PlanarArm(POSTS)
+    path = PLANNER.plan(planar_problem(arm, START, [2.2, 0.0, 0.0], GOAL))
+    assert path[-1].tolist() in ([2.2, 0.0, 0.0], GOAL)
+    assert not arm.is_free(np.array(blocked))
+
+
+def test_more_attempts_give_shorter_paths():
+    one, five = (
+        [
+            path_length(
+                PLANNER.plan(
+                    planar_problem(PlanarArm(POSTS), START, GOAL, seed=seed, attempts=attempts)
+                )
+            )
+            for seed in range(6)
+        ]
+        for attempts in (1, 5)
+    )
+    assert np.mean(five) < np.mean(one)
+
+
+class SteppedClock:
+    """A clock that moves on each time that it is read."""
+
+    def __init__(self) -> None:
+        self.readings = 0
+
+    def __call__(self) -> float:
+        self.readings += 1
+        return float(self.readings)
+
+
+def test_a_search_ends_at_the_deadline():
+    clock = SteppedClock()
+    blocked = PlanarArm(((0.4, 0.6, 0.1),))
+    problem = planar_problem(blocked, [0.0], [2.0], deadline=Deadline(200.0, clock))
+    with pytest.raises(PlanningError, match="searching for a path; allow more time") as raised:
+        PLANNER.plan(problem)
+    assert raised.value.code == ErrorCode.TIMED_OUT
+    assert clock.readings == 201
+
+
+def test_a_deadline_that_is_not_reached_changes_nothing():
+    free, timed = (
+        PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, deadline=deadline))
+        for deadline in (Deadline(), Deadline(1e6, SteppedClock()))
+    )
+    assert np.array_equal(free, timed)
+
+
+def test_a_deadline_while_shortening_gives_no_half_shortened_path():
+    clock = SteppedClock()
+    PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, deadline=Deadline(1e6, clock)))
+    late = Deadline(clock.readings - 1.0, SteppedClock())
+    with pytest.raises(PlanningError, match="shortening the path"):
+        PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, deadline=late))
+
+
+def test_a_start_in_collision_is_named():
+    problem = planar_problem(PlanarArm(((1.0, 0.0, 0.2),)), [0.0, 0.0], [1.0, 0.0])
+    with pytest.raises(
+        PlanningError, match=r"the start is in collision: the arm with a disc, 0.20 m"
+    ) as raised:
+        PLANNER.plan(problem)
+    assert raised.value.code == ErrorCode.START_STATE_IN_COLLISION
+
+
+LEVEL = Constraints(
+    orientations=(OrientationConstraint("l4", (0.0, 0.0, 0.0, 1.0), (0.1, 0.1, 0.1)),)
+)
+LEVEL_START, LEVEL_GOAL = [-1.0, 0.5, 0.5, 0.0], [1.0, -0.5, -0.5, 0.0]
+
+
+def test_an_orientation_holds_on_the_whole_way_around_obstacles():
+    arm = PlanarArm(((2.6, 0.0, 0.3),))
+    problem = planar_problem(arm, LEVEL_START, LEVEL_GOAL, path=LEVEL)
+    path = PLANNER.plan(problem)
+    assert problem.path is not None
+    assert all(map(problem.path.satisfied, dense(path)))
+    assert all(map(arm.is_free, dense(path)))
+
+
+def test_a_position_holds_on_the_whole_way():
+    slot = PlacedShape(Box((0.2, 10.0, 1.0)), RigidTransform((2.0, 0.0, 0.0)))
+    start = [0.5, 0.3, -1.0]
+    arm = PlanarArm()
+    x, y = arm.points(np.array(start))[-1]
+    slot = PlacedShape(Box((0.2, 10.0, 1.0)), RigidTransform((x, 0.0, 0.0)))
+    goal = [-0.5, -0.3, 1.0]
+    path_constraints = Constraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (slot,)),))
+    problem = planar_problem(arm, start, goal, path=path_constraints)
+    path = PLANNER.plan(problem)
+    assert y > 0.1
+    assert problem.path is not None
+    assert all(map(problem.path.satisfied, dense(path)))
+
+
+def test_a_start_that_violates_the_constraints_on_the_way_is_named():
+    problem = planar_problem(PlanarArm(), [0.5, 0.0, 0.0, 0.0], LEVEL_GOAL, path=LEVEL)
+    with pytest.raises(PlanningError, match="the start violates the path constraints: link 'l4'"):
+        PLANNER.plan(problem)
+
+
+disc = st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(0.05, 0.5))
+
+
+@settings(max_examples=15, deadline=None)
+@given(discs=st.lists(disc, max_size=5), seed=st.integers(0, 99))
+def test_whatever_path_comes_is_free(discs, seed):
+    arm = PlanarArm(tuple(discs))
+    ends = np.random.default_rng(seed).uniform(-2.9, 2.9, (2, 3))
+    problem = planar_problem(
+        arm, ends[0].tolist(), ends[1].tolist(), deadline=Deadline(200.0, SteppedClock())
+    )
+    if not arm.is_free(ends[0]):
+        return
+    with contextlib.suppress(PlanningError):
+        path = PLANNER.plan(problem)
+        assert all(map(arm.is_free, dense(path)))
+        assert (np.abs(path) <= 3.0).all()
