@@ -1,7 +1,8 @@
 """The errors of this package, each with the code that MoveIt gives to it.
 
 PlanningError            a request that cannot be answered, or a plan that was not found
-└── SrdfError            an SRDF that cannot be used
+├── SrdfError            an SRDF that cannot be used
+└── MissingOmplError     OMPL is not installed
 """
 
 from enum import IntEnum
@@ -60,3 +61,13 @@ class SrdfError(PlanningError):
 
     def __init__(self, message: str) -> None:
         super().__init__(ErrorCode.FAILURE, message)
+
+
+class MissingOmplError(PlanningError):
+    """OMPL is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            ErrorCode.PLANNING_FAILED,
+            "OMPL's planners need the package ompl: pip install 'arm-suite[ompl]'",
+        )

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from arm_gazebo.errors import MissingWarpError
 from arm_node.environment import prepare_environment
+from arm_planning.errors import MissingOmplError
 from arm_sim.errors import MissingPackageError
 
 
@@ -39,7 +40,7 @@ def import_all(packages: Iterable[str]) -> None:
             if not module.name.endswith((".__main__", ".pytest_plugin")):
                 try:
                     importlib.import_module(module.name)
-                except (MissingPackageError, MissingWarpError):
+                except (MissingPackageError, MissingWarpError, MissingOmplError):
                     # A part that needs an extra says so.
                     continue
 

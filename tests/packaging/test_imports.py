@@ -31,6 +31,7 @@ DECLARED = {canonicalize_name(Requirement(r).name) for r in PROJECT["project"]["
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 OPTIONAL = {
     "arm_gazebo/arm_gazebo/batch/gpu": ["gpu"],
+    "arm_planning/arm_planning/planners/ompl": ["ompl"],
     "arm_sim/arm_sim/gym": ["gym"],
     "arm_sim/arm_sim/dataset": ["dataset"],
     "arm_sim/arm_sim/sweep": ["sweep", "ray"],

@@ -1,17 +1,17 @@
 """The suite's own planner: a straight path first, then RRT-Connect, shortcuts and a proof."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.planners.problem import PlanningProblem, path_length
+from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
 from arm_planning.planners.rrt_connect import rrt_connect
 from arm_planning.planners.shortcut import shorten
 from arm_planning.planners.space import Space, space_of
-from arm_planning.planners.straight import straight_path
+from arm_planning.planners.straight import straight_to_any
 
 Array = NDArray[np.float64]
 
@@ -29,36 +29,41 @@ class RrtConnectPlanner:
     def plan(self, problem: PlanningProblem) -> Array:
         """Return a proved path, (m, n); see `PathPlanner`."""
         check_start(problem)
-        first, goals = problem.goals.nearest(), ()
-        path = straight_path(problem, first)
-        if path is None:
-            goals = problem.goals.all()
-            path = straight_path(problem, tuple(goal for goal in goals if not _is_in(goal, first)))
-        if path is not None and problem.checker.prove(path) is None:
+        path, goals = straight_to_any(problem)
+        if path is not None:
             return path
-        roots = np.array(goals or problem.goals.all())
-        return self._best(problem, space_of(problem, roots), roots)
+        space = space_of(problem, goals)
+        return shortest_proved(self._paths(problem, space, goals), problem.checker)
 
-    def _best(self, problem: PlanningProblem, space: Space, goals: Array) -> Array:
-        shortest: Array | None = None
+    def _paths(
+        self, problem: PlanningProblem, space: Space, goals: Array
+    ) -> Iterator[tuple[Array, ...]]:
+        """Yield the path of each attempt: shortened, and as it was found."""
         for attempt, found in race(problem, space, goals):
-            path = shorten(found, space, (problem.seed, attempt, 1), problem.deadline)
-            for candidate in (path, found):
-                if problem.checker.prove(candidate) is None:
-                    if shortest is None or path_length(candidate) < path_length(shortest):
-                        shortest = candidate
-                    break
-        if shortest is None:
-            raise PlanningError(
-                ErrorCode.PLANNING_FAILED,
-                "a path was found, but it could not be proved free; another seed may find a "
-                "better one",
-            )
-        return shortest
+            yield shorten(found, space, (problem.seed, attempt, 1), problem.deadline), found
 
 
-def _is_in(goal: Array, others: tuple[Array, ...]) -> bool:
-    return any(np.array_equal(goal, other) for other in others)
+def shortest_proved(paths: Iterable[tuple[Array, ...]], checker: StateChecker) -> Array:
+    """Return the shortest path, (m, n), of which every state is proved free.
+
+    Args:
+        paths: of each attempt the versions of its path, the one to be preferred first.
+        checker: proves them.
+
+    Raises:
+        PlanningError: PLANNING_FAILED: none can be proved.
+    """
+    shortest: Array | None = None
+    for versions in paths:
+        path = next((each for each in versions if checker.prove(each) is None), None)
+        if path is not None and (shortest is None or path_length(path) < path_length(shortest)):
+            shortest = path
+    if shortest is None:
+        raise PlanningError(
+            ErrorCode.PLANNING_FAILED,
+            "a path was found but not proved free; another seed may find a better one",
+        )
+    return shortest
 
 
 def check_start(problem: PlanningProblem) -> None:

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from robots import joint, link, robot
 from scipy.spatial.transform import Rotation
-from tests.robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Box, Sphere

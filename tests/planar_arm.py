@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from tests.robots import joint, link, robot
+from robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_planning.constraints.constraints import Constraints
@@ -131,3 +131,13 @@ def planar_problem(
     evaluator = path and ConstraintEvaluator(path, model, group, {}, arm.pose)
     states = States(tuple(np.array(goal) for goal in goals))
     return PlanningProblem(group, np.array(start), states, arm, evaluator, deadline, seed, attempts)
+
+
+def dense(path: np.ndarray) -> np.ndarray:
+    """States at every 0.001 rad of a path."""
+    return np.concatenate(
+        [
+            np.linspace(a, b, 2 + int(np.abs(b - a).max() / 1e-3))
+            for a, b in itertools.pairwise(path)
+        ]
+    )

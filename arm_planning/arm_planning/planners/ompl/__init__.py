@@ -1,0 +1,1 @@
+"""OMPL's planners by name, with the extra `ompl`."""
