@@ -83,46 +83,40 @@ def test_blocks_that_cannot_run_say_why():
             assert len(block.directive) > len("not run, "), block.place
 
 
-@pytest.mark.ros
-def test_the_table_of_topics_is_that_of_a_running_arm(folder: Path, background: Background):
+def rows_of(kind: str) -> dict[str, str]:
+    """Return the page's table of topics or of services: name to type."""
     page = Path(__file__).parents[2] / "docs" / "reference" / "topics.md"
     rows = [line.split("|") for line in page.read_text().splitlines() if line.startswith("| `/")]
-    table = {row[1].strip(" `"): row[2].strip() for row in rows if "/msg/" in row[2]}
-    background.start("arm launch", ())
+    return {row[1].strip(" `"): row[2].strip() for row in rows if f"/{kind}/" in row[2]}
 
-    wanted = {topic: f"[{type_}]" for topic, type_ in table.items()}.items()
-    assert len(wanted) > 15
-    # The topics of the introspection come some seconds after the services.
-    missing = wanted
-    deadline = time.monotonic() + 60.0
-    while missing and time.monotonic() < deadline:
-        running = Running("arm topic list -t", folder)
-        assert running.wait() == 0
-        missing = wanted - dict(line.split(" ") for line in running.output.splitlines()).items()
-        running.close()
-    assert not missing
+
+def listed(what: str, folder: Path) -> dict[str, str]:
+    running = Running(f"arm {what} list -t", folder)
+    assert running.wait() == 0
+    running.close()
+    lines = (line.replace("[", "").rstrip("]").split(" ") for line in running.output.splitlines())
+    return {line[0]: line[1] for line in lines}
 
 
 @pytest.mark.ros
-def test_the_table_of_services_is_that_of_a_running_arm(folder: Path, background: Background):
-    page = Path(__file__).parents[2] / "docs" / "reference" / "topics.md"
-    rows = [line.split("|") for line in page.read_text().splitlines() if line.startswith("| `/")]
-    table = {row[1].strip(" `"): row[2].strip() for row in rows if "/srv/" in row[2]}
+def test_the_tables_of_topics_and_services_are_those_of_a_running_arm(
+    folder: Path, background: Background
+):
     background.start("arm launch", ())
-
+    topics, services = rows_of("msg"), rows_of("srv")
+    assert len(topics) > 15
     own = ("controller_manager_msgs/", "simulation_interfaces/")
-    # The services of the simulation come some time after those of the controller manager.
-    offered: dict[str, str] = {}
+    # The topics of the introspection and the services of the simulation come some time later.
+    missing, offered = topics.items(), dict[str, str]()
     deadline = time.monotonic() + 60.0
-    while offered != table and time.monotonic() < deadline:
-        running = Running("arm service list -t", folder)
-        assert running.wait() == 0
-        lines = (
-            line.replace("[", "").rstrip("]").split(" ") for line in running.output.splitlines()
-        )
-        offered = {n: kind for n, kind in lines if kind.startswith(own) or n in table}
-        running.close()
-    assert offered == table
+    while (missing or offered != services) and time.monotonic() < deadline:
+        missing = topics.items() - listed("topic", folder).items()
+        found = listed("service", folder).items()
+        offered = {
+            name: type_ for name, type_ in found if type_.startswith(own) or name in services
+        }
+    assert not missing
+    assert offered == services
 
 
 def test_the_drawings_are_those_of_their_script():
