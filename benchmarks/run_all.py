@@ -36,6 +36,7 @@ SCRIPTS = (
     "repeatability.py",
     "soak.py",
     "sweep.py",
+    "inverse_kinematics.py",
     "fuzzing.py",
     "page.py",
 )

@@ -206,7 +206,7 @@ class InverseKinematics:
             PlanningError: as in `solve`; the descent ends elsewhere.
         """
         search = self._search(target, seed, TIMEOUT_S, 0, None, orientation)
-        outcome = self._descend(search, search.seed[self._moving])
+        outcome = self._descend(search, search.seed[self._moving], PATIENT)
         if outcome.is_at(search.target, nearest=orientation is Orientation.NEAREST):
             return self._beside_seed(outcome.q, search.seed)
         search.note(outcome)
@@ -312,7 +312,7 @@ class InverseKinematics:
     def _solutions(self, search: Search) -> Iterator[tuple[Array, DescentEnd]]:
         """Yield solutions of all joints of the group, (n,), until the steps are used up."""
         for start in self._all_starts(search):
-            outcome = self._descend(search, start)
+            outcome = self._descend(search, start, HASTY)
             if not outcome.is_at(search.target, nearest=search.orientation is Orientation.NEAREST):
                 search.note(outcome)
             else:
@@ -328,9 +328,9 @@ class InverseKinematics:
             self._starts = Starts(self._chain, self._lower, self._upper, self._turning)
         yield from self._starts.towards(search.target, search.random_seed)
 
-    def _descend(self, search: Search, start: Array) -> DescentEnd:
+    def _descend(self, search: Search, start: Array, patience: float) -> DescentEnd:
         nearest = search.orientation is Orientation.NEAREST
-        patience = PATIENT if nearest else HASTY
+        patience = PATIENT if nearest else patience
         outcome = self._descent.run(search.target, start, min(MAX_STEPS, search.steps), patience)
         search.steps -= outcome.steps
         if not nearest or outcome.off_m > CLOSE_M:
@@ -366,8 +366,7 @@ class InverseKinematics:
 
     def _none(self, search: Search) -> PlanningError:
         if search.best is not None:
-            best = self._descent.run(search.target, search.best.q, patience=PATIENT)
-            search.best = best
+            search.best = self._descent.run(search.target, search.best.q)
         return PlanningError(
             ErrorCode.NO_IK_SOLUTION,
             shortfall(search, self.tip, self._names, self._lower, self._upper, self._chain),
