@@ -8,7 +8,6 @@ the motion between the points counts, not the points alone.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.kinematics.search import Orientation
 from arm_planning.planners.pose_line import PoseLine
+from arm_planning.planners.problem import StateChecker
 
 Array = NDArray[np.float64]
 
@@ -35,18 +35,6 @@ MIN_POINTS_FOR_FACTOR = 10
 """Points that a path needs for `JumpLimits.factor`, as in MoveIt."""
 CONTACT_SAMPLES = 9
 """States between two points at which contacts are looked for, to name one."""
-
-
-class CartesianChecker(Protocol):
-    """Says what is free of collisions."""
-
-    def is_free_edge(self, a: Array, b: Array) -> bool:
-        """Return whether all states between two are free, both included."""
-        ...
-
-    def contacts(self, q: Array) -> Sequence[object]:
-        """Return what touches at a state; each is the end of a sentence."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +80,7 @@ def cartesian_path(
     relative: bool = False,
     orientation: Orientation = Orientation.EXACT,
     jumps: JumpLimits = JumpLimits(),
-    checker: CartesianChecker | None = None,
+    checker: StateChecker | None = None,
     violation: Callable[[Array], str] | None = None,
 ) -> CartesianPath:
     """Return the path of a group on which its link moves straight from way point to way point.
@@ -167,7 +155,7 @@ class _Path:
         kinematics: InverseKinematics,
         start: Array,
         orientation: Orientation,
-        checker: CartesianChecker | None,
+        checker: StateChecker | None,
         violation: Callable[[Array], str] | None,
     ) -> None:
         self._kinematics, self._orientation = kinematics, orientation
@@ -216,7 +204,7 @@ class _Path:
             raise _Stop(sentence)
 
 
-def _contact(checker: CartesianChecker, a: Array, b: Array) -> str:
+def _contact(checker: StateChecker, a: Array, b: Array) -> str:
     """Return what touches between two points."""
     for share in np.linspace(0.0, 1.0, CONTACT_SAMPLES):
         if contacts := checker.contacts(a + share * (b - a)):
