@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -118,7 +117,7 @@ def test_the_mutex_is_a_semaphore_of_the_c_library(shm_folder):
 def test_several_processes_clean_up_in_turn(folder):
     """None of them leaves a file because another one looks at it."""
     code = "import sys; from launch_py.fast_dds.removal import *\n"
-    code += "input(); print(len(remove_unused(sys.argv[2:], sys.argv[1])))"
+    code += "print('up', flush=True); input(); print(len(remove_unused(sys.argv[2:], sys.argv[1])))"
     stems = [f"fastrtps_{number}" for number in range(50)]
     for stem in stems:
         open(os.path.join(folder, stem), "w").close()
@@ -131,7 +130,9 @@ def test_several_processes_clean_up_in_turn(folder):
         )
         for _ in range(2)
     ]
-    time.sleep(0.3)
+    for cleaner in cleaners:
+        assert cleaner.stdout is not None
+        assert cleaner.stdout.readline() == "up\n"
     for cleaner in cleaners:
         assert cleaner.stdin is not None
         cleaner.stdin.write("\n")

@@ -62,9 +62,11 @@ class OnTerminal:
                 self.shown += text
                 self._changed.notify_all()
 
-    def wait_for(self, text: str) -> None:
+    def wait_for(self, text: str, count: int = 1) -> None:
         with self._changed:
-            assert self._changed.wait_for(lambda: text in self.shown, TIMEOUT_S), self.shown
+            assert self._changed.wait_for(lambda: self.shown.count(text) >= count, TIMEOUT_S), (
+                self.shown
+            )
 
     def type(self, keys: bytes) -> None:
         os.write(self._near, keys)
@@ -93,7 +95,7 @@ def test_the_space_bar_runs_the_command(launch):
     launch.type(b" ")
     launch.wait_for("[launch] all stands")
     launch.type(b" ")
-    launch.wait_for("[launch] all stands")
+    launch.wait_for("[launch] all stands", count=2)
     assert launch.process.poll() is None
 
 

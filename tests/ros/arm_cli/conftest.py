@@ -184,7 +184,16 @@ def run_until(start: Callable[[str], CommandLine]) -> Callable[..., str]:
 
 @pytest.fixture(scope="module")
 def simulation(launch_for_file):
+    """The main job without its camera, ready."""
+    return _ready(launch_for_file("camera:=none"))
+
+
+@pytest.fixture(scope="module")
+def simulation_with_camera(launch_for_file):
     """The main job, ready."""
-    launched = launch_for_file()
+    return _ready(launch_for_file())
+
+
+def _ready(launched):
     launched.wait_until_ready()
     return launched
