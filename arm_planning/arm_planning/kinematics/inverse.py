@@ -60,6 +60,8 @@ STALE = 10
 """Solutions in a row that are not new, after which there are hardly any others."""
 ALIKE = 1e-2
 """Solutions whose joints all differ by less than this are one, in rad or m."""
+FARTHEST = 1e6
+"""Largest position of a joint without limits, rad or m; beyond it, numbers get too coarse."""
 PLACE = np.array([[1.0], [1.0], [1.0], [0.0], [0.0], [0.0]])
 """Weights of the position alone."""
 CLOSE_M = 1e-4
@@ -303,7 +305,14 @@ class InverseKinematics:
                 ErrorCode.INVALID_ROBOT_STATE,
                 f"the seed's position of joint '{names[bad]}' is not finite: {q[bad]}",
             )
-        return np.minimum(np.maximum(q, self._lowest), self._highest)
+        q = np.minimum(np.maximum(q, self._lowest), self._highest)
+        if np.abs(q).max() > FARTHEST:
+            far = int(np.abs(q).argmax())
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"the seed's position of joint '{names[far]}', {q[far]:g}, is beyond {FARTHEST:g}",
+            )
+        return q
 
     def _steps(self, position: Array, timeout_s: float) -> int:
         steps = max(MAX_STEPS, round(timeout_s * STEPS_PER_S))

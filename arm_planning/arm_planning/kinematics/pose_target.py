@@ -11,6 +11,8 @@ from arm_planning.errors import ErrorCode, PlanningError
 
 Array = NDArray[np.float64]
 
+FARTHEST_M = 1e6
+"""Beyond it, squares of numbers lose what matters, and at last overflow."""
 UNIT_WITHIN = 1e-3
 """How far a quaternion's length, or a number of a rotation matrix, may be off."""
 
@@ -47,6 +49,10 @@ def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
 def _checked_position(position: Array) -> Array:
     if not np.isfinite(position).all():
         raise _refused(f"the target's position has a number that is not finite: {_text(position)}")
+    if np.abs(position).max() > FARTHEST_M:
+        raise _refused(
+            f"the target's position {_text(position)} is more than {FARTHEST_M / 1e3:g} km away"
+        )
     return position
 
 

@@ -247,6 +247,10 @@ NAN = float("nan")
     ("target", "message"),
     [
         (RigidTransform((NAN, 0.0, 0.0)), r"position has a number that is not finite: \(nan, 0, 0"),
+        (
+            RigidTransform((0.0, 1e300, 0.0)),
+            r"\(0, 1e\+300, 0\) is more than 1000 km away",
+        ),
         (RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0)), "quaternion .* has length 0 instead of 1"),
         (RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0)), "quaternion .* has length 1.41 instead"),
         (RigidTransform(rotation=(0.0, 0.0, NAN, 1.0)), "quaternion has a number that is not fin"),
@@ -274,6 +278,13 @@ def test_a_seed_that_is_no_state_is_refused(seed, message):
     with pytest.raises(PlanningError, match=message) as refused:
         kinematics.solve(np.eye(4), seed)
     assert refused.value.code is ErrorCode.INVALID_ROBOT_STATE
+
+
+def test_a_continuous_joint_that_has_turned_too_often_is_refused():
+    kinematics = one_joint("0 0 1", "continuous", limits=None)
+    assert kinematics.solve(np.eye(4), (1e5,)) == pytest.approx([1e5], abs=math.pi)
+    with pytest.raises(PlanningError, match="position of joint 'j', 1e\\+17, is beyond 1e\\+06"):
+        kinematics.solve(np.eye(4), (1e17,))
 
 
 @pytest.mark.parametrize("timeout_s", [0.0, -1.0, math.inf])
