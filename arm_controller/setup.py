@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_controller"
-NEIGHBOURS = ["../arm_control", "../arm_description", "../arm_node"]
+NEIGHBOURS = ["../arm_control", "../arm_description"]
 REQUIREMENTS = [
     "PyYAML>=6.0",
     "numpy>=2",
@@ -37,13 +37,13 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "arm_controller_node = arm_controller.executables:arm_controller_node",
-            "publisher_terminal = arm_controller.executables:publisher_terminal",
-            "publisher_defined = arm_controller.executables:publisher_defined",
-            "arm_gripper_loop_controller = arm_controller.executables:arm_gripper_loop_controller",
-            "mycobot_pick_and_place = arm_controller.executables:mycobot_pick_and_place",
-            "example_gripper = arm_controller.executables:example_gripper",
-            "example_diff_drive = arm_controller.executables:example_diff_drive",
+            "arm_controller_node = arm_controller.arm_controller_node:main",
+            "publisher_terminal = arm_controller.publisher_terminal_node:main",
+            "publisher_defined = arm_controller.publisher_defined_node:main",
+            "arm_gripper_loop_controller = arm_controller.arm_gripper_loop_controller_node:main",
+            "mycobot_pick_and_place = arm_controller.pick_and_place_node:main",
+            "example_gripper = arm_controller.example_gripper_node:main",
+            "example_diff_drive = arm_controller.example_diff_drive_node:main",
         ],
         "launch_py.nodes": [
             "arm_controller_node = arm_controller_node",

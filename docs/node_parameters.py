@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import rclpy
@@ -23,7 +22,7 @@ from arm_control.manager.settings import ManagerSettings
 from arm_control.parameters import ParameterSpec, specs_of
 from arm_controller.arm_controller_node import ArmController
 from arm_controller.arm_gripper_loop_controller_node import ArmGripperLoopController
-from arm_controller.command_sequence_node import gripper_example
+from arm_controller.example_gripper_node import GripperTest
 from arm_controller.pick_and_place_node import PickAndPlaceNode
 from arm_controller.publisher_defined_node import PublisherDefined
 from arm_controller.publisher_terminal_node import PublisherTerminal
@@ -68,8 +67,6 @@ def _ignore(*_: Any) -> None:
     """Do nothing: the nodes never run."""
 
 
-_PROCESS: Any = SimpleNamespace(stopping=False)
-
 NODES: tuple[tuple[Callable[[], Node], str], ...] = (
     (
         RobotStatePublisher,
@@ -84,15 +81,12 @@ NODES: tuple[tuple[Callable[[], Node], str], ...] = (
     ),
     (Viewer, "Serves the page in the browser."),
     (ArmController, "Sends the pose in its parameter `desired_param` each time that is set."),
-    (lambda: PublisherTerminal(_PROCESS), "Sends the poses that the user types."),
-    (lambda: PublisherDefined(_PROCESS), "Sends the poses of a file, one after the other."),
+    (PublisherTerminal, "Sends the poses that the user types."),
+    (PublisherDefined, "Sends the poses of a file, one after the other."),
+    (ArmGripperLoopController, "Moves the myCobot back and forth, and its gripper."),
+    (PickAndPlaceNode, "Picks the red cylinder up and puts it back."),
     (
-        lambda: ArmGripperLoopController(_PROCESS),
-        "Moves the myCobot back and forth, and its gripper.",
-    ),
-    (lambda: PickAndPlaceNode(_PROCESS), "Picks the red cylinder up and puts it back."),
-    (
-        lambda: gripper_example(_PROCESS),
+        GripperTest,
         "Closes the gripper of the demo. `diff_drive_test_node`, which drives the demo on two "
         "wheels, has the same parameter.",
     ),
@@ -195,6 +189,8 @@ def _described(node: Node) -> list[Parameter]:
 
 def _described_by(node: Node, descriptor: ParameterDescriptor) -> Parameter:
     takes = descriptor.additional_constraints
+    for bounds in descriptor.floating_point_range:
+        takes = takes or f"from {bounds.from_value:g} to {bounds.to_value:g}"
     return Parameter(
         descriptor.name,
         TYPES[descriptor.type] or ("list" if takes.startswith("a list") else ""),

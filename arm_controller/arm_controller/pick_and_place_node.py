@@ -1,9 +1,11 @@
 """The node mycobot_pick_and_place: picks an object up, holds it, puts it back, and ends."""
 
-from typing import TYPE_CHECKING, Any
+from math import isfinite
+from typing import Any
 
+import rclpy
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from std_msgs.msg import String
 
@@ -17,17 +19,13 @@ from arm_controller.pick_plan import (
     prefixed_joints,
 )
 from arm_controller.pose import ArmControllerError
-from arm_controller.ros_arm_actions import ArmActions
-from arm_controller.ros_parameters import declare, read_positive
-from arm_description.errors import DescriptionError
-from arm_description.urdf.parser import parse_urdf
-from arm_node.parameter_values import read_numbers, read_text, refusal
-
-if TYPE_CHECKING:
-    from arm_node.process import NodeProcess
+from arm_controller.ros_arm import LATCHED
+from arm_controller.ros_arm_actions import POLL_S, ArmActions
+from arm_controller.ros_node import NodeParameterError, declare, given, numbers_in, run
 
 TOPIC = "robot_description"
 DEFAULT = PickTask()
+LENGTHS_M, EFFORTS_N_M = (0.0, 10.0), (0.001, 1e3)
 
 
 class PickError(ArmControllerError):
@@ -35,70 +33,50 @@ class PickError(ArmControllerError):
 
 
 class PickAndPlaceNode(Node):
-    """Picks an object up through the robot's actions; parameters describe the object.
+    """Picks an object up through the robot's actions; parameters describe the object."""
 
-    Args:
-        process: ends after the pick; with exit code 1 if it failed.
-
-    Raises:
-        ParameterValueError: a given parameter is invalid.
-    """
-
-    def __init__(self, process: "NodeProcess") -> None:
+    def __init__(self) -> None:
         super().__init__("mycobot_pick_and_place")
-        self._process = process
-        x, y = declare(
-            self,
-            "position",
-            [DEFAULT.x, DEFAULT.y],
-            read_place,
-            "Position of the object, x and y in the frame of the robot's base (m)",
-        )
+        place = numbers_in(given(self, "position", [DEFAULT.x, DEFAULT.y]))
+        if place is None or len(place) != 2 or not all(map(isfinite, place)):
+            raise NodeParameterError("parameter position: must be a list of two numbers, x and y")
+        x, y = place
+        about = "Position of the object, x and y in the frame of the robot's base (m)"
+        descriptor = ParameterDescriptor(description=about, read_only=True)
+        self.declare_parameter("position", [x, y], descriptor, ignore_override=True)
         self._task = PickTask(
             x,
             y,
-            declare(self, "height", DEFAULT.height, read_positive, "Height of the grip (m)"),
-            declare(self, "lift", DEFAULT.lift, read_positive, "How far the object is lifted (m)"),
-            declare(self, "hold_time", DEFAULT.hold_s, read_positive, "How long it is held (s)"),
-            declare(self, "max_effort", DEFAULT.max_effort, read_positive, "Effort limit (N m)"),
+            declare(self, "height", DEFAULT.height, "Height of the grip (m)", LENGTHS_M),
+            declare(self, "lift", DEFAULT.lift, "How far the object is lifted (m)", LENGTHS_M),
+            declare(self, "hold_time", DEFAULT.hold_s, "How long it is held (s)", (0.0, 1e9)),
+            declare(self, "max_effort", DEFAULT.max_effort, "Effort limit (N m)", EFFORTS_N_M),
         )
-        self._prefix = declare(self, "prefix", "", read_text, "Prefix of the joint names")
+        self._prefix = declare(self, "prefix", "", "Prefix of the joint names")
         self._actions = ArmActions(self, prefixed_joints(self._prefix))
 
-    def start(self) -> None:
-        """Begin the pick, in the executor's thread."""
-        self._process.executor.create_task(self._pick)
+    def pick(self) -> None:
+        """Pick the object up and put it back.
 
-    def stop(self) -> None:
-        """Cancel the running movement; call it in any thread but the executor's."""
-        self._actions.stop()
+        Raises:
+            ArmControllerError: a step failed, or the object cannot be gripped there.
+        """
+        self._actions.connect()
+        plan = plan_pick(self._description(), self._task, self._prefix)
+        PickAndPlace(self._actions, plan, self.get_logger()).run()
 
-    async def _pick(self) -> None:
-        try:
-            await self._actions.connect()
-            plan = plan_pick(parse_urdf(await self._description(), TOPIC), self._task, self._prefix)
-            await PickAndPlace(self._actions, plan, self.get_logger()).run()
-        except (ArmControllerError, DescriptionError) as error:
-            # A pick that a signal interrupts has not failed.
-            if not self._process.stopping:
-                self.get_logger().fatal(str(error))
-                self._process.stop(1)
-        else:
-            self._process.stop()
-
-    async def _description(self) -> str:
+    def _description(self) -> str:
         self.get_logger().info(f"Waiting for {self.resolve_topic_name(TOPIC)}...")
-        described = Future(executor=self.executor)
+        described = Future()
 
         def take(message: String) -> None:
-            if not described.done():
-                described.set_result(message.data)
+            described.set_result(message.data)
 
-        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        subscription = self.create_subscription(String, TOPIC, take, qos)
-        description: str = await described  # pyright: ignore[reportAssignmentType]
+        subscription = self.create_subscription(String, TOPIC, take, LATCHED)
+        while not described.done():
+            rclpy.spin_until_future_complete(self, described, timeout_sec=POLL_S)
         self.destroy_subscription(subscription)
-        return description
+        return str(described.result())
 
 
 class PickAndPlace:
@@ -112,43 +90,43 @@ class PickAndPlace:
         self._plan = plan
         self._logger = logger
 
-    async def run(self) -> None:
+    def run(self) -> None:
         """Pick up, hold and put back the object once, then move the arm home.
 
         Raises:
             PickError: a step failed and the robot stopped; the message says which and why.
         """
         plan, task = self._plan, self._plan.task
-        await self._robot.connect()
-        await self._open()
-        await self._go("to the object", plan.to_object)
-        await self._go("around the object", plan.approach)
-        await self._close("Closing gripper")
-        await self._go(f"up by {task.lift:g} m", plan.up)
+        self._robot.connect()
+        self._open()
+        self._go("to the object", plan.to_object)
+        self._go("around the object", plan.approach)
+        self._close("Closing gripper")
+        self._go(f"up by {task.lift:g} m", plan.up)
         self._logger.info(f"Holding for {task.hold_s:g} s")
-        await self._robot.pause(task.hold_s)
-        await self._close("Checking whether the object is still held")
-        await self._go("down again", plan.down)
-        await self._open()
-        await self._go("away", plan.away)
-        await self._go("to home position", plan.home)
+        self._robot.pause(task.hold_s)
+        self._close("Checking whether the object is still held")
+        self._go("down again", plan.down)
+        self._open()
+        self._go("away", plan.away)
+        self._go("to home position", plan.home)
         self._logger.info("The object was picked up, held and put back")
 
-    async def _go(self, where: str, path: JointPath) -> None:
+    def _go(self, where: str, path: JointPath) -> None:
         self._logger.info(f"Moving {where}")
-        failure = await self._robot.follow(path)
+        failure = self._robot.follow(path)
         if failure is not None:
             raise PickError(f"the arm could not move {where}: {failure}")
 
-    async def _open(self) -> None:
+    def _open(self) -> None:
         self._logger.info("Opening gripper")
-        result = await self._grip(WIDE_OPEN)
+        result = self._grip(WIDE_OPEN)
         if not result.reached_goal:
             raise PickError(f"the gripper did not open: it is at {result.position:.3f} rad")
 
-    async def _close(self, doing: str) -> None:
+    def _close(self, doing: str) -> None:
         self._logger.info(doing)
-        result = await self._grip(CLOSED)
+        result = self._grip(CLOSED)
         if result.reached_goal:
             raise PickError("there is nothing between the fingers: they closed all the way")
         if not result.stalled:
@@ -157,21 +135,13 @@ class PickAndPlace:
             )
         self._logger.info(f"The object is held, at {result.position:.3f} rad")
 
-    async def _grip(self, position: float) -> Any:
-        result = await self._robot.grip(position, self._plan.task.max_effort)
+    def _grip(self, position: float) -> Any:
+        result = self._robot.grip(position, self._plan.task.max_effort)
         if isinstance(result, str):
             raise PickError(f"the gripper did not move: {result}")
         return result
 
 
-def read_place(value: object) -> tuple[float, float]:
-    """Return a position on the ground, x and y.
-
-    Raises:
-        ParameterValueError: the value is not a list of two finite numbers.
-    """
-    wanted = "a list of two numbers, x and y"
-    numbers = read_numbers(value, wanted)
-    if len(numbers) != 2:
-        raise refusal(wanted, value)
-    return numbers[0], numbers[1]
+def main() -> int:
+    """Pick an object up, hold it and put it back; return 1 if that failed."""
+    return run(PickAndPlaceNode, PickAndPlaceNode.pick)

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_controller.pose import ArmControllerError
-from arm_description.errors import KinematicsError
+from arm_description.errors import DescriptionError, KinematicsError
 from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.transforms import transform
-from arm_description.urdf.robot import Robot
+from arm_description.urdf.parser import parse_urdf
 
 Array = NDArray[np.float64]
 
@@ -164,19 +164,23 @@ class PickPlan:
     home: JointPath
 
 
-def plan_pick(robot: Robot, task: PickTask, prefix: str = "") -> PickPlan:
+def plan_pick(description: str, task: PickTask, prefix: str = "") -> PickPlan:
     """Return the paths of a pick.
 
     Args:
-        robot: a myCobot with its gripper.
+        description: the URDF of a myCobot with its gripper.
         task: what to pick up.
         prefix: prefix of the robot's names.
 
     Raises:
-        UrdfError: the robot is not a myCobot.
-        PlanError: the object cannot be gripped there; the message says why.
+        PlanError: the robot is not a myCobot, or the object cannot be gripped there; the message
+            says why.
     """
-    kinematics = InverseKinematics(robot, prefix + HAND, prefixed_joints(prefix))
+    try:
+        robot = parse_urdf(description, "robot_description")
+        kinematics = InverseKinematics(robot, prefix + HAND, prefixed_joints(prefix))
+    except DescriptionError as error:
+        raise PlanError(str(error)) from error
     why: list[Exception] = []
     for heading, posture in _tries(task):
         try:

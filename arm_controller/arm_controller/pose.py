@@ -1,13 +1,16 @@
-"""A pose of the robot's joints, and the limits that it must keep to."""
+"""A pose of the robot's joints: from numbers or a file, and within the limits of the robot."""
 
 import math
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from pathlib import Path
 
-from arm_description.urdf.parser import parse_urdf
+import yaml
 
 Pose = tuple[float, ...]
 """Positions (rad or m), one per joint, in the order of the joints."""
+Limits = Mapping[str, tuple[float, float]]
+"""The range (rad or m) of each joint that has limits, by its name."""
 
 
 class ArmControllerError(Exception):
@@ -18,32 +21,25 @@ class PoseError(ArmControllerError):
     """A pose has the wrong length, is not finite, or exceeds a joint's limits."""
 
 
-def read_pose(values: Sequence[object], joints: Sequence[str]) -> Pose:
-    """Return integers or floats as a pose.
+class PoseFileError(ArmControllerError):
+    """A file of poses is missing, unreadable or invalid; the message names file and line."""
+
+
+def read_pose(values: Sequence[float], joints: Sequence[str]) -> Pose:
+    """Return numbers as a pose.
 
     Raises:
         PoseError: there is not one finite number per joint.
     """
-    pose = tuple(_number(value) for value in values)
-    if len(pose) != len(joints):
+    if len(values) != len(joints):
         raise PoseError(
             f"a pose is {len(joints)} numbers, one for each of the joints "
-            f"{', '.join(joints)}; {len(pose)} were given"
+            f"{', '.join(joints)}; {len(values)} were given"
         )
-    for name, position in zip(joints, pose, strict=True):
-        if not math.isfinite(position):
-            raise PoseError(f"joint '{name}' cannot go to {position}: not a finite number")
-    return pose
-
-
-def _number(value: object) -> float:
-    # bool is a subclass of int, but a bool in a pose is a mistake.
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise PoseError(f"a pose is made of numbers; {value!r} is not one")
-    try:
-        return float(value)
-    except OverflowError as error:
-        raise PoseError(f"{str(value)[:20]}... is too large a number for a joint") from error
+    for name, value in zip(joints, values, strict=True):
+        if not math.isfinite(value):
+            raise PoseError(f"joint '{name}' cannot go to {value}: not a finite number")
+    return tuple(values)
 
 
 def shown(pose: Pose) -> str:
@@ -51,68 +47,88 @@ def shown(pose: Pose) -> str:
     return "[" + ", ".join(f"{position:.6f}" for position in pose) + "]"
 
 
-@dataclass(frozen=True, slots=True)
-class AllowedRange:
-    """Range (rad, or m for a prismatic joint) and top speed (the same per second) of one joint."""
-
-    name: str
-    lower: float = -math.inf
-    upper: float = math.inf
-    velocity: float = math.inf
-    unit: str = "rad"
-
-
-Limits = tuple[AllowedRange, ...]
-"""The limits of the joints of a pose, in its order."""
-
-
 def read_limits(description: str, joints: Sequence[str]) -> Limits:
     """Return the limits that a URDF gives to these joints.
 
     Raises:
-        DescriptionError: it is no URDF, or has no joint of a name; the message names its joints.
-        PoseError: a joint is fixed.
+        PoseError: it is not a URDF, or has no such joint; the message names those that it has.
     """
-    robot = parse_urdf(description, "robot_description")
-    limits: list[AllowedRange] = []
+    try:
+        found = {j.get("name", ""): j for j in ElementTree.fromstring(description).iter("joint")}
+        movable = {name: j for name, j in found.items() if j.get("type", "fixed") != "fixed"}
+        bounds = {
+            name: (float(limit.get("lower", 0.0)), float(limit.get("upper", 0.0)))
+            for name, joint in movable.items()
+            if joint.get("type") != "continuous" and (limit := joint.find("limit")) is not None
+        }
+    except (ElementTree.ParseError, ValueError) as error:
+        raise PoseError(f"it is not a URDF: {error}") from error
     for name in joints:
-        joint = robot.joint(name)
-        if joint.type == "fixed":
-            raise PoseError(f"joint '{name}' is fixed: it cannot be part of a pose")
-        unit, limit = joint.type.unit, joint.limit
-        if limit is None:
-            limits.append(AllowedRange(name, unit=unit))
-        else:
-            # In some descriptions a speed limit of 0 means that there is none.
-            velocity = limit.velocity if limit.velocity > 0.0 else math.inf
-            limits.append(AllowedRange(name, limit.lower, limit.upper, velocity, unit))
-    return tuple(limits)
+        if name not in movable:
+            raise PoseError(f"no movable joint '{name}'; the robot has {', '.join(movable)}")
+    return {name: bounds[name] for name in joints if name in bounds}
 
 
-def check_limits(pose: Pose, limits: Limits) -> None:
+def check_limits(pose: Pose, joints: Sequence[str], limits: Limits) -> None:
     """Check that the robot can reach a pose.
 
     Raises:
         PoseError: a position is beyond its joint's limits; the message names both.
     """
-    for limit, position in zip(limits, pose, strict=True):
-        if not limit.lower <= position <= limit.upper:
+    for name, position in zip(joints, pose, strict=True):
+        lower, upper = limits.get(name, (-math.inf, math.inf))
+        if not lower <= position <= upper:
             raise PoseError(
-                f"joint '{limit.name}' cannot go to {position:g} {limit.unit}: "
-                f"its limits are {limit.lower:g} to {limit.upper:g} {limit.unit}"
+                f"joint '{name}' cannot go to {position:g}: its limits are {lower:g} to {upper:g}"
             )
 
 
-def shortest_move(
-    pose: Pose, start: Mapping[str, float], limits: Limits
-) -> tuple[AllowedRange, float]:
-    """Return the joint that takes longest at its top speed, and how long it takes (s).
+def read_pose_file(path: Path, joints: Sequence[str]) -> list[Pose]:
+    """Return the poses of a YAML file, at least one.
 
-    Joints of unknown start count as not moving.
+        poses:
+          - [0.5, 0.5, 0.5, 0.5]
+          - [0.0, 0.0, 0.0, 0.0]
+
+    Raises:
+        PoseFileError: the file is missing, not YAML, or not a list of poses; the message names the
+            file and the line.
     """
-    times = {
-        limit: abs(position - start.get(limit.name, position)) / limit.velocity
-        for limit, position in zip(limits, pose, strict=True)
-    }
-    slowest = max(times, key=lambda limit: (times[limit], limit.name))
-    return slowest, times[slowest]
+    # A FIFO or a device would block.
+    if not path.is_file():
+        what = "is not a regular file" if path.exists() else "does not exist"
+        raise PoseFileError(f"the pose file {path} {what}")
+    try:
+        # Nodes instead of values, because only nodes know their line.
+        root = yaml.compose(path.read_text(), yaml.SafeLoader)
+    except (OSError, UnicodeDecodeError) as error:
+        raise PoseFileError(f"cannot read the pose file {path}: {error}") from error
+    except (yaml.YAMLError, RecursionError) as error:
+        raise PoseFileError(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(root, yaml.MappingNode) or not root.value:
+        raise PoseFileError(f"{path} must have the key 'poses' with a list of poses")
+    poses: list[yaml.Node] = []
+    for key, value in root.value:
+        place = f"{path}, line {key.start_mark.line + 1}"
+        if key.value != "poses":
+            raise PoseFileError(f"{place}: unknown key {key.value!r}; the only key is 'poses'")
+        if not isinstance(value, yaml.SequenceNode) or not value.value:
+            raise PoseFileError(f"{place}: 'poses' must be a list of poses")
+        poses = value.value
+    return [_read_pose(node, path, joints) for node in poses]
+
+
+def _read_pose(node: yaml.Node, path: Path, joints: Sequence[str]) -> Pose:
+    place = f"{path}, line {node.start_mark.line + 1}"
+    items = node.value if isinstance(node, yaml.SequenceNode) else None
+    try:
+        # YAML 1.1 reads 1e-3 as a text, so Python decides what is a number.
+        values = [float(item.value) for item in items or ()]
+    except (TypeError, ValueError) as error:
+        raise PoseFileError(f"{place}: a pose is made of numbers; {error}") from error
+    if items is None:
+        raise PoseFileError(f"{place}: a pose is a list of {len(joints)} numbers")
+    try:
+        return read_pose(values, joints)
+    except PoseError as error:
+        raise PoseFileError(f"{place}: {error}") from error

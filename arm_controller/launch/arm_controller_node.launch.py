@@ -1,6 +1,6 @@
 """Starts the controller node with a pose from a file: config/params.yaml or another."""
 
-from launch_py import DeclareLaunchArgument, LaunchDescription, Notified
+from launch_py import DeclareLaunchArgument, LaunchDescription, LogLine
 from launch_py.ros import FindPackageShare, Node
 from launch_py.substitutions import (
     EqualsSubstitution,
@@ -54,7 +54,7 @@ def generate_launch_description() -> LaunchDescription:
                 executable="arm_controller_node",
                 namespace=LaunchConfiguration("namespace"),
                 parameters=[LaunchConfiguration("params_file")],
-                ready=Notified(),
+                ready=LogLine("Set the parameter desired_param"),
             ),
         ]
     )

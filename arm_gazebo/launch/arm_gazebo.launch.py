@@ -9,7 +9,7 @@ from launch_py import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
     LaunchDescription,
-    Notified,
+    LogLine,
     ReadyPanel,
 )
 from launch_py.actions import OpaqueFunction
@@ -109,7 +109,7 @@ def controller_node() -> Node:
                 ),
             }
         ],
-        ready=Notified(),
+        ready=LogLine("Set the parameter desired_param"),
         condition=IfCondition(LaunchConfiguration("controller_node")),
     )
 

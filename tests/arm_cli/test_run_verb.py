@@ -32,12 +32,18 @@ def test_run_replaces_the_process_by_the_executable(monkeypatch):
 
 
 def test_the_course_project_s_names_work():
-    as_s0 = ("--ros-args", "-p", "course:=S0")
     for name, does in (
         ("arm_controller", "arm_controller_node"),
         ("publisher_defined", "publisher_defined"),
     ):
-        assert find_command("arm_control", name) == (*find_command("arm_controller", does), *as_s0)
+        *command, file = find_command("arm_control", name)
+        assert tuple(command) == (
+            *find_command("arm_controller", does),
+            "--ros-args",
+            "--params-file",
+        )
+        assert os.path.isfile(file)
+        assert file.endswith("courses/S0.yaml")
 
 
 def test_the_ros1_original_s_node_sends_its_own_pose():

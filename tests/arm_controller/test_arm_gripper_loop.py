@@ -1,6 +1,5 @@
 """The loop of arm and gripper: its order, and that it logs actual results."""
 
-import asyncio
 import logging
 from types import SimpleNamespace
 
@@ -16,22 +15,22 @@ class FakeRobot:
         self.did: list[object] = []
         self._blocked = blocked
 
-    async def connect(self) -> None:
+    def connect(self) -> None:
         self.did.append("connect")
 
-    async def follow(self, path) -> str | None:
+    def follow(self, path) -> str | None:
         (point,) = path
         assert (point.time_s, point.velocities) == (2.0, ())
         self.did.append(point.positions)
         return "a wall is there" if point.positions in self._blocked else None
 
-    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
+    def grip(self, position: float, max_effort: float) -> SimpleNamespace:
         assert max_effort == 5.0
         self.did.append(position)
         is_blocked = position in self._blocked
         return SimpleNamespace(position=-0.3, reached_goal=not is_blocked, stalled=is_blocked)
 
-    async def pause(self, seconds: float) -> None:
+    def pause(self, seconds: float) -> None:
         self.did.append("pause")
 
 
@@ -41,7 +40,7 @@ def told(caplog):
 
     def run(robot: FakeRobot) -> list[tuple[str, str]]:
         with caplog.at_level(logging.INFO):
-            asyncio.run(run_once(robot, logging.getLogger(), 2.0, 5.0))
+            run_once(robot, logging.getLogger(), 2.0, 5.0)
         return [(record.levelname, record.getMessage()) for record in caplog.records]
 
     return run

@@ -1,6 +1,5 @@
 """The steps of a pick: their order, the log, and where it ends if one fails."""
 
-import asyncio
 import logging
 
 import pytest
@@ -37,25 +36,25 @@ class FakeRobot:
         self._blocked = blocked
         self._opening = opening
 
-    async def connect(self) -> None:
+    def connect(self) -> None:
         self.did.append("connect")
 
-    async def follow(self, path: JointPath) -> str | None:
+    def follow(self, path: JointPath) -> str | None:
         name = NAMES[int(path[0].positions[0])]
         self.did.append(name)
         return "a wall is there" if name == self._blocked else None
 
-    async def grip(self, position: float, max_effort: float) -> GripperCommand.Result | str:
+    def grip(self, position: float, max_effort: float) -> GripperCommand.Result | str:
         assert max_effort == 2.0
         self.did.append(position)
         return self._opening if position == WIDE_OPEN else self._grips.pop(0)
 
-    async def pause(self, seconds: float) -> None:
+    def pause(self, seconds: float) -> None:
         self.did.append(seconds)
 
 
 def run(robot: FakeRobot) -> None:
-    asyncio.run(PickAndPlace(robot, PLAN, logging.getLogger()).run())
+    PickAndPlace(robot, PLAN, logging.getLogger()).run()
 
 
 def test_the_object_is_picked_held_and_put_back(caplog):

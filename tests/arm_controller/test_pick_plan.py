@@ -18,7 +18,6 @@ from arm_controller.pick_plan import (
     reversed_path,
     straight_path,
 )
-from arm_description.errors import UrdfError
 from arm_description.kinematics.forward import forward_kinematics
 from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.resources import resolve_uri
@@ -30,13 +29,18 @@ XACRO = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 
 
 @pytest.fixture(scope="module")
-def robot() -> Robot:
-    return parse_urdf(expand_xacro(resolve_uri(XACRO)))
+def description() -> str:
+    return expand_xacro(resolve_uri(XACRO))
 
 
 @pytest.fixture(scope="module")
-def plan(robot: Robot) -> PickPlan:
-    return plan_pick(robot, PickTask())
+def robot(description: str) -> Robot:
+    return parse_urdf(description)
+
+
+@pytest.fixture(scope="module")
+def plan(description: str) -> PickPlan:
+    return plan_pick(description, PickTask())
 
 
 def centres(robot: Robot, positions: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -93,27 +97,32 @@ def test_every_joint_stays_slower_than_it_may(robot, plan):
 
 @pytest.mark.parametrize("distance", [0.2, 0.25])
 @pytest.mark.parametrize("direction_deg", [-90.0, 0.0, 150.0])
-def test_the_object_may_stand_elsewhere(robot, distance, direction_deg):
+def test_the_object_may_stand_elsewhere(description, robot, distance, direction_deg):
     direction = math.radians(direction_deg)
     place = (distance * math.cos(direction), distance * math.sin(direction))
-    plan = plan_pick(robot, PickTask(*place))
+    plan = plan_pick(description, PickTask(*place))
     centre, _ = centres(robot, plan.approach[-1].positions)
     assert centre[:2] == pytest.approx(place, abs=1e-4)
 
 
 def test_names_may_have_a_prefix():
-    robot = parse_urdf(expand_xacro(resolve_uri(XACRO), {"prefix": "left_"}))
-    assert plan_pick(robot, PickTask(), "left_").approach
+    description = expand_xacro(resolve_uri(XACRO), {"prefix": "left_"})
+    assert plan_pick(description, PickTask(), "left_").approach
 
 
-def test_an_object_too_far_away_is_refused_with_the_reason(robot):
+def test_an_object_too_far_away_is_refused_with_the_reason(description):
     with pytest.raises(PlanError, match=r"at \(0\.600, 0\.000\) m cannot be gripped .* is off by"):
-        plan_pick(robot, PickTask(0.6, 0.0))
+        plan_pick(description, PickTask(0.6, 0.0))
 
 
-def test_another_robot_is_refused(robot):
-    with pytest.raises(UrdfError, match="no link 'left_gripper_base'"):
-        plan_pick(robot, PickTask(), "left_")
+def test_another_robot_is_refused(description):
+    with pytest.raises(PlanError, match="no link 'left_gripper_base'"):
+        plan_pick(description, PickTask(), "left_")
+
+
+def test_what_is_not_a_robot_is_refused():
+    with pytest.raises(PlanError, match="robot_description"):
+        plan_pick("<robot", PickTask())
 
 
 def test_a_straight_line_past_a_singularity_is_refused(robot):

@@ -1,20 +1,22 @@
 """A pose that exists is complete and finite, and its limits come from the robot's description."""
 
 import math
+import os
+from pathlib import Path
 
 import pytest
+from ament_index_python.packages import get_package_share_directory
 
 from arm_controller.pose import (
-    AllowedRange,
     Limits,
     PoseError,
+    PoseFileError,
     check_limits,
     read_limits,
     read_pose,
-    shortest_move,
+    read_pose_file,
     shown,
 )
-from arm_description.errors import UrdfError
 
 JOINTS = ("j0", "j1", "j2", "j3")
 
@@ -36,8 +38,6 @@ def test_shows_six_decimals():
             ([0.0, 0.0, value, 0.0], "joint 'j2' cannot go to")
             for value in (math.nan, math.inf, -math.inf)
         ),
-        *(([0.0, 0.0, value, 0.0], "is not one") for value in ("0.5", None, True, [0.5])),
-        ([10**400, 0, 0, 0], "too large"),
     ],
 )
 def test_refuses_what_is_no_pose(values, message):
@@ -69,26 +69,93 @@ def limits() -> Limits:
 
 
 def test_a_pose_on_the_limits_is_allowed_and_one_just_beyond_is_not(limits):
-    check_limits((0.3, -2.57, 1000.0), limits)
-    check_limits((1e9, -1e9), (AllowedRange("a"), AllowedRange("b")))  # Of an unknown robot.
+    check_limits((0.3, -2.57, 1000.0), NAMES, limits)
+    check_limits((1e9, -1e9), ("a", "b"), {})  # Of an unknown robot.
     with pytest.raises(PoseError) as caught:
-        check_limits((0.301, -2.57, 1000.0), limits)
-    assert str(caught.value) == "joint 'slide' cannot go to 0.301 m: its limits are 0 to 0.3 m"
-
-
-def test_the_slowest_joint_sets_the_time_of_a_move(limits):
-    start = {"turn": 1.0, "slide": 0.0, "wheel": 0.0}
-    joint, time_s = shortest_move((0.3, -1.0, 50.0), start, limits)
-    assert (joint.name, time_s) == ("turn", pytest.approx(20.0))
-    # A joint of unknown position counts as not moving.
-    assert shortest_move((0.3, 1.0, 0.0), {}, limits)[1] == 0.0
+        check_limits((0.301, -2.57, 1000.0), NAMES, limits)
+    assert str(caught.value) == "joint 'slide' cannot go to 0.301: its limits are 0 to 0.3"
 
 
 def test_an_unknown_joint_is_refused_with_those_that_exist():
-    with pytest.raises(UrdfError, match="no joint 'j9'; the robot has turn, slide"):
+    with pytest.raises(PoseError, match="no movable joint 'j9'; the robot has turn, slide, wheel"):
         read_limits(ROBOT, ["turn", "j9"])
 
 
 def test_a_fixed_joint_is_refused():
-    with pytest.raises(PoseError, match="joint 'glue' is fixed"):
+    with pytest.raises(PoseError, match="no movable joint 'glue'"):
         read_limits(ROBOT, ["glue"])
+
+
+@pytest.mark.parametrize("text", ["", "robot", ROBOT.replace("0.3", "far")])
+def test_what_is_not_a_urdf_is_refused(text):
+    with pytest.raises(PoseError, match="it is not a URDF"):
+        read_limits(text, NAMES)
+
+
+@pytest.fixture
+def poses_in(tmp_path):
+    def read(text: str):
+        path = tmp_path / "poses.yaml"
+        path.write_text(text)
+        return read_pose_file(path, ("j0", "j1"))
+
+    return read
+
+
+def test_reads_poses_in_order(poses_in):
+    assert poses_in("poses:\n  - [1, 0.5]\n  - [-1e-3, .25]\n") == [(1.0, 0.5), (-0.001, 0.25)]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must have the key 'poses'"),
+        ("- [0, 0]\n", "must have the key 'poses'"),
+        ("{}\n", "must have the key 'poses'"),
+        ("poses:\n", "line 1: 'poses' must be a list"),
+        ("poses: []\n", "line 1: 'poses' must be a list"),
+        ("poses:\n  - [0, 0]\nspeed: 3\n", "line 3: unknown key 'speed'"),
+        ("? [1]\n: 2\n", "line 1: unknown key"),
+        ("poses:\n  - 5\n", "line 2: a pose is a list of 2 numbers"),
+        ("poses:\n  - [0, 0]\n  - [0]\n", "line 3: a pose is 2 numbers.*1 were given"),
+        ("poses:\n  - [0, up]\n", "line 2: a pose is made of numbers; .*'up'"),
+        ("poses:\n  - [0, true]\n", "line 2: a pose is made of numbers; .*'true'"),
+        ("poses:\n  - [0, [1]]\n", "line 2: a pose is made of numbers"),
+        ("poses:\n  - [0, nan]\n", "line 2: joint 'j1' cannot go to nan"),
+        ("poses: [\n", "is not YAML: .* line 2"),
+        ("poses: \x00\n", "is not YAML"),
+        ("poses: " + 5000 * "[", "is not YAML"),
+    ],
+)
+def test_names_the_file_and_what_is_wrong(poses_in, text, message):
+    with pytest.raises(PoseFileError, match=message) as caught:
+        poses_in(text)
+    assert "poses.yaml" in str(caught.value)
+
+
+def test_names_a_missing_file():
+    with pytest.raises(PoseFileError, match=r"the pose file /nowhere/poses\.yaml does not exist"):
+        read_pose_file(Path("/nowhere/poses.yaml"), JOINTS)
+
+
+def test_a_fifo_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(PoseFileError, match="is not a regular file"):
+        read_pose_file(tmp_path / "pipe", JOINTS)
+
+
+def test_a_file_that_is_not_text_is_refused(tmp_path):
+    (tmp_path / "poses.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(PoseFileError, match=f"cannot read the pose file {tmp_path}"):
+        read_pose_file(tmp_path / "poses.yaml", JOINTS)
+
+
+def test_the_defined_poses_are_the_five_of_the_original():
+    file = Path(get_package_share_directory("arm_controller")) / "config/poses.yaml"
+    assert read_pose_file(file, JOINTS) == [
+        (0.5, 0.5, 0.5, 0.5),
+        (0.7, 1.4, 0.5, 0.5),
+        (0.5, 1.0, 0.6, 0.6),
+        (0.3, 0.6, 0.3, 0.3),
+        (0.0, 0.0, 0.0, 0.0),
+    ]

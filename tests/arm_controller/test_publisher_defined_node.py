@@ -1,6 +1,9 @@
 """publisher_defined beside a robot of topics."""
 
+from pathlib import Path
+
 import pytest
+from ament_index_python.packages import get_package_share_directory
 
 pytestmark = pytest.mark.ros
 
@@ -54,7 +57,9 @@ def test_course_s0_sends_poses_ten_seconds_apart_though_one_is_not_reached(robot
     robot.tick()  # Ten times as fast as time passes.
     robot.stuck.add("j2")
     poses = poses_file("poses:\n  - [0.1, 0.1, 0.4, 0.1]\n  - [0.2, 0.2, 0.0, 0.2]\n")
-    program = run(NAME, poses_file=poses, course="S0", use_sim_time="true")
+    course = Path(get_package_share_directory("arm_control")) / "config/courses/S0.yaml"
+    file = ("--ros-args", "--params-file", str(course))
+    program = run(NAME, *file, poses_file=poses, use_sim_time="true")
     assert program.wait() == 1
     assert "Pose 1 of 2 not reached within 10 s" in program.output
     assert commands == [[0.1, 0.1, 0.4, 0.1], [0.2, 0.2, 0.0, 0.2]]
@@ -69,25 +74,12 @@ def test_a_joint_that_stays_behind_is_named_and_the_next_pose_comes(robot, run, 
     program = run(NAME, poses_file=poses, timeout=3)
     assert program.wait() == 1
     assert (
-        "Pose 1 of 2 not reached within 3 s: joint 'j2' is at 0.0000, 0.4000 rad from 0.4000"
+        "Pose 1 of 2 not reached within 3 s: joint 'j2' is at 0.0000, 0.4000 from 0.4000"
         in program.output
     )
     assert "Pose 2 of 2 reached" in program.output
     assert "1 of 2 poses not reached" in program.output
     assert commands == [[0.1, 0.1, 0.4, 0.1], [0.2, 0.2, 0.0, 0.2]]
-
-
-def test_joints_too_slow_for_the_time_out_are_reported_before_and_after(robot, run, poses_file):
-    robot.listen()
-    robot.describe(velocity=0.1)
-    robot.broadcast()
-    robot.stuck.update({"j0", "j1"})
-    poses = poses_file("poses:\n  - [1.0, 0.2, 0.0, 0.0]\n")
-    program = run(NAME, poses_file=poses, timeout=0.5)
-    assert program.wait() == 1
-    sentence = "joint 'j0' needs at least 10.0 s at its velocity limit of 0.1 rad/s"
-    assert f"Pose 1 of 1 cannot be reached in time: {sentence}" in program.output
-    assert program.output.count(sentence) == 2
 
 
 def test_a_pose_beyond_the_limits_is_left_out(robot, run, poses_file):
@@ -97,7 +89,7 @@ def test_a_pose_beyond_the_limits_is_left_out(robot, run, poses_file):
     poses = poses_file("poses:\n  - [0.0, 0.0, 0.0, -5]\n  - [0.1, 0.0, 0.0, 0.0]\n")
     program = run(NAME, poses_file=poses)
     assert program.wait() == 1
-    assert "is skipped: joint 'j3' cannot go to -5 rad" in program.output
+    assert "is skipped: joint 'j3' cannot go to -5" in program.output
     assert commands == [[0.1, 0.0, 0.0, 0.0]]
 
 

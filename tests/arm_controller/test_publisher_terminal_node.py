@@ -36,10 +36,19 @@ def test_answers_each_typed_line(robot, run, until):
     program.type("1 2 3\n")
     program.wait_for("Please enter exactly 4 numbers.")
     program.type("-5 0.5 -1.2 -1\n")
-    program.wait_for("joint 'j0' cannot go to -5 rad: its limits are -2.57 to 2.57 rad")
+    program.wait_for("joint 'j0' cannot go to -5: its limits are -2.57 to 2.57")
     program.end_of_input()
     assert program.wait() == 0
     assert commands == [[0.4, -0.1, 0.5, 0.4]]
+
+
+def test_bytes_that_are_not_text_are_answered(run):
+    program = run(NAME)
+    assert program.process.stdin is not None
+    program.process.stdin.write(b"\xff 0 0 0\n")
+    program.end_of_input()
+    assert program.wait() == 0
+    assert "Please enter exactly 4 numbers." in program.output
 
 
 def test_ctrl_c_at_the_prompt_ends_it(run):

@@ -13,7 +13,7 @@ import seeds
 
 from arm_cli.errors import ArmCliError
 from arm_control.errors import ArmControlError
-from arm_controller.pose_file import PoseFileError
+from arm_controller.pose import PoseFileError
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError
 from launch_py.errors import LaunchError
@@ -110,7 +110,7 @@ def _read_mesh(folder: Path, name: str, data: bytes) -> bool:
 
 def _read_yaml(folder: Path, name: str, data: bytes) -> bool:
     from arm_control.manager.parameter_file import ControllerParameterFile
-    from arm_controller.pose_file import read_pose_file
+    from arm_controller.pose import read_pose_file
     from arm_gazebo.launching import controllers_file, several_robots
 
     path = seeds.write(folder, name, data)

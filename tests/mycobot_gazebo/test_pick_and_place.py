@@ -4,7 +4,6 @@ Nothing tells the plan where the cylinder really stands, and nothing but frictio
 is what its pose shows.
 """
 
-import asyncio
 import logging
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -17,7 +16,7 @@ from arm_control.controllers.goals import GoalOutcome
 from arm_controller.arm_gripper_loop_controller_node import run_once
 from arm_controller.pick_and_place_node import PickAndPlace, PickError
 from arm_controller.pick_plan import JOINTS, JointPath, PickPlan, PickTask, plan_pick
-from arm_description import Robot, expand_xacro, parse_urdf, resolve_uri
+from arm_description import expand_xacro, parse_urdf, resolve_uri
 from arm_sim import NAMED_ROBOTS, Goal, JointTrajectory, Simulation
 
 RATE_HZ = 100
@@ -34,19 +33,19 @@ ARM, GRIPPER = "arm_controller", "gripper_action_controller"
 
 
 @pytest.fixture(scope="module")
-def robot_model() -> Robot:
+def description() -> str:
     named = NAMED_ROBOTS["mycobot"]
-    return parse_urdf(expand_xacro(resolve_uri(named.model), named.arguments))
+    return expand_xacro(resolve_uri(named.model), named.arguments)
 
 
 @pytest.fixture(scope="module")
-def links(robot_model: Robot) -> frozenset[str]:
-    return frozenset(link.name for link in robot_model.links)
+def links(description: str) -> frozenset[str]:
+    return frozenset(link.name for link in parse_urdf(description).links)
 
 
 @pytest.fixture(scope="module")
-def plan(robot_model: Robot) -> PickPlan:
-    return plan_pick(robot_model, PickTask())
+def plan(description: str) -> PickPlan:
+    return plan_pick(description, PickTask())
 
 
 @dataclass
@@ -104,10 +103,10 @@ class SteppedRobot:
     def object_position(self) -> np.ndarray:
         return self.sim.pose(OBJECT)[:3, 3]
 
-    async def connect(self) -> None:
+    def connect(self) -> None:
         pass
 
-    async def follow(self, path: JointPath) -> str | None:
+    def follow(self, path: JointPath) -> str | None:
         velocities = [p.velocities for p in path]
         goal = self.sim[ARM].follow(
             JointTrajectory(
@@ -120,13 +119,13 @@ class SteppedRobot:
         end = self._ended(goal)
         return None if end.outcome is GoalOutcome.SUCCEEDED else end.message
 
-    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
+    def grip(self, position: float, max_effort: float) -> SimpleNamespace:
         end = self._ended(self.sim[GRIPPER].grip(position, max_effort))
         return SimpleNamespace(
             position=end.state.position, reached_goal=end.reached_goal, stalled=end.stalled
         )
 
-    async def pause(self, seconds: float) -> None:
+    def pause(self, seconds: float) -> None:
         before = len(self.track.heights)
         for _ in range(round(seconds * RATE_HZ)):
             self.tick()
@@ -161,36 +160,36 @@ def assert_held_and_put_back(robot: SteppedRobot, task: PickTask) -> None:
 @pytest.mark.parametrize("offset", offsets(), ids=lambda o: f"{o[0] * 1e3:.1f}_{o[1] * 1e3:.1f}mm")
 def test_the_cylinder_is_lifted_held_and_put_back_wherever_it_stands(links, plan, offset):
     robot = SteppedRobot(links, offset)
-    asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
+    PickAndPlace(robot, plan, LOGGER).run()
     assert_held_and_put_back(robot, plan.task)
 
 
 def test_a_hard_grip_holds_as_well(links, plan):
     robot = SteppedRobot(links, (0.003, -0.004))
     hard = replace(plan, task=replace(plan.task, max_effort=8.0))
-    asyncio.run(PickAndPlace(robot, hard, LOGGER).run())
+    PickAndPlace(robot, hard, LOGGER).run()
     assert_held_and_put_back(robot, plan.task)
 
 
 def test_nothing_but_friction_lifts_it(links, plan):
     robot = SteppedRobot(links)
     robot.sim.parts.physics.model.geom_friction[:, 0] = 0.01
-    asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
+    PickAndPlace(robot, plan, LOGGER).run()
     assert max(robot.track.heights) < 0.01
 
 
 def test_an_object_that_is_not_there_is_missed(links, plan):
     robot = SteppedRobot(links, (0.0, -0.4))
     with pytest.raises(PickError, match="nothing between the fingers: they closed all the way"):
-        asyncio.run(PickAndPlace(robot, plan, LOGGER).run())
+        PickAndPlace(robot, plan, LOGGER).run()
     assert max(map(abs, robot.track.heights)) < 1e-3
 
 
 def test_the_loop_of_arm_and_gripper_touches_nothing(links, caplog):
     robot = SteppedRobot(links)
     caplog.clear()
-    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
-    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
+    run_once(robot, LOGGER, LOOP_S, 5.0)
+    run_once(robot, LOGGER, LOOP_S, 5.0)
     assert caplog.messages == [], "every place was reached"
     assert robot.track.touched == set()
     assert robot.moved() == set()
@@ -198,5 +197,5 @@ def test_the_loop_of_arm_and_gripper_touches_nothing(links, caplog):
 
 def test_a_thing_in_the_way_of_the_loop_is_seen_to_be_hit(links):
     robot = SteppedRobot(links, (-0.48, -0.03))
-    asyncio.run(run_once(robot, LOGGER, LOOP_S, 5.0))
+    run_once(robot, LOGGER, LOOP_S, 5.0)
     assert robot.moved() == {OBJECT}

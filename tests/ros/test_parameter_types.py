@@ -21,7 +21,8 @@ from arm_control.manager.ros.controller_manager_node import ControllerManagerNod
 from arm_control.manager.ros.controller_node import ControllerNode
 from arm_controller.arm_controller_node import ArmController
 from arm_controller.arm_gripper_loop_controller_node import ArmGripperLoopController
-from arm_controller.command_sequence_node import gripper_example
+from arm_controller.example_diff_drive_node import DiffDriveTest
+from arm_controller.example_gripper_node import GripperTest
 from arm_controller.pick_and_place_node import PickAndPlaceNode
 from arm_controller.publisher_defined_node import PublisherDefined
 from arm_controller.publisher_terminal_node import PublisherTerminal
@@ -79,11 +80,12 @@ MAKERS: dict[str, Callable[[], Node]] = {
     "JointStatePublisher": lambda: JointStatePublisher(None, lambda: None),
     "Viewer": Viewer,
     "ArmController": ArmController,
-    "PublisherTerminal": lambda: PublisherTerminal(PROCESS),
-    "PublisherDefined": lambda: PublisherDefined(PROCESS),
-    "ArmGripperLoopController": lambda: ArmGripperLoopController(PROCESS),
-    "PickAndPlaceNode": lambda: PickAndPlaceNode(PROCESS),
-    "CommandSequence": lambda: gripper_example(PROCESS),
+    "PublisherTerminal": PublisherTerminal,
+    "PublisherDefined": PublisherDefined,
+    "ArmGripperLoopController": ArmGripperLoopController,
+    "PickAndPlaceNode": PickAndPlaceNode,
+    "GripperTest": GripperTest,
+    "DiffDriveTest": DiffDriveTest,
     "ControllerManagerNode": lambda: ControllerManagerNode(["manager", *given_arguments()]),
     "arm_gazebo": simulation_node,
     "static_transform_publisher": lambda: static_transform(

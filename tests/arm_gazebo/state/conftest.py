@@ -1,6 +1,5 @@
 """Robots whose runs are saved and restored: all that the node runs, without ROS."""
 
-import asyncio
 import logging
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -187,16 +186,16 @@ class Picking:
         self._left = ticks
         self._goals = 0
 
-    async def connect(self) -> None:
+    def connect(self) -> None:
         pass
 
-    async def follow(self, path: Any) -> str | None:
+    def follow(self, path: Any) -> str | None:
         points = [TrajectoryPoint(p.time_s, p.positions, p.velocities) for p in path]
         request = TrajectoryRequest(JOINTS, points)
         result = self._carry_out("arm", lambda goal: GoalRequest(goal, request))
         return None if result.outcome is GoalOutcome.SUCCEEDED else result.message
 
-    async def grip(self, position: float, max_effort: float) -> SimpleNamespace:
+    def grip(self, position: float, max_effort: float) -> SimpleNamespace:
         result = self._carry_out(
             "gripper", lambda goal: GripperRequest(goal, [position], [max_effort])
         )
@@ -206,7 +205,7 @@ class Picking:
             stalled=result.stalled,
         )
 
-    async def pause(self, seconds: float) -> None:
+    def pause(self, seconds: float) -> None:
         self._run(round(seconds * RATE_HZ))
 
     def _carry_out(self, name: str, make_goal: Callable[[bytes], Any]) -> Any:
@@ -228,11 +227,11 @@ class Picking:
 @pytest.fixture
 def pick() -> Callable[[RunningRobot, int], None]:
     """Return a function that runs the first ticks of a pick."""
-    plan = plan_pick(parse_urdf(_mycobot_setup().description), PickTask())
+    plan = plan_pick(_mycobot_setup().description, PickTask())
 
     def run(robot: RunningRobot, ticks: int) -> None:
         with pytest.raises(Reached):
-            asyncio.run(PickAndPlace(Picking(robot, ticks), plan, LOGGER).run())
+            PickAndPlace(Picking(robot, ticks), plan, LOGGER).run()
 
     return run
 

@@ -9,7 +9,6 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from arm_controller.pick_plan import CLOSED, WIDE_OPEN, JointPath, PickTask, plan_pick
-from arm_description.urdf.parser import parse_urdf
 from arm_sim.gym import ArmPick, BatchEnv
 
 GRIP_S = 2.0
@@ -25,7 +24,7 @@ def env() -> Iterator[ArmPick]:
 def goals(env: ArmPick) -> Iterator[np.ndarray]:
     """Yield the positions of all joints for each action of a pick."""
     task = PickTask()
-    plan = plan_pick(parse_urdf(env.simulation.parts.robot.document), task)
+    plan = plan_pick(env.simulation.parts.robot.document, task)
     for path, grip in ((plan.to_object, WIDE_OPEN), (plan.approach, WIDE_OPEN)):
         yield from along(path, grip)
     arm = plan.approach[-1].positions

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from arm_controller import ros_position_commands
-from arm_controller.ros_position_commands import (
+from arm_controller import ros_arm
+from arm_controller.ros_arm import (
     CONTROLLER,
     OTHERS,
     OTHERS_WAIT_S,
@@ -26,7 +26,9 @@ class Graph:
 
     def create_publisher(self, *_: object) -> SimpleNamespace:
         return SimpleNamespace(
-            topic_name=f"{ADDRESSEE}/commands", get_subscription_count=lambda: len(self._names)
+            topic_name=f"{ADDRESSEE}/commands",
+            get_subscription_count=lambda: len(self._names),
+            publish=None,
         )
 
     def get_subscriptions_info_by_topic(self, _topic: str) -> list[SimpleNamespace]:
@@ -45,7 +47,7 @@ class Graph:
 def graph(monkeypatch) -> Graph:
     clock = SimpleNamespace(monotonic=lambda: made.now_s if made else 0.0)
     made = None
-    monkeypatch.setattr(ros_position_commands, "time", clock)
+    monkeypatch.setattr(ros_arm, "time", clock)
     made = Graph()
     return made
 
@@ -78,7 +80,7 @@ def test_a_lone_listener_of_another_name_gets_the_command_in_the_end(graph):
     assert graph.publisher.subscribers == OTHERS
     assert (
         graph.publisher.describe_subscribers()
-        == f"only /a, /b listen, not {ADDRESSEE} on {ADDRESSEE}/commands"
+        == f"{ADDRESSEE} does not listen on {ADDRESSEE}/commands, only /a, /b"
     )
 
 
