@@ -1,0 +1,92 @@
+"""What makes an object unusable, as a sentence: a pose that is none, a shape without a size."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from arm_description.urdf.robot import Box, Cylinder, Sphere
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.scene.objects import PlacedShape
+from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
+
+UNIT = 1e-3
+"""How far the norm of a quaternion may be from 1."""
+
+
+def check_pose(pose: RigidTransform, what: str) -> None:
+    """Refuse a pose that is none.
+
+    Raises:
+        PlanningError: INVALID_OBJECT_NAME: a number is not finite, or the quaternion is no unit
+            one; `what` names the pose.
+    """
+    if not all(map(math.isfinite, pose.position)):
+        raise refusal(f"the position of {what} is not finite: {_listed(pose.position)}")
+    norm = math.hypot(*pose.rotation)
+    if not abs(norm - 1.0) <= UNIT:
+        raise refusal(
+            f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
+            "is (0, 0, 0, 1)"
+        )
+
+
+def check_shapes(shapes: Sequence[PlacedShape], owner: str) -> None:
+    """Refuse shapes that have no size, a broken mesh or a pose that is none.
+
+    Raises:
+        PlanningError: INVALID_OBJECT_NAME; `owner` names the object, such as "object 'box1'".
+    """
+    for placed in shapes:
+        problem = shape_problem(placed.shape)
+        if problem:
+            raise refusal(f"{owner} has a {problem}")
+        check_pose(placed.pose, f"a shape of {owner}")
+
+
+def shape_problem(shape: Shape) -> str:
+    """Return what is wrong with a shape, such as "box with a size that is not positive"; or ""."""
+    match shape:
+        case Box(size):
+            return _size_problem("box", size)
+        case Sphere(radius):
+            return _size_problem("sphere", (radius,))
+        case Cylinder(radius, length):
+            return _size_problem("cylinder", (length, radius))
+        case Cone(radius, height):
+            return _size_problem("cone", (height, radius))
+        case Plane(a, b, c, d):
+            has_normal = all(map(math.isfinite, (a, b, c, d))) and (a or b or c)
+            return "" if has_normal else f"plane without a normal: {_listed((a, b, c, d))}"
+        case TriangleMesh():
+            return _mesh_problem(shape)
+
+
+def refusal(sentence: str) -> PlanningError:
+    """Return the error for an object that cannot be used."""
+    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, sentence)
+
+
+def _size_problem(name: str, sizes: Sequence[float]) -> str:
+    if all(math.isfinite(size) and size > 0.0 for size in sizes):
+        return ""
+    return f"{name} with a size that is not positive: {_listed(sizes)}"
+
+
+def _mesh_problem(mesh: TriangleMesh) -> str:
+    vertices, triangles = mesh.vertices, mesh.triangles
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        return f"mesh whose vertices have the shape {vertices.shape}, not (n, 3)"
+    if triangles.ndim != 2 or triangles.shape[1] != 3 or not len(triangles):
+        return "mesh without triangles"
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        wrong = int(triangles.max() if triangles.min() >= 0 else triangles.min())
+        return f"mesh with {len(vertices)} vertices, of which a triangle uses number {wrong}"
+    if not np.isfinite(vertices).all():
+        return "mesh with a vertex that is not finite"
+    return ""
+
+
+def _listed(numbers: Sequence[float]) -> str:
+    return ", ".join(f"{number:g}" for number in numbers)
