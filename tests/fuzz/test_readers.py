@@ -1,4 +1,4 @@
-"""Each reader takes 300 broken inputs: a result or a sentence, no other error, no end of all."""
+"""Each reader takes 200 broken inputs: a result or a sentence, no other error, no end of all."""
 
 import json
 import subprocess
@@ -9,7 +9,7 @@ import pytest
 
 FUZZ = Path(__file__).with_name("fuzz.py")
 TARGETS = ("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments")
-INPUTS = 300
+INPUTS = 200
 MOST_MB = 1000
 
 

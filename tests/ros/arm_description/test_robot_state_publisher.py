@@ -260,17 +260,7 @@ def test_the_quality_of_service_may_be_overridden(client, start, urdf):
     ("parameters", "sentence"),
     [
         ({}, "Empty URDF is not allowed: set the parameter robot_description to the URDF's text"),
-        ({"robot_description": ""}, "Empty URDF is not allowed"),
-        ({"robot_description": "no robot"}, "robot_description, line 1: not XML: "),
         ({"robot_description": "<robot name='r'/>"}, "robot_description, the robot has no links"),
-        (
-            {"robot_description": OTHER, "publish_frequency": -1.0},
-            "publish_frequency must be between 0 and 1000 Hz, not -1",
-        ),
-        (
-            {"robot_description": OTHER, "qos_overrides": {"/tf": {"publisher": {"depth": "x"}}}},
-            "qos_overrides./tf.publisher.depth",
-        ),
         (
             {
                 "robot_description": OTHER,
@@ -322,4 +312,4 @@ def test_a_urdf_file_as_argument_takes_the_place_of_the_parameter(
 def test_a_urdf_file_that_does_not_exist_is_named(start, tmp_path):
     node = start(MODULE, str(tmp_path / "robt.urdf"))
     node.wait_for_line(f"Failed to open URDF file: {tmp_path}/robt.urdf: No such file or directory")
-    assert node.process.wait(20) == 1
+    assert node.process.wait(60) == 1

@@ -1,8 +1,12 @@
 """static_transform_publisher as other nodes see it, in a process of its own."""
 
 import math
+import re
 
 import pytest
+
+from arm_description.errors import SettingsError
+from arm_description.static_transform_publisher_node import parameters_of, unit_quaternion
 
 pytestmark = pytest.mark.ros
 
@@ -63,17 +67,31 @@ def test_parameters_say_the_same_and_arguments_win(received):
     ("words", "said"),
     [
         ("1 2 3", "3 arguments; without options there are eight"),
-        ("--x 1", "--frame-id and --child-frame-id are needed"),
-        ("0 0 0 0 0 0 a a", "a frame cannot be its own parent: both are 'a'"),
         ("--frame-id a --child-frame-id b --yaw one", "yaw is 'one', not a finite number"),
         ("--frame-id a --child-frame-id b --yw 1", "unknown argument '--yw'; usage: "),
         ("--frame-id a --child-frame-id b --yaw 1 --qx 1", "not as both"),
-        ("--frame-id a --child-frame-id b --qw 0", "is not a quaternion: its length is 0"),
         ("--frame-id a --child-frame-id", "--child-frame-id lacks its value"),
     ],
 )
-def test_wrong_arguments_get_a_sentence(start, words, said):
+def test_wrong_arguments_get_a_sentence(words, said):
+    with pytest.raises(SettingsError, match=re.escape(said)):
+        parameters_of(words.split(), pytest.fail)
+
+
+def test_a_quaternion_without_a_direction_is_refused():
+    with pytest.raises(SettingsError, match="is not a quaternion: its length is 0"):
+        unit_quaternion([0.0] * 4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--x 1", "--frame-id and --child-frame-id are needed"),
+        ("0 0 0 0 0 0 a a", "a frame cannot be its own parent: both are 'a'"),
+    ],
+)
+def test_wrong_frames_end_it_with_a_sentence(start, words, said):
     node = start(MODULE, *words.split())
     node.wait_for_line(said)
-    assert node.process.wait(20) == 1
+    assert node.process.wait(60) == 1
     assert "Traceback" not in node.output
