@@ -43,7 +43,7 @@ def run(make_node: Callable[[], NodeT], work: Callable[[NodeT], int | None] | No
     # The ROS wheels from pip do not say where they are installed.
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))
-    node = None
+    node, has_ros = None, False
     try:
         if work is None:
             rclpy.init()
@@ -52,6 +52,7 @@ def run(make_node: Callable[[], NodeT], work: Callable[[NodeT], int | None] | No
             for number in (signal.SIGTERM, signal.SIGHUP):
                 if signal.getsignal(number) != signal.SIG_IGN:  # As under nohup.
                     signal.signal(number, signal.default_int_handler)
+        has_ros = True
         node = make_node()
         return (work or rclpy.spin)(node) or 0
     except (KeyboardInterrupt, ExternalShutdownException):
@@ -59,12 +60,13 @@ def run(make_node: Callable[[], NodeT], work: Callable[[NodeT], int | None] | No
     except (ArmControllerError, ParameterException, NameValidationException) as error:
         get_logger(os.path.basename(sys.argv[0])).fatal(str(error))
         return 1
-    except RuntimeError as error:
-        if node is None:  # rclpy refuses a name, an argument or a file.
-            sys.exit(f"cannot start the node: {str(error).partition(', at ')[0]}")
-        if ok():
+    except Exception as error:
+        if has_ros and not ok():
+            return 0  # The signal came while the node was made, or while rclpy was about to wait.
+        if node is not None or not isinstance(error, RuntimeError):
             raise
-        return 0  # The signal came while rclpy was about to wait.
+        # rclpy refuses an argument, a file or a name.
+        sys.exit(f"cannot start the node: {str(error).partition(', at ')[0]}")
     finally:
         if node is not None:
             node.destroy_node()
@@ -132,9 +134,7 @@ def declare_joints(node: Node, default: tuple[str, ...] = ("j0", "j1", "j2", "j3
     about = "Joints of a pose, in its controller's order"
     names = declare(node, "joints", list(default), about) or []  # rclpy gives None for [].
     if not names or not all(names) or len(set(names)) < len(names):
-        raise NodeParameterError(
-            f"parameter joints: must be a list of different names, not {names}"
-        )
+        raise NodeParameterError(f"parameter joints: must be different names, not {names}")
     return names
 
 
