@@ -1,0 +1,212 @@
+"""A joint trajectory that moves the tip along a curve with a trapezoid as its speed."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.kinematics.inverse import InverseKinematics
+from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
+from arm_planning.planners.pilz.even_cubics import even_cubics
+from arm_planning.planners.pilz.trapezoid import Trapezoid
+from arm_planning.planners.pose_line import PoseLine
+from arm_planning.robot.model import JointGroup, JointLimits
+from arm_planning.timing import stepped_motion
+from arm_planning.timing.driven_spline import limit_violation
+from arm_planning.timing.parameterize import RESAMPLE_DT_S
+from arm_planning.timing.slowed_motion import slowed
+from arm_planning.timing.stepped_motion import MotionLimits
+from arm_planning.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+STEP_M, STEP_RAD = 5e-3, 0.05
+"""Distance of the poses at which joint positions are computed first."""
+DOUBLINGS = 5
+"""How often their number is doubled while the tip leaves the curve between them."""
+OFF_CURVE_M, OFF_CURVE_RAD = 1e-4, 1e-3
+"""How far it may leave the curve."""
+CLOSENESS = 2e-5
+"""How far the trajectory may leave these joint positions, in rad or m."""
+SHORTEST_M = 1e-9
+"""Paths shorter than this are no motion."""
+
+
+class PoseCurve(Protocol):
+    """A motion of a frame in space."""
+
+    @property
+    def length_m(self) -> float:
+        """How far its origin goes."""
+        ...
+
+    @property
+    def angle_rad(self) -> float:
+        """How far it turns."""
+        ...
+
+    def at(self, share: float) -> RigidTransform:
+        """Return the pose at a share of the way, 0 to 1."""
+        ...
+
+
+def tip_motion(
+    name: str,
+    curve: PoseCurve,
+    kinematics: InverseKinematics,
+    start: Array,
+    limits: CartesianLimits,
+    velocity_scaling: float,
+    acceleration_scaling: float,
+) -> Trajectory:
+    """Return the trajectory along a curve.
+
+    The tip keeps to its Cartesian limits. Where a joint could not follow within its own limits, the
+    tip slows down. (Pilz refuses such motions.)
+
+    Args:
+        name: "LIN" or "CIRC", for messages.
+        curve: begins at the tip's pose at `start`.
+        kinematics: of the group and the tip.
+        start: positions of the group, (n,).
+        limits: the limits of the tip.
+        velocity_scaling: fraction of the velocity limits to use.
+        acceleration_scaling: fraction of the acceleration limits to use.
+
+    Raises:
+        PlanningError: NO_IK_SOLUTION: a pose on the way is out of reach; PLANNING_FAILED: a joint
+            would have to jump; the message says where.
+    """
+    length = max(curve.length_m, limits.metres_per_rad * curve.angle_rad)
+    group = kinematics.group
+    if length < SHORTEST_M:
+        rest = np.zeros((1, len(start)))
+        return Trajectory(group.joints, np.zeros(1), np.array([start]), rest, rest.copy())
+    followed = _Followed(name, curve, kinematics, start)
+    speed = Trapezoid(
+        length,
+        velocity_scaling * limits.max_trans_vel,
+        acceleration_scaling * limits.max_trans_acc,
+        acceleration_scaling * -limits.max_trans_dec,
+    )
+    bounds = MotionLimits(
+        velocity_scaling * np.array([limit.velocity for limit in group.limits]),
+        acceleration_scaling * np.array([limit.acceleration for limit in group.limits]),
+        np.full(len(start), np.inf),
+        CLOSENESS,
+    )
+
+    def nominal(times_s: Array) -> Array:
+        states = followed.positions(speed.distance(times_s) / length)
+        return np.clip(states, group.lower, group.upper)
+
+    found = within_limits(nominal, speed.duration_s, group, bounds)
+    return checked(name, found, group.limits, velocity_scaling, acceleration_scaling)
+
+
+def within_limits(
+    motion: Callable[[Array], Array], duration_s: float, group: JointGroup, bounds: MotionLimits
+) -> Trajectory:
+    """Return the trajectory of a motion, slowed down where its joints could not follow.
+
+    Args:
+        motion: joint positions at times from 0 to the duration, (k,) to (k, n); rests at both ends.
+        duration_s: above 0.
+        group: the group.
+        bounds: the limits.
+    """
+    able = slowed(motion, duration_s, bounds.velocity, bounds.acceleration)
+    # A second look sees what the cells of the first were too coarse for.
+    able = slowed(able.positions, able.duration_s, bounds.velocity, bounds.acceleration)
+    haste = float(bounds.acceleration[np.isfinite(bounds.acceleration)].max(initial=1.0))
+    step = stepped_motion.step_for(able.duration_s, 1, haste, RESAMPLE_DT_S, bounds.closeness)
+    states = able.positions(stepped_motion.steps(able.duration_s, step))
+    control = stepped_motion.joined([states])
+    return stepped_motion.trajectory(group.joints, control, step, bounds, RESAMPLE_DT_S)
+
+
+def checked(
+    name: str,
+    trajectory: Trajectory,
+    limits: tuple[JointLimits, ...],
+    velocity_scaling: float,
+    acceleration_scaling: float,
+) -> Trajectory:
+    """Return a trajectory that holds the limits of its joints.
+
+    Raises:
+        PlanningError: PLANNING_FAILED: it does not hold them.
+    """
+    fault = limit_violation(
+        trajectory,
+        limits,
+        velocity_scaling=velocity_scaling,
+        acceleration_scaling=acceleration_scaling,
+    )
+    if fault:
+        raise PlanningError(ErrorCode.PLANNING_FAILED, f"{name}: {fault}")
+    return trajectory
+
+
+class _Followed:
+    """Joint positions along a curve, on one branch of the inverse kinematics."""
+
+    def __init__(
+        self, name: str, curve: PoseCurve, kinematics: InverseKinematics, start: Array
+    ) -> None:
+        self._name, self._curve, self._kinematics = name, curve, kinematics
+        count = max(4, int(np.ceil(max(curve.length_m / STEP_M, curve.angle_rad / STEP_RAD))))
+        worst = 0.0
+        for _ in range(DOUBLINGS + 1):
+            self._points = self._follow(start, count)
+            self._slopes = np.gradient(self._points, axis=0, edge_order=2)
+            off, worst = self._off_curve()
+            if off <= 1.0:
+                return
+            count *= 2
+        changes = np.abs(np.diff(self._points, axis=0))[int(worst * count)]
+        joint = int(changes.argmax())
+        raise PlanningError(
+            ErrorCode.PLANNING_FAILED,
+            f"{name}: joint '{kinematics.group.joints[joint]}' would have to jump by "
+            f"{changes[joint]:.3g} {self._where(worst)}, near a singularity",
+        )
+
+    def positions(self, shares: Array) -> Array:
+        """Return joint positions at shares of the way, (k, n)."""
+        return even_cubics(self._points, self._slopes, shares)
+
+    def _follow(self, start: Array, count: int) -> Array:
+        points = [start]
+        for number in range(1, count + 1):
+            share = number / count
+            try:
+                points.append(self._kinematics.follow(self._curve.at(share), points[-1]))
+            except PlanningError as error:
+                raise PlanningError(
+                    error.code, f"{self._name} stops {self._where(share)}: {error}"
+                ) from error
+        return np.array(points)
+
+    def _off_curve(self) -> tuple[float, float]:
+        """Return how far the tip leaves the curve, as a part of what it may, and at which share."""
+        count = len(self._points) - 1
+        shares = (np.arange(count) + 0.5) / count
+        worst, at = 0.0, 0.0
+        for share, q in zip(shares.tolist(), self.positions(shares), strict=True):
+            off = PoseLine(self._kinematics.tip_pose(q), self._curve.at(share))
+            size = max(off.length_m / OFF_CURVE_M, off.angle_rad / OFF_CURVE_RAD)
+            if size > worst:
+                worst, at = size, share
+        return worst, at
+
+    def _where(self, share: float) -> str:
+        x, y, z = self._curve.at(share).position
+        if self._curve.length_m > SHORTEST_M:
+            gone, whole, unit = share * self._curve.length_m, self._curve.length_m, "m"
+        else:
+            gone, whole, unit = share * self._curve.angle_rad, self._curve.angle_rad, "rad"
+        return f"{gone:.3f} of {whole:.3f} {unit} along its path, at ({x:.3f}, {y:.3f}, {z:.3f}) m"
