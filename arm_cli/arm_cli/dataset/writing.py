@@ -160,12 +160,15 @@ def _record(folder: Path, episodes: int, duration_s: float | None) -> list[Path]
     from arm_cli.bag.ros_recorder import Recording
     from arm_cli.bag.topic_selection import TopicSelection
     from arm_cli.bag_format.writer import BagSettings, BagWriter
+    from arm_cli.ros.graph import Graph
 
     recorded: list[Path] = []
     folder.mkdir(parents=True)
     with connect(NODE_NAME) as session:
         from arm_cli.bag.ros_recorder import BagRecorder
 
+        # The first episode is as long as the others: no topic is found in the middle of it.
+        Graph(session).settle()
         for number in range(episodes):
             path = folder / f"episode_{number:06d}"
             recording = Recording(BagWriter(path, BagSettings()), CACHE_BYTES)

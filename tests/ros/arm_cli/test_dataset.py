@@ -1,10 +1,14 @@
 """`arm dataset record` while somebody else commands the arm."""
 
 import json
+from collections import Counter
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+
+from arm_cli.bag_format.reader import BagReader
+from arm_cli.errors import BagError
 
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation_with_camera")]
 
@@ -12,24 +16,54 @@ COMMAND = (
     "arm topic pub --rate 10 /position_controller/commands "
     'std_msgs/msg/Float64MultiArray "data: [0.3, 0.2, 0.0, -0.1]"'
 )
+RECORD = "arm dataset record wave --task 'Lean left.'"
+ENOUGH = Counter({"/joint_states": 300, "/videocamera": 60, "/position_controller/commands": 20})
 
 
+@pytest.fixture
+def commander(start):
+    """Command the arm."""
+    start(COMMAND).wait_for("publishing #1:")
+
+
+def recorded(bag: Path) -> Counter[str]:
+    """Return the messages in a bag, even while it is being recorded."""
+    try:
+        with BagReader(bag) as reader:
+            return Counter({topic.name: count for topic, count in reader.metadata.topics})
+    except BagError:
+        return Counter()
+
+
+def info_of(dataset: Path) -> dict:
+    return json.loads((dataset / "meta/info.json").read_text())
+
+
+@pytest.mark.usefixtures("commander")
 def test_a_running_robot_is_recorded_as_a_dataset(start, run, tmp_path: Path):
-    commander = start(COMMAND)
-    commander.wait_for("publishing #1:")
-    said = run("arm dataset record wave --task 'Lean left.' --episodes 2 --duration 5")
-    commander.interrupt()
-    assert "wrote wave: 2 episodes" in said
+    recorder, bag = start(RECORD), tmp_path / "wave_bags/episode_000000"
+    recorder.wait_until(lambda: recorded(bag) >= ENOUGH, "enough of every topic")
+    assert recorder.interrupt() == 0, recorder.err
+    said = recorder.out + recorder.err
+    assert "wrote wave: 1 episodes" in said
     assert "observation.images." in said
-    info = json.loads((tmp_path / "wave/meta/info.json").read_text())
-    assert (info["total_episodes"], info["fps"]) == (2, 30)
-    rows = pq.read_table(tmp_path / "wave/data/chunk-000/file-001.parquet")
+    info = info_of(tmp_path / "wave")
+    assert (info["total_episodes"], info["fps"]) == (1, 30)
+    rows = pq.read_table(tmp_path / "wave/data/chunk-000/file-000.parquet")
     assert rows["action"].to_pylist()[-1] == pytest.approx([0.3, 0.2, 0.0, -0.1])
     assert rows["observation.state"].to_pylist()[-1] == pytest.approx(
         [0.3, 0.2, 0.0, -0.1], abs=0.01
     )
     # The messages themselves stay, and can be converted again.
-    again = run("arm dataset convert wave_bags/episode_000001 -o again --task 'Lean.' --fps 10")
+    again = run("arm dataset convert wave_bags/episode_000000 -o again --task 'Lean.' --fps 10")
     assert "wrote again: 1 episodes" in again
     assert run("arm dataset check again") == "again is valid in LeRobot's format v3.0\n"
-    run("arm dataset record wave --task 'Lean left.'", code=1)
+    run(RECORD, code=1)
+
+
+@pytest.mark.usefixtures("commander")
+def test_episodes_follow_one_another(run, tmp_path: Path):
+    assert "wrote wave: 2 episodes" in run(f"{RECORD} --episodes 2 --duration 3 --cameras")
+    assert info_of(tmp_path / "wave")["total_episodes"] == 2
+    files = {path.name for path in (tmp_path / "wave/data/chunk-000").iterdir()}
+    assert files == {"file-000.parquet", "file-001.parquet"}
