@@ -32,6 +32,9 @@ HASTY, PATIENT = 0.8, 0.99
 """A descent ends at a step that leaves more than this share of the squared error: where another
 start is at hand, and where the nearest pose is wanted. Giving up early costs some successes, but
 saves more steps."""
+NEAR = 0.1
+"""Error, as a share of the target's rotation length, below which each descent is patient: a seed
+beside the target leads to it even where the arm is nearly singular."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,19 +114,20 @@ class Descent:
         """Return the best positions on the way down from a start within the limits, (n,).
 
         It ends at the target, at a step that leaves more than the share `patience` of the squared
-        error, or after `most` evaluations.
+        error (`PATIENT` near the target), or after `most` evaluations.
         """
         # Squares, because each step takes 10 us and a root a third of one.
         done_m, done_rad = DONE_M**2, DONE_RAD**2 if target.rotation_length else math.inf
         position_weight, rotation_weight = target.weights[0, 0] ** 2, target.rotation_length**2
         q, trust, cost, steps = start, TRUST, math.inf, 0
+        near = (NEAR * (target.rotation_length or self._chain.reach_m)) ** 2
         best, off_m, off_rad = start, math.inf, math.inf
         while steps < most:
             steps += 1
             metres, angle = self._evaluate(target, q)
             new = position_weight * metres + rotation_weight * angle
             if new < cost:
-                is_slow = new > patience * cost
+                is_slow = new > (patience if new > near else PATIENT) * cost
                 if new < GOOD * cost and steps > 1:
                     trust = min(EXPAND * trust, MAX_TRUST)
                 best, cost, off_m, off_rad = q, new, metres, angle

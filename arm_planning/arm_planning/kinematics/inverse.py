@@ -134,9 +134,9 @@ class InverseKinematics:
             UrdfError: the link or a joint does not exist.
             PlanningError: a joint's position is not one number, or no joint moves the link.
         """
+        tip = robot.link(link).name
         limits = tuple(_urdf_limits(robot, joint) for joint in joints)
         wraps = tuple(robot.joint(joint).type.wraps for joint in joints)
-        tip = robot.link(link).name
         group = JointGroup("joints", tuple(joints), wraps, limits, (tip,), robot.root, tip)
         return cls(PlanningModel(robot, robot.root, tuple(joints), {group.name: group}), group.name)
 

@@ -61,6 +61,16 @@ def test_a_solution_beside_the_seed_is_kept():
     assert found == pytest.approx(positions, abs=1e-4)
 
 
+@pytest.mark.parametrize("size", AXES)
+def test_a_seed_beside_the_target_leads_to_it_wherever_the_arm_is(size):
+    kinematics, random = arm(size), np.random.default_rng(size)
+    for _ in range(300):
+        positions = random.uniform(-2.5, 2.5, size)
+        seed = np.clip(positions + random.uniform(-0.05, 0.05, size), -2.5, 2.5)
+        target = kinematics.pose(positions)
+        assert kinematics.pose(kinematics.follow(target, seed)) == pytest.approx(target, abs=1.5e-4)
+
+
 def test_joints_may_stand_in_any_order():
     names = tuple(f"j{n}" for n in reversed(range(6)))
     kinematics = InverseKinematics.for_link(parse_urdf(arm_urdf(6)), "l6", names)
