@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_controller"
-NEIGHBOURS = ["../arm_control", "../arm_description"]
+NEIGHBOURS = ["../arm_control", "../arm_description", "../arm_planning"]
 REQUIREMENTS = [
     "PyYAML>=6.0",
     "numpy>=2",

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_controller.pose import ArmControllerError
-from arm_description.errors import DescriptionError, KinematicsError
-from arm_description.kinematics.inverse import InverseKinematics
+from arm_description.errors import DescriptionError
 from arm_description.transforms import transform
 from arm_description.urdf.parser import parse_urdf
+from arm_planning.errors import PlanningError
+from arm_planning.kinematics.inverse import InverseKinematics
 
 Array = NDArray[np.float64]
 
@@ -107,7 +108,7 @@ def straight_path(
         duration_s: duration of the minimum-jerk motion.
 
     Raises:
-        KinematicsError: a point of the line is out of reach.
+        PlanningError: a point of the line is out of reach.
         PlanError: the line passes a singularity.
     """
     count = max(2, round(duration_s * POINTS_PER_S))
@@ -178,14 +179,14 @@ def plan_pick(description: str, task: PickTask, prefix: str = "") -> PickPlan:
     """
     try:
         robot = parse_urdf(description, "robot_description")
-        kinematics = InverseKinematics(robot, prefix + HAND, prefixed_joints(prefix))
+        kinematics = InverseKinematics.for_link(robot, prefix + HAND, prefixed_joints(prefix))
     except DescriptionError as error:
         raise PlanError(str(error)) from error
     why: list[Exception] = []
     for heading, posture in _tries(task):
         try:
             return _plan(kinematics, task, heading, posture)
-        except (KinematicsError, PlanError) as error:
+        except (PlanningError, PlanError) as error:
             why.append(error)
     raise PlanError(
         f"an object at ({task.x:.3f}, {task.y:.3f}) m cannot be gripped at a height of "

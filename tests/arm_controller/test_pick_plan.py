@@ -19,11 +19,11 @@ from arm_controller.pick_plan import (
     straight_path,
 )
 from arm_description.kinematics.forward import forward_kinematics
-from arm_description.kinematics.inverse import InverseKinematics
 from arm_description.resources import resolve_uri
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Robot
 from arm_description.xacro.expansion import expand_xacro
+from arm_planning.kinematics.inverse import InverseKinematics
 
 XACRO = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 
@@ -126,7 +126,7 @@ def test_what_is_not_a_robot_is_refused():
 
 
 def test_a_straight_line_past_a_singularity_is_refused(robot):
-    kinematics = InverseKinematics(robot, "gripper_base", JOINTS)
+    kinematics = InverseKinematics.for_link(robot, "gripper_base", JOINTS)
     start = kinematics.solve(_ahead_at(robot, 0.22), (-0.09, -2.37, 1.92, 0.36, -1.48, 0.09))
     with pytest.raises(PlanError, match="singularity"):
         straight_path(kinematics, start.tolist(), _ahead_at(robot, 0.15), 2.0)

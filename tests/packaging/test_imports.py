@@ -37,7 +37,7 @@ OPTIONAL = {
     "arm_sim/arm_sim/sweep": ["sweep", "ray"],
 }
 """Parts of the product that need extras, which no other part imports."""
-PEERS = {"toppra"}
+PEERS = {"pytracik", "toppra"}
 """What benchmarks compare the suite with; each script says how to install it."""
 BRINGS = {"gpu": {"gymnasium"}}
 """What an extra installs for other parts of the product that need it, too."""

@@ -37,19 +37,19 @@ SCRIPT = """\
 import numpy as np
 from arm_control.hardware.info import parse_hardware_info
 from arm_description import forward_kinematics, parse_urdf
-from arm_description.kinematics.inverse import InverseKinematics
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.launching.default_control import with_hardware
 from arm_gazebo.model.builder import build_model
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.physics_timing import physics_timing
+from arm_planning.kinematics.inverse import InverseKinematics
 
 text = open(sys.argv[1]).read()
 robot = parse_urdf(text)
 pose = forward_kinematics(robot, {"track": 7.0})["cart"]
 print(*pose[:3, 3])
-print(*InverseKinematics(robot, "cart", ["track"]).solve(pose, [0.0]))
+print(*InverseKinematics.for_link(robot, "cart", ["track"]).solve(pose, [0.0]))
 
 text = with_hardware(text, robot)
 hardware_info = parse_hardware_info(text)

@@ -1,1 +1,1 @@
-"""Forward and inverse kinematics, and joints as transforms between frames."""
+"""Forward kinematics, and joints as transforms between frames."""
