@@ -10,6 +10,7 @@ NEIGHBOURS = [
     "../arm_description",
     "../arm_gazebo",
     "../arm_node",
+    "../arm_planning",
     "../arm_sim",
     "../arm_viewer",
     "../launch_py",

@@ -220,6 +220,12 @@ GZ = VerbFamily(
     ),
 )
 
+PLANNING = VerbFamily(
+    "planning",
+    "prepare a robot for motion planning",
+    (Verb("srdf", "make an SRDF for a robot: groups, states, allowed collisions", "planning"),),
+)
+
 VERBS = (
     PlainVerb("launch", "start the simulated arm, or any launch file", "launch"),
     PlainVerb("run", "run an executable of a package", "run"),
@@ -237,6 +243,7 @@ VERBS = (
     BAG,
     DATASET,
     Verb("sweep", "make the runs of a study on all cores, or on a Ray cluster", "sweep"),
+    PLANNING,
     Verb("stop", "stop all robots at once, or release them", "stop"),
     Verb("view", "show the robots in the browser, and move them", "run"),
     Verb("check", "check a robot or world file as the simulation reads it", "check"),

@@ -1,0 +1,198 @@
+"""Makes a whole SRDF for any URDF: default groups, and the pairs of links that need no check.
+
+Links that are joined touch at their joint. Other pairs are decided by samples of the joints: those
+that touch in nearly all states, and those that never come near each other.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_description.urdf.robot import Box, Capsule, Collision, Cylinder, Robot, Sphere
+from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.collision.model import CollisionModel
+from arm_planning.robot.build import planning_model
+from arm_planning.robot.default_srdf import default_srdf
+from arm_planning.robot.model import PlanningModel
+from arm_planning.robot.srdf import Pair, Srdf
+from arm_planning.scene.allowed_collisions import allowed_collisions
+from arm_planning.scene.scene import PlanningScene
+
+Array = NDArray[np.float64]
+
+MIN_SAMPLES = 10_000
+"""Pairs that never touch in 3,000 samples may still touch."""
+FIRST_SAMPLES = 500
+ALWAYS = 0.95
+"""Share of states in which a pair touches that need not be checked, as in MoveIt's assistant."""
+AT_LIMITS = 0.1
+"""Share of a joint's samples that are at its limits, where links come nearest to each other."""
+NEAR_M = 0.002
+"""How much the shapes of links are grown, but for meshes: what comes near may touch, too."""
+BATCH = 500
+
+Warn = Callable[[str], None]
+
+
+def make_srdf(
+    robot: Robot,
+    warn: Warn,
+    samples: int = MIN_SAMPLES,
+    seed: int = 0,
+    meshes: MeshPieces | None = None,
+) -> Srdf:
+    """Return an SRDF with default groups and the pairs that are not checked.
+
+    Args:
+        robot: the robot.
+        warn: is told what collides in the states called home.
+        samples: number of states to look at, at least MIN_SAMPLES.
+        seed: the same robot and seed give the same SRDF.
+        meshes: cuts meshes, as for `CollisionModel`.
+
+    Raises:
+        ValueError: there are too few samples.
+        PlanningError: a mesh cannot be used.
+    """
+    if samples < MIN_SAMPLES:
+        raise ValueError(f"{samples} samples are too few; there must be at least {MIN_SAMPLES}")
+    pieces = meshes or MeshPieces()
+    srdf = default_srdf(robot)
+    pairs = dict.fromkeys(_joined(robot), "Adjacent")
+    sampler = _Sampler(robot, srdf, pieces, np.random.default_rng(seed))
+    pairs |= dict.fromkeys(sampler.always(pairs), "Always")
+    touching = sampler.ever(pairs, samples)
+    solid = [link.name for link in robot.links if link.collisions]
+    every = [(min(a, b), max(a, b)) for i, a in enumerate(solid) for b in solid[i + 1 :]]
+    pairs |= {pair: "Never" for pair in every if pair not in pairs and pair not in touching}
+    made = replace(srdf, disabled={pair: pairs[pair] for pair in sorted(pairs)})
+    for sentence in sampler.contacts_at_home(made):
+        warn(sentence)
+    return made
+
+
+@dataclass(frozen=True, slots=True)
+class _Sampler:
+    """Looks at random states of a robot.
+
+    Attributes:
+        robot: the robot.
+        srdf: its groups.
+        meshes: cuts meshes.
+        rng: where the states come from.
+    """
+
+    robot: Robot
+    srdf: Srdf
+    meshes: MeshPieces
+    rng: np.random.Generator
+
+    def always(self, known: Mapping[Pair, str]) -> set[Pair]:
+        """Return the pairs that touch in nearly all states."""
+        model = self._model(self.robot)
+        collisions = self._collisions(model, known)
+        counts: dict[Pair, int] = {}
+        for q in self._states(model, FIRST_SAMPLES):
+            for pair in _touching(collisions, q):
+                counts[pair] = counts.get(pair, 0) + 1
+        return {pair for pair, count in counts.items() if count >= ALWAYS * FIRST_SAMPLES}
+
+    def ever(self, known: Mapping[Pair, str], samples: int) -> set[Pair]:
+        """Return the pairs that come near each other in a state.
+
+        What is found is left out from then on, which makes the check of the next states faster.
+        """
+        model = self._model(_grown(self.robot))
+        found: set[Pair] = set()
+        collisions = self._collisions(model, known)
+        before = 0
+        for number, q in enumerate(self._states(model, samples)):
+            if number % BATCH == 0 and len(found) > before:
+                before = len(found)
+                collisions = self._collisions(model, {**known, **dict.fromkeys(found, "")})
+            if not collisions.is_free(q):
+                found |= _touching(collisions, q)
+        return found
+
+    def contacts_at_home(self, srdf: Srdf) -> Iterator[str]:
+        """Yield a sentence for each named state in which the robot collides."""
+        model = planning_model(self.robot, srdf, warn=_ignore)
+        home = {
+            joint: position
+            for (_, name), state in model.states.items()
+            if name == "home"
+            for joint, position in state.items()
+        }
+        collisions = self._collisions(model, srdf.disabled)
+        q = np.array([home.get(joint, 0.0) for joint in model.joints])
+        for contact in collisions.contacts(q):
+            yield (
+                f"at home {contact}: set another state, or disable the collisions of the two if "
+                "they may touch"
+            )
+
+    def _model(self, robot: Robot) -> PlanningModel:
+        return planning_model(robot, self.srdf, warn=_ignore)
+
+    def _collisions(self, model: PlanningModel, pairs: Mapping[Pair, str]) -> CollisionModel:
+        allowed = allowed_collisions(replace(self.srdf, disabled=pairs))
+        scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=allowed)
+        return CollisionModel(model, scene, meshes=self.meshes)
+
+    def _states(self, model: PlanningModel, count: int) -> Iterator[Array]:
+        """Yield states of all joints, (n,); endless joints make one turn."""
+        limits = [self.robot.joint(name).limit for name in model.joints]
+        lower = np.array([limit.lower if limit else -np.inf for limit in limits])
+        upper = np.array([limit.upper if limit else np.inf for limit in limits])
+        lower = np.where(np.isfinite(lower), lower, -np.pi)
+        upper = np.where(np.isfinite(upper), upper, np.pi)
+        for _ in range(count):
+            share = self.rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, len(lower))
+            yield lower + (upper - lower) * np.clip(share, 0.0, 1.0)
+
+
+def _touching(collisions: CollisionModel, q: Array) -> set[Pair]:
+    return {
+        (min(each.first, each.second), max(each.first, each.second))
+        for each in collisions.contacts(q)
+    }
+
+
+def _joined(robot: Robot) -> Iterator[Pair]:
+    """Yield the pairs of links that a joint connects, or several with empty links between."""
+    carriers = {joint.child: joint.parent for joint in robot.joints}
+    solid = {link.name for link in robot.links if link.collisions}
+    for link in solid:
+        above = carriers.get(link)
+        while above is not None and above not in solid:
+            above = carriers.get(above)
+        if above is not None:
+            yield min(link, above), max(link, above)
+
+
+def _grown(robot: Robot) -> Robot:
+    links = tuple(
+        replace(link, collisions=tuple(map(_grown_shape, link.collisions))) for link in robot.links
+    )
+    return replace(robot, links=links)
+
+
+def _grown_shape(collision: Collision) -> Collision:
+    match collision.geometry:
+        case Box((x, y, z)):
+            grown = Box((x + 2 * NEAR_M, y + 2 * NEAR_M, z + 2 * NEAR_M))
+        case Sphere(radius):
+            grown = Sphere(radius + NEAR_M)
+        case Cylinder(radius, length):
+            grown = Cylinder(radius + NEAR_M, length + 2 * NEAR_M)
+        case Capsule(radius, length):
+            grown = Capsule(radius + NEAR_M, length)
+        case mesh:
+            return replace(collision, geometry=mesh)
+    return replace(collision, geometry=grown)
+
+
+def _ignore(_sentence: str) -> None:
+    """Pass over what is said about limits, which do not matter here."""

@@ -1,0 +1,95 @@
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+import pytest
+from robots import joint, link, robot
+
+from arm_description import expand_xacro, parse_urdf, resolve_uri
+from arm_planning.collision.model import CollisionModel
+from arm_planning.robot.build import planning_model
+from arm_planning.robot.srdf import Srdf, parse_srdf
+from arm_planning.scene.allowed_collisions import AllowedCollisions
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.srdf_maker import make_srdf
+
+CONFIG = "package://mycobot_moveit_config/config/mycobot_280"
+MYCOBOT = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
+
+
+def ball(name: str, radius: float, x: float = 0.0) -> str:
+    """A link that is a ball beside its joint."""
+    return link(
+        name,
+        f"<collision><origin xyz='{x} 0 0'/><geometry><sphere radius='{radius}'/></geometry>"
+        "</collision>",
+    )
+
+
+# All joints turn about one axis, on which the base is; x says how far from it a ball is.
+SPINNER = robot(
+    ball("base", 0.1),
+    link("frame"),
+    ball("arm", 0.1, x=0.5),
+    ball("inside", 0.06, x=0.05),
+    ball("ring", 0.05, x=0.5),
+    ball("outer", 0.05, x=0.653),
+    joint("mount", "base", "frame", kind="fixed", limits=None),
+    joint("arm_turn", "frame", "arm", axis="0 0 1"),
+    joint("inside_turn", "arm", "inside", axis="0 0 1"),
+    joint("ring_turn", "inside", "ring", axis="0 0 1"),
+    joint("outer_turn", "ring", "outer", axis="0 0 1"),
+)
+
+
+@cache
+def made() -> tuple[Srdf, tuple[str, ...]]:
+    sentences: list[str] = []
+    return make_srdf(parse_urdf(SPINNER), sentences.append), tuple(sentences)
+
+
+def test_pairs_that_need_no_check_are_told_by_samples():
+    # The ring meets the arm, and the outer ball comes within 3 mm of it.
+    assert made()[0].disabled == {
+        ("arm", "base"): "Adjacent",
+        ("arm", "inside"): "Adjacent",
+        ("inside", "ring"): "Adjacent",
+        ("outer", "ring"): "Adjacent",
+        ("base", "inside"): "Always",
+        ("base", "outer"): "Never",
+        ("base", "ring"): "Never",
+        ("inside", "outer"): "Never",
+    }
+
+
+def test_what_collides_at_home_is_told():
+    assert made()[1] == (
+        "at home arm with ring, 150 mm deep: set another state, or disable the collisions of the "
+        "two if they may touch",
+    )
+
+
+def test_the_same_robot_gives_the_same_srdf():
+    assert make_srdf(parse_urdf(SPINNER), lambda _: None) == made()[0]
+
+
+def test_too_few_samples_are_refused():
+    with pytest.raises(ValueError, match="5 samples are too few; there must be at least 10000"):
+        make_srdf(parse_urdf(SPINNER), pytest.fail, samples=5)
+
+
+def test_no_pair_that_the_mycobots_srdf_leaves_out_touches_in_a_state():
+    description = parse_urdf(expand_xacro(resolve_uri(MYCOBOT), {}))
+    text = resolve_uri(f"{CONFIG}/mycobot_280.srdf").read_text()
+    srdf = parse_srdf(text, description)
+    model = planning_model(description, srdf, warn=lambda _: None)
+    never = {pair for pair, reason in srdf.disabled.items() if reason == "Never"}
+    every = [(a.name, b.name) for a, b in combinations(description.links, 2)]
+    others = {(min(pair), max(pair)): True for pair in every} | dict.fromkeys(never, False)
+    scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=AllowedCollisions(others))
+    collisions = CollisionModel(model, scene)
+    limits = [description.joint(name).limit for name in model.joints]
+    lower, upper = ([getattr(limit, side) for limit in limits] for side in ("lower", "upper"))
+    states = np.random.default_rng(0).uniform(lower, upper, (5000, len(limits)))
+    assert len(never) == 33
+    assert all(collisions.is_free(q) for q in states)
