@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.timing.reachable_speeds import SpeedLimits
+from arm_planning.timing.reachable_speeds import ReachableSpeeds
 from arm_planning.timing.rounded_path import Indices, RoundedPath
 
 Array = NDArray[np.float64]
 
-CELL = np.radians(15.0)
+CELL = np.radians(18.0)
 """Largest turn of a cell of an arc, in rad; the path acceleration is constant in a cell."""
 FEWEST_CELLS = 300
 """Arcs of a path of few pieces are divided into smaller cells, about so many in all."""
@@ -69,7 +69,7 @@ class _Cells:
     pieces: Indices
     starts: Array
     lengths: Array
-    limits: SpeedLimits
+    limits: ReachableSpeeds
 
 
 def fastest(path: RoundedPath, velocity: Array, acceleration: Array) -> TimedPath:
@@ -95,7 +95,7 @@ def _cells(path: RoundedPath, velocity: Array, acceleration: Array) -> _Cells:
     ends = starts + lengths
     # Between the ends of a cell a sinusoid bulges by at most this factor.
     bulge = np.cos(0.5 * lengths * path.curvatures[pieces])
-    limits = SpeedLimits.of(
+    limits = ReachableSpeeds.of(
         (path.tangents(pieces, starts).T, path.bends(pieces, starts).T),
         (path.tangents(pieces, ends).T, path.bends(pieces, ends).T),
         lengths,

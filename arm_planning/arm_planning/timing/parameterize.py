@@ -22,7 +22,7 @@ RESAMPLE_DT_S = 0.1
 MIN_ANGLE_CHANGE = 0.001
 """MoveIt's defaults of totg.path_tolerance, totg.resample_dt and totg.min_angle_change."""
 
-_CLOSENESS = 1e-4
+_CLOSENESS = 2e-4
 """How far the trajectory may leave the rounded path, in rad or m."""
 _LARGEST_ACCELERATION = 6.0 * _CLOSENESS / stepped_motion.SMALLEST_STEP_S**2
 """Larger limits are not used to the full; the shortest steps could not stay on the path."""
@@ -56,7 +56,7 @@ def parameterize(
     all equal gives one point at rest.
 
     Corners are rounded within the tolerances; on top of that the trajectory leaves the path by at
-    most 0.1 mrad or mm. The running mean of `limit_jerk` cuts corners further, by at most
+    most 0.2 mrad or mm. The running mean of `limit_jerk` cuts corners further, by at most
     a t^2 / 8 at an acceleration limit a and a mean over t = 2 a / jerk.
 
     Args:

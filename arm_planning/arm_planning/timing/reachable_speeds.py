@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SpeedLimits:
+class ReachableSpeeds:
     """The limits of the path speed in cells of constant path acceleration.
 
     Attributes:
@@ -38,7 +38,7 @@ class SpeedLimits:
         lengths: Array,
         velocity: Array,
         acceleration: Array,
-    ) -> "SpeedLimits":
+    ) -> "ReachableSpeeds":
         """Return the limits of cells.
 
         Args:
@@ -73,18 +73,12 @@ class SpeedLimits:
             bounded = self.slopes > 0.0
             slopes = np.where(bounded, 1.0 / self.slopes, 0.0)
             offsets = np.where(bounded, self.offsets / self.slopes, np.inf)
-            least = self.offsets + np.minimum(self.slopes, 0.0) * self.top[:-1]
         backward = slice(None, None, -1)
-        latest = _pass(
-            min(last, float(self.top[-1])),
-            self.top[-2::-1],
-            slopes[:, backward],
-            offsets[:, backward],
-            offsets[:, backward],
-        )
-        start, *bounds = latest[::-1]
-        squared = _pass(min(first, start), np.array(bounds), self.slopes, self.offsets, least)
-        return np.array(squared)
+        end = min(last, float(self.top[-1]))
+        latest = _pass(end, self.top[backward], slopes[:, backward], offsets[:, backward])
+        reachable = np.array(latest[backward])
+        start = min(first, float(reachable[0]))
+        return np.array(_pass(start, reachable, self.slopes, self.offsets))
 
 
 def _steepest(gain: Array, load: Array, room: Array) -> Array:
@@ -110,23 +104,22 @@ def _steepest(gain: Array, load: Array, room: Array) -> Array:
     return top
 
 
-def _pass(x: float, top: Array, slopes: Array, offsets: Array, least: Array) -> list[float]:
+def _pass(x: float, top: Array, slopes: Array, offsets: Array) -> list[float]:
     """Return x before, between and after the cells: min(top, slope * x + offset) from one to next.
 
     Args:
         x: value before the first.
-        top: bound after each cell, (k,).
+        top: bound before, between and after the cells, (k + 1,).
         slopes: (rows, k).
         offsets: (rows, k).
-        least: lower bound of slope * x + offset, (rows, k): rows above the top are left out.
     """
     # Each step depends on the one before. Python's own numbers take a fraction of the time that
-    # arrays of a dozen elements would.
-    cell, row = np.nonzero((least < top).T)
+    # arrays of a dozen elements would, as few rows are left.
+    cell, row = np.nonzero(_needed(top, slopes, offsets).T)
     pairs = list(zip(slopes[row, cell].tolist(), offsets[row, cell].tolist(), strict=True))
-    ends = np.searchsorted(cell, np.arange(len(top)), side="right").tolist()
+    ends = np.searchsorted(cell, np.arange(len(top) - 1), side="right").tolist()
     values, begin = [x], 0
-    for bound, end in zip(top.tolist(), ends, strict=True):
+    for bound, end in zip(top[1:].tolist(), ends, strict=True):
         for slope, offset in pairs[begin:end]:
             reached = slope * x + offset
             if reached < bound:
@@ -135,3 +128,15 @@ def _pass(x: float, top: Array, slopes: Array, offsets: Array, least: Array) -> 
         x = bound if bound > 0.0 else 0.0
         values.append(x)
     return values
+
+
+def _needed(top: Array, slopes: Array, offsets: Array) -> NDArray[np.bool_]:
+    """Return which rows may bound x after a cell, for any x from 0 to the bound before it."""
+    at_zero, at_top = offsets, slopes * np.minimum(top[:-1], 1e300) + offsets
+    # A line that is above another one at both ends is above it everywhere.
+    least = np.expand_dims(at_zero.argmin(axis=0), 0), np.expand_dims(at_top.argmin(axis=0), 0)
+    needed = at_top < np.take_along_axis(at_top, least[0], axis=0)
+    needed &= at_zero < np.take_along_axis(at_zero, least[1], axis=0)
+    for index in least:
+        np.put_along_axis(needed, index, True, axis=0)
+    return needed & (np.minimum(at_zero, at_top) < top[1:])

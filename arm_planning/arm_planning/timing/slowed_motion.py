@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.timing.reachable_speeds import SpeedLimits
+from arm_planning.timing.reachable_speeds import ReachableSpeeds
 
 Array = NDArray[np.float64]
 
@@ -67,14 +67,16 @@ def slowed(
     tangents: Array = np.gradient(states, length / 3.0, axis=0)[::3].T
     # Two within each cell, so none mixes the accelerations of neighbouring cells.
     bends: Array = np.diff(states, 2, axis=0).T / (length / 3.0) ** 2
-    limits = SpeedLimits.of(
+    limits = ReachableSpeeds.of(
         (tangents[:, :-1], bends[:, ::3]),
         (tangents[:, 1:], bends[:, 1::3]),
         np.full(count, length),
         np.repeat(velocity[:, None], count, axis=1),
         np.repeat(acceleration[:, None], count, axis=1),
     )
-    limits = SpeedLimits(np.minimum(limits.top, 1.0), limits.slopes, limits.offsets, limits.reach)
+    limits = ReachableSpeeds(
+        np.minimum(limits.top, 1.0), limits.slopes, limits.offsets, limits.reach
+    )
     rates = np.sqrt(limits.fastest(1.0, 1.0))
     durations = 2.0 * length / (rates[:-1] + rates[1:])
     times = np.concatenate(([0.0], np.cumsum(durations)))

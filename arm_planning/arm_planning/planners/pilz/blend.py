@@ -29,7 +29,7 @@ POSES = 40
 """Poses in a window at which joint positions are computed."""
 
 
-class Motion:
+class DrivenMotion:
     """A trajectory as a function of time; it rests before and after."""
 
     def __init__(self, trajectory: Trajectory) -> None:
@@ -56,8 +56,8 @@ class Window:
         corrections: what inverse kinematics adds to the mean of the joints, (POSES + 1, n).
     """
 
-    first: Motion
-    second: Motion
+    first: DrivenMotion
+    second: DrivenMotion
     begin_s: float
     shift_s: float
     end_s: float
@@ -77,7 +77,11 @@ class Window:
 
 
 def window(
-    first: Motion, second: Motion, radius_m: float, kinematics: InverseKinematics, name: str
+    first: DrivenMotion,
+    second: DrivenMotion,
+    radius_m: float,
+    kinematics: InverseKinematics,
+    name: str,
 ) -> Window:
     """Return the window of a blend.
 
@@ -107,7 +111,7 @@ def window(
 
 
 def _until_outside(
-    motion: Motion,
+    motion: DrivenMotion,
     kinematics: InverseKinematics,
     centre: Array,
     radius_m: float,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.planners.pilz.blend import Motion, Window, window
+from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
 from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked, within_limits
 from arm_planning.request import PlanRequest
@@ -189,7 +189,7 @@ def _blended(
 ) -> Trajectory:
     group = planner.model.group(items[0].request.group)
     kinematics = planner.kinematics(group.name, "", state)
-    functions = [Motion(trajectory) for trajectory in motions]
+    functions = [DrivenMotion(trajectory) for trajectory in motions]
     windows = [
         window(a, b, radius, kinematics, f"blend of commands [{offset + i}] and [{offset + i + 1}]")
         for i, (a, b, radius) in enumerate(zip(functions, functions[1:], radii[:-1], strict=False))
@@ -212,7 +212,7 @@ def _blended(
     return checked("sequence", found, group.limits, velocity, acceleration)
 
 
-def _states(functions: Sequence[Motion], windows: Sequence[Window], times_s: Array) -> Array:
+def _states(functions: Sequence[DrivenMotion], windows: Sequence[Window], times_s: Array) -> Array:
     """Return joint positions at times since the start of the first motion, (k, n)."""
     states = functions[0].positions(times_s)
     start = 0.0
