@@ -1,0 +1,109 @@
+"""A compiled scene with the robot in a state."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_node.rigid_transform import Vector
+from arm_planning.collision.constant_contacts import GeomContact
+from arm_planning.collision.contact import BodyKind, Contact
+from arm_planning.collision.specification import Body, CompiledScene
+from arm_planning.errors import ErrorCode, PlanningError
+
+Array = NDArray[np.float64]
+
+ORDER = {BodyKind.ROBOT_LINK: 0, BodyKind.ROBOT_ATTACHED: 1, BodyKind.WORLD_OBJECT: 2}
+
+
+class PosedScene:
+    """A compiled scene and where its bodies are in the state of the robot that was set last.
+
+    Attributes:
+        model: MuJoCo's model.
+        data: its state.
+        bodies: what each body of the model is, by MuJoCo's id.
+        links: MuJoCo's id of the body of each link.
+        coordinates: MuJoCo's coordinates as a function of the joints that vary.
+    """
+
+    def __init__(self, compiled: CompiledScene) -> None:
+        self.model = compiled.model
+        self.data = mujoco.MjData(self.model)
+        self.bodies = compiled.bodies
+        self.links = compiled.links
+        self.coordinates = compiled.coordinates
+        self._qpos = self.data.qpos
+        matrix = self.coordinates.matrix
+        self._direct = bool(
+            np.array_equal(matrix, np.eye(matrix.shape[1])) and not self.coordinates.constant.any()
+        )
+
+    def place(self, q: Array | Sequence[float]) -> None:
+        """Set the state.
+
+        Args:
+            q: the positions of the joints that vary, (n,).
+
+        Raises:
+            PlanningError: a position is not finite.
+        """
+        if self._direct:
+            self._qpos[:] = q
+        else:
+            self._qpos[:] = self.coordinates(np.asarray(q))
+        # MuJoCo finds no contact at all where a number is not finite.
+        if not self._qpos.dot(self._qpos) < inf:
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE, f"a state has positions that are not finite: {q}"
+            )
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def found(self) -> Iterator[Contact]:
+        """Yield the contacts of the last `mujoco.mj_collision`."""
+        found = self.data.contact
+        for (first, second), distance, position, frame in zip(
+            found.geom.tolist(), found.dist.tolist(), found.pos, found.frame, strict=True
+        ):
+            yield self.contact(GeomContact(first, second, distance, position, frame[:3]))
+
+    def contact(self, found: GeomContact) -> Contact:
+        """Name the bodies: links before what is attached, that before objects, then by name."""
+        first, second, normal = (
+            self._body_of(found.first),
+            self._body_of(found.second),
+            found.normal,
+        )
+        if (ORDER[first.kind], first.name) > (ORDER[second.kind], second.name):
+            first, second, normal = second, first, -normal
+        return Contact(
+            first.name,
+            second.name,
+            first.kind,
+            second.kind,
+            -found.distance,
+            _vector(found.position),
+            _vector(normal),
+        )
+
+    def _body_of(self, geom: int) -> Body:
+        body = self.bodies[self.model.geom_bodyid[geom]]
+        assert body is not None
+        return body
+
+
+def deepest(contacts: Iterable[Contact]) -> tuple[Contact, ...]:
+    """Return the deepest contact of each pair, the deepest first."""
+    found: dict[tuple[str, str, BodyKind], Contact] = {}
+    for contact in contacts:
+        pair = (contact.first, contact.second, contact.second_kind)
+        if pair not in found or found[pair].depth_m < contact.depth_m:
+            found[pair] = contact
+    return tuple(sorted(found.values(), key=lambda contact: -contact.depth_m))
+
+
+def _vector(values: Array) -> Vector:
+    x, y, z = values.tolist()
+    return (x, y, z)
