@@ -11,7 +11,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-TIMEOUT_S = 60.0
+TIMEOUT_S = 150.0
+"""For a line: a busy machine simulates slower than time passes."""
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 ANYTHING = "..."
 INTERRUPT = "^C"

@@ -19,6 +19,7 @@ RUNNING_PAGES = [p for p in PAGES if any(b.language == "console" for b in blocks
 
 @pytest.mark.ros
 @pytest.mark.slow
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("page", RUNNING_PAGES, ids=lambda page: page.stem)
 def test_the_commands_of_a_page_print_what_it_says(
     page: Path, folder: Path, background: Background

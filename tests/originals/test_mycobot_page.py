@@ -4,7 +4,7 @@ import pytest
 from originals_table import Row
 from walk import Walk, rows_of
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(600)]
 
 
 @pytest.mark.parametrize(
