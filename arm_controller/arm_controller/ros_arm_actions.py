@@ -38,10 +38,14 @@ class ArmActions:
         self._joints = list(joints)
         self._arm = ActionClient(node, FollowJointTrajectory, ARM_ACTION)
         self._gripper = ActionClient(node, GripperCommand, GRIPPER_ACTION)
+        self._connected = False
 
     def connect(self) -> None:
-        """Wait for both action servers, and log which are missing."""
-        if not self._missing():
+        """Wait for both action servers, and log which are missing.
+
+        The first time says that they are there, even if they are found at once.
+        """
+        if self._connected and not self._missing():
             return
         logger = self._node.get_logger()
         logger.info("Waiting for action servers...")
@@ -52,6 +56,7 @@ class ArmActions:
                 reminded_s = time.monotonic()
                 names = " and ".join(missing)
                 logger.warning(f"no action server for {names}: does the robot run?")
+        self._connected = True
         logger.info("Action servers connected!")
 
     def follow(self, path: Sequence[PathPoint]) -> str | None:
