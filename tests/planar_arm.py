@@ -23,6 +23,7 @@ class Blocked:
     """Where a proof failed."""
 
     segment: int
+    fraction: float
 
     def __str__(self) -> str:
         return f"the arm with a disc in segment {self.segment}"
@@ -58,21 +59,28 @@ class PlanarArm:
         return self.clearance(q) > 0.0
 
     def is_free_edge(self, a: np.ndarray, b: np.ndarray) -> bool:
-        """No point moves farther than each joint's change times the length beyond it."""
-        sweep = float(np.abs(b - a) @ np.arange(len(a), 0, -1)) / 2.0
-        clearance = self.clearance((a + b) / 2.0)
-        if clearance < FLOOR_M:
-            return False
-        if clearance > sweep:
-            return True
-        middle = (a + b) / 2.0
-        return self.is_free_edge(a, middle) and self.is_free_edge(middle, b)
+        return self.prove(np.array([a, b])) is None
 
     def prove(self, path: np.ndarray) -> Blocked | None:
         for segment, (a, b) in enumerate(itertools.pairwise(path)):
-            if not self.is_free_edge(a, b):
-                return Blocked(segment)
+            fraction = self._obstruction(a, b - a, 0.0, 1.0)
+            if fraction is not None:
+                return Blocked(segment, fraction)
         return None
+
+    def _obstruction(
+        self, start: np.ndarray, change: np.ndarray, low: float, high: float
+    ) -> float | None:
+        """No point moves farther than each joint's change times the length beyond it."""
+        middle = (low + high) / 2.0
+        sweep = (high - low) / 2.0 * float(np.abs(change) @ np.arange(len(start), 0, -1))
+        clearance = self.clearance(start + middle * change)
+        if clearance < FLOOR_M:
+            return middle
+        if clearance > sweep:
+            return None
+        before = self._obstruction(start, change, low, middle)
+        return self._obstruction(start, change, middle, high) if before is None else before
 
     def contacts(self, q: np.ndarray) -> tuple[str, ...]:
         return () if self.is_free(q) else (f"the arm with a disc, {-self.clearance(q):.2f} m deep",)

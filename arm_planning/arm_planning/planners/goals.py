@@ -24,7 +24,7 @@ SAMPLES = 64
 """Joint positions, or poses, that are drawn for a goal whose middle cannot be reached."""
 ALIKE = 1e-2
 """Goal states that differ by less in each joint are one, in rad or m."""
-SLACK = 2e-5
+SLACK = 1e-4
 """How much inverse kinematics may miss a tolerance, rad or m."""
 FULL_TURN = 2.0 * math.pi
 

@@ -21,7 +21,12 @@ class Obstruction(Protocol):
 
     @property
     def segment(self) -> int:
-        """Index of the way point before it."""
+        """Index of the way point before it; all segments before that are free."""
+        ...
+
+    @property
+    def fraction(self) -> float:
+        """Where on the segment, 0 to 1."""
         ...
 
 

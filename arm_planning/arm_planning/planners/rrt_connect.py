@@ -15,8 +15,8 @@ Array = NDArray[np.float64]
 
 BLOCK = 256
 """Random states that are drawn at once."""
-REACH = 1.0
-"""Length of a move of the tree that explores, in the joints' units."""
+REACH = 4.0
+"""Longest move, in the joints' units; something mostly blocks it before."""
 
 
 def rrt_connect(
@@ -78,7 +78,7 @@ def _follow(space: Space, tree: Tree, target: Array) -> int | None:
 
 def _grow(space: Space, tree: Tree, parent: int, target: Array) -> tuple[int | None, bool]:
     """Move from a state of a tree; return the last new state, and whether it is the target."""
-    states, arrived = space.move(tree.state(parent), target)
+    states, arrived = space.advance(tree.state(parent), target)
     grown = None
     for state in states:
         grown = parent = tree.add(state, parent)

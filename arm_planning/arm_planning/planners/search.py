@@ -1,13 +1,14 @@
 """The suite's own planner: a straight path first, then RRT-Connect, shortcuts and a proof."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
+from arm_planning.planners.mend import mend
+from arm_planning.planners.problem import PlanningProblem, path_length
 from arm_planning.planners.rrt_connect import rrt_connect
 from arm_planning.planners.shortcut import shorten
 from arm_planning.planners.space import Space, space_of
@@ -32,38 +33,36 @@ class RrtConnectPlanner:
         path, goals = straight_to_any(problem)
         if path is not None:
             return path
-        space = space_of(problem, goals)
-        return shortest_proved(self._paths(problem, space, goals), problem.checker)
+        paths = list(self._paths(problem, goals, is_proved=False))
+        # Where samples do not tell what is free, each move is proved.
+        paths = paths or list(self._paths(problem, goals, is_proved=True))
+        if not paths:
+            raise PlanningError(
+                ErrorCode.PLANNING_FAILED,
+                "a path was found but not proved free; another seed may find a better one",
+            )
+        return min(paths, key=path_length)
 
-    def _paths(
-        self, problem: PlanningProblem, space: Space, goals: Array
-    ) -> Iterator[tuple[Array, ...]]:
-        """Yield the path of each attempt: shortened, and as it was found."""
+    def _paths(self, problem: PlanningProblem, goals: Array, *, is_proved: bool) -> Iterator[Array]:
+        """Yield the path of each attempt that succeeds, shortened and proved."""
+        space = space_of(problem, goals, is_proved=is_proved)
         for attempt, found in race(problem, space, goals):
-            yield shorten(found, space, (problem.seed, attempt, 1), problem.deadline), found
+            path = shortened_and_proved(problem, space, found, attempt)
+            if path is not None:
+                yield path
 
 
-def shortest_proved(paths: Iterable[tuple[Array, ...]], checker: StateChecker) -> Array:
-    """Return the shortest path, (m, n), of which every state is proved free.
-
-    Args:
-        paths: of each attempt the versions of its path, the one to be preferred first.
-        checker: proves them.
-
-    Raises:
-        PlanningError: PLANNING_FAILED: none can be proved.
-    """
-    shortest: Array | None = None
-    for versions in paths:
-        path = next((each for each in versions if checker.prove(each) is None), None)
-        if path is not None and (shortest is None or path_length(path) < path_length(shortest)):
-            shortest = path
-    if shortest is None:
-        raise PlanningError(
-            ErrorCode.PLANNING_FAILED,
-            "a path was found but not proved free; another seed may find a better one",
-        )
-    return shortest
+def shortened_and_proved(
+    problem: PlanningProblem, space: Space, found: Array, attempt: int
+) -> Array | None:
+    """Return a path that was found in a space, (m, n), shortened and proved; None without proof."""
+    seed = (problem.seed, attempt, 1)
+    path = shorten(found, space, seed, problem.deadline)
+    for candidate in (path, found):
+        mended = mend(candidate, space, problem.checker, seed, problem.deadline)
+        if mended is not None:
+            return mended
+    return None
 
 
 def check_start(problem: PlanningProblem) -> None:

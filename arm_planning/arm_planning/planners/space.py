@@ -10,6 +10,14 @@ from arm_planning.planners.problem import PlanningProblem, StateChecker
 
 Array = NDArray[np.float64]
 
+SAMPLE_STEP = 0.05
+"""Largest change of a joint between two samples of a straight move, rad or m."""
+BACK_OFF = 1
+"""How many samples before an obstacle a move stops: the next one may already touch it."""
+SHORTEST = 0.2
+"""Length of a move that is worth it although it does not reach its target."""
+PARTS = (1.0, 0.25)
+"""Shares of a proved move that are tried."""
 STEP = 0.05
 """Distance of two states on a constrained path, rad or m."""
 TIGHTER = 0.9
@@ -35,30 +43,87 @@ class Space(Protocol):
         """Return a state near to one, (n,), that satisfies the constraints; None without any."""
         ...
 
-    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
-        """Go from a state towards another.
+    def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go from a state towards another as far as it is worth it.
 
         Returns:
-            The states after `a`, (k, n), all moves between them free, and whether the last is `b`.
+            The states after `a`, (k, n), and whether the last is `b`.
         """
         ...
 
+    def connect(self, a: Array, b: Array) -> Array | None:
+        """Return the states after `a` on the way to `b`, (k, n); None if something blocks it."""
+        ...
 
-def space_of(problem: PlanningProblem, goals: Array) -> Space:
-    """Return the space in which paths to some goals, (g, n), are searched."""
+
+def space_of(problem: PlanningProblem, goals: Array, *, is_proved: bool = False) -> Space:
+    """Return the space in which paths to some goals, (g, n), are searched.
+
+    Args:
+        problem: the problem.
+        goals: the states that paths may end in.
+        is_proved: whether moves are proved, which takes several times as long as samples do.
+    """
     states = np.vstack([problem.start, goals])
     group = problem.group
     # Half a turn each way for continuous joints; goals may be farther.
     lower = np.where(group.continuous, problem.start - TURN, group.lower)
     upper = np.where(group.continuous, problem.start + TURN, group.upper)
     lower, upper = np.minimum(lower, states.min(axis=0)), np.maximum(upper, states.max(axis=0))
-    if problem.path is None or not problem.path.constraints:
-        return FreeSpace(problem.checker, lower, upper)
-    return ConstrainedSpace(problem.checker, problem.path, lower, upper)
+    if problem.path is not None and problem.path.constraints:
+        return ConstrainedSpace(problem.checker, problem.path, lower, upper)
+    kind = ProvedSpace if is_proved else SampledSpace
+    return kind(problem.checker, lower, upper)
 
 
-class FreeSpace:
-    """All free states; moves are straight."""
+class SampledSpace:
+    """Free states; a straight move counts as free if samples of it are.
+
+    A path of such moves is proved afterwards: most are free, and samples are much faster.
+    """
+
+    def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
+        self.lower, self.upper = lower, upper
+        self._is_free = checker.is_free
+
+    def project(self, q: Array) -> Array | None:
+        """Return the state itself."""
+        return q
+
+    def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go straight until something blocks, and stop a little before it."""
+        change, count = b - a, _samples(a, b)
+        step = change / count
+        for number in range(1, count + 1):
+            if not self._is_free(a + number * step):
+                kept = number - 1 - BACK_OFF
+                if kept > 0 and kept / count * float(np.linalg.norm(change)) >= SHORTEST:
+                    return (a + kept * step)[None, :], False
+                return np.empty((0, len(a))), False
+        return b[None, :], True
+
+    def connect(self, a: Array, b: Array) -> Array | None:
+        """Go straight; samples are taken in the order in which they find obstacles soonest."""
+        count = _samples(a, b)
+        step = (b - a) / count
+        if not self._is_free(b):
+            return None
+        spans = [(0, count)]
+        for low, high in spans:
+            middle = (low + high) // 2
+            if middle > low:
+                if not self._is_free(a + middle * step):
+                    return None
+                spans += ((low, middle), (middle, high))
+        return b[None, :]
+
+
+def _samples(a: Array, b: Array) -> int:
+    return int(np.abs(b - a).max() / SAMPLE_STEP) + 1
+
+
+class ProvedSpace:
+    """Free states; each straight move is proved."""
 
     def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
         self.lower, self.upper = lower, upper
@@ -68,11 +133,17 @@ class FreeSpace:
         """Return the state itself."""
         return q
 
-    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
+    def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
+        """Go straight, all of the way or the first part of it."""
+        for share in PARTS:
+            target = b if share == 1.0 else a + share * (b - a)
+            if self.connect(a, target) is not None:
+                return target[None, :], share == 1.0
+        return np.empty((0, len(a))), False
+
+    def connect(self, a: Array, b: Array) -> Array | None:
         """Go straight, or not at all."""
-        if self._checker.is_free_edge(a, b):
-            return b[None, :], True
-        return b[:0].reshape(0, len(b)), False
+        return b[None, :] if self._checker.is_free_edge(a, b) else None
 
 
 class ConstrainedSpace:
@@ -100,7 +171,12 @@ class ConstrainedSpace:
             q = np.clip(q - np.linalg.pinv(jacobian, rcond=1e-4) @ residual, self.lower, self.upper)
         return q if np.abs(self._tight.residual(q)).max() < PROJECTED else None
 
-    def move(self, a: Array, b: Array) -> tuple[Array, bool]:
+    def connect(self, a: Array, b: Array) -> Array | None:
+        """Go along the constraints to a state."""
+        states, reached = self.advance(a, b)
+        return states if reached else None
+
+    def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go towards a state in small steps along the constraints, until something blocks."""
         states = [a]
         while True:

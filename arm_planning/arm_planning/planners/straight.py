@@ -39,7 +39,7 @@ def straight_path(problem: PlanningProblem, goals: tuple[Array, ...]) -> Array |
     space = space_of(problem, np.array(goals))
     for goal in goals:
         problem.deadline.check("looking for a straight path")
-        states, reached = space.move(problem.start, goal)
-        if reached:
+        states = space.connect(problem.start, goal)
+        if states is not None:
             return np.vstack([problem.start, states])
     return None

@@ -5,7 +5,6 @@ its work is counted in edges: the same problem with the same seed has the same a
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.errors import ErrorCode, MissingOmplError, PlanningError
-from arm_planning.planners.problem import PlanningProblem, StateChecker
-from arm_planning.planners.search import check_start, shortest_proved
-from arm_planning.planners.shortcut import shorten
+from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
+from arm_planning.planners.search import check_start, shortened_and_proved
 from arm_planning.planners.space import space_of
 from arm_planning.planners.straight import straight_to_any
 
@@ -83,14 +81,17 @@ class OmplPlanner:
             self._search(problem, goals, problem.seed + attempt)
             for attempt in range(problem.attempts)
         )
-        return shortest_proved(self._shortened(problem, goals, found), problem.checker)
-
-    def _shortened(
-        self, problem: PlanningProblem, goals: Array, paths: Iterable[Array]
-    ) -> Iterable[tuple[Array, ...]]:
         space = space_of(problem, goals)
-        for attempt, path in enumerate(paths):
-            yield shorten(path, space, (problem.seed, attempt, 1), problem.deadline), path
+        paths = (
+            shortened_and_proved(problem, space, path, attempt)
+            for attempt, path in enumerate(found)
+        )
+        proved = [path for path in paths if path is not None]
+        if not proved:
+            raise PlanningError(
+                ErrorCode.PLANNING_FAILED, f"OMPL's {self.name} found no path that is proved free"
+            )
+        return min(proved, key=path_length)
 
     def _search(self, problem: PlanningProblem, goals: Array, seed: int) -> Array:
         ompl.util.noOutputHandler()
