@@ -61,7 +61,7 @@ STALE = 10
 ALIKE = 1e-2
 """Solutions whose joints all differ by less than this are one, in rad or m."""
 FARTHEST = 1e6
-"""Largest position of a joint without limits, rad or m; beyond it, numbers get too coarse."""
+"""Largest position of a joint, rad or m; beyond it, numbers get too coarse."""
 PLACE = np.array([[1.0], [1.0], [1.0], [0.0], [0.0], [0.0]])
 """Weights of the position alone."""
 CLOSE_M = 1e-4
@@ -139,6 +139,31 @@ class InverseKinematics:
         wraps = tuple(robot.joint(joint).type.wraps for joint in joints)
         group = JointGroup("joints", tuple(joints), wraps, limits, (tip,), robot.root, tip)
         return cls(PlanningModel(robot, robot.root, tuple(joints), {group.name: group}), group.name)
+
+    def checked(self, state: Sequence[float] | Array) -> Array:
+        """Return positions of the group as an array, (n,).
+
+        Raises:
+            PlanningError: INVALID_ROBOT_STATE: they are too few or too many, not finite, or too
+                large to compute with.
+        """
+        q = np.asarray(state, dtype=float)
+        names = self.group.joints
+        if q.shape != (len(names),):
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"a state of group '{self.group.name}' has {len(names)} positions, for "
+                f"{listing(names)}; the given one has the shape {q.shape}",
+            )
+        usual = np.abs(q) <= FARTHEST
+        if not usual.all():
+            index = int(usual.argmin())
+            why = f"is beyond {FARTHEST:g}" if np.isfinite(q[index]) else "is not finite"
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"the position of joint '{names[index]}' {why}: {q[index]:g}",
+            )
+        return q
 
     def pose(self, q: Sequence[float] | Array) -> Array:
         """Return the tip's pose in the root's frame, (4, 4), for positions of the group, (n,)."""
@@ -283,36 +308,12 @@ class InverseKinematics:
         return Search(
             target=target_of(position, quaternion, length, weight),
             orientation=orientation,
-            seed=self._checked_seed(seed),
+            seed=np.minimum(np.maximum(self.checked(seed), self._lowest), self._highest),
             random_seed=random_seed,
             free=free,
             steps=self._steps(position, timeout_s),
             until_s=self._clock() + GUARD * timeout_s,
         )
-
-    def _checked_seed(self, seed: Sequence[float] | Array) -> Array:
-        q = np.asarray(seed, dtype=float)
-        names = self.group.joints
-        if q.shape != (len(names),):
-            raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
-                f"a seed of group '{self.group.name}' has {len(names)} positions, for "
-                f"{listing(names)}; it has the shape {q.shape}",
-            )
-        if not np.isfinite(q).all():
-            bad = int(np.isfinite(q).argmin())
-            raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
-                f"the seed's position of joint '{names[bad]}' is not finite: {q[bad]}",
-            )
-        q = np.minimum(np.maximum(q, self._lowest), self._highest)
-        if np.abs(q).max() > FARTHEST:
-            far = int(np.abs(q).argmax())
-            raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
-                f"the seed's position of joint '{names[far]}', {q[far]:g}, is beyond {FARTHEST:g}",
-            )
-        return q
 
     def _steps(self, position: Array, timeout_s: float) -> int:
         steps = max(MAX_STEPS, round(timeout_s * STEPS_PER_S))

@@ -98,8 +98,9 @@ def cartesian_path(
 
     Raises:
         PlanningError: FAILURE or INVALID_GOAL_CONSTRAINTS: the step is not positive, the path has
-            too many points, or a way point is no pose.
+            too many points, or a way point is no pose. INVALID_ROBOT_STATE: the start is no state.
     """
+    start = kinematics.checked(start)
     lines = _lines(kinematics.tip_pose(start), way_points, relative)
     counts = _counts(lines, max_step_m)
     path = _Path(kinematics, start, orientation, checker, violation)
@@ -160,7 +161,7 @@ class _Path:
     ) -> None:
         self._kinematics, self._orientation = kinematics, orientation
         self._checker, self._violation = checker, violation
-        self.points, self.shares = [np.asarray(start, dtype=float)], [0.0]
+        self.points, self.shares = [start], [0.0]
 
     def extend(self, line: PoseLine, count: int, number: int) -> None:
         """Go to the end of a line in steps, or raise `_Stop` where it does not go on."""

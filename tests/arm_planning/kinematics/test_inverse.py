@@ -279,8 +279,11 @@ def test_a_target_that_is_no_pose_is_refused(target, message):
 @pytest.mark.parametrize(
     ("seed", "message"),
     [
-        ((0.0, 0.0), r"group 'arm' has 6 positions, for j0, .*; it has the shape \(2,\)"),
-        ((0.0, NAN, 0.0, 0.0, 0.0, 0.0), "the seed's position of joint 'j1' is not finite: nan"),
+        (
+            (0.0, 0.0),
+            r"group 'arm' has 6 positions, for j0, .*; the given one has the shape \(2,\)",
+        ),
+        ((0.0, NAN, 0.0, 0.0, 0.0, 0.0), "the position of joint 'j1' is not finite: nan"),
     ],
 )
 def test_a_seed_that_is_no_state_is_refused(seed, message):
@@ -293,7 +296,7 @@ def test_a_seed_that_is_no_state_is_refused(seed, message):
 def test_a_continuous_joint_that_has_turned_too_often_is_refused():
     kinematics = one_joint("0 0 1", "continuous", limits=None)
     assert kinematics.solve(np.eye(4), (1e5,)) == pytest.approx([1e5], abs=math.pi)
-    with pytest.raises(PlanningError, match="position of joint 'j', 1e\\+17, is beyond 1e\\+06"):
+    with pytest.raises(PlanningError, match="position of joint 'j' is beyond 1e\\+06: 1e\\+17"):
         kinematics.solve(np.eye(4), (1e17,))
 
 

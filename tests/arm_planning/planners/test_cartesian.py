@@ -231,3 +231,9 @@ def test_a_way_point_that_is_no_pose_is_refused_by_its_number(arm):
     bad = RigidTransform((0.0, 0.0, float("nan")))
     with pytest.raises(PlanningError, match="way point 2 of 2: the target's position has"):
         cartesian_path(arm, START, (begin, bad), 0.01)
+
+
+def test_a_start_that_is_no_state_is_refused(arm):
+    begin = arm.tip_pose(START)
+    with pytest.raises(PlanningError, match="the position of joint 'j0' is not finite: nan"):
+        cartesian_path(arm, np.full(6, np.nan), (begin,), 0.01)
