@@ -100,22 +100,27 @@ def frame_position(
     if not constraint.regions:
         raise _bad_goal("Primitive pose in position constraints of goal missing")
     frame = _frame(model, state, constraint.frame)
-    return frame.then(constraint.regions[0].pose).position
+    return _checked_transform(frame.then(constraint.regions[0].pose)).position
 
 
 def _frame_rotation(
     model: PlanningModel, state: JointPositions, constraint: OrientationConstraint
 ) -> tuple[float, float, float, float]:
     frame = _frame(model, state, constraint.frame)
-    return frame.then(RigidTransform(rotation=constraint.orientation)).rotation
+    turned = RigidTransform(rotation=constraint.orientation)
+    return _checked_transform(frame.then(turned)).rotation
 
 
 def _frame(model: PlanningModel, state: JointPositions, name: str) -> RigidTransform:
     if name in ("", model.frame):
         return RigidTransform()
     kinematics = ForwardKinematics(model)
-    matrix = kinematics.pose(np.array([state[joint] for joint in model.joints]), name)
-    (x, y, z), (w, a, b, c) = (part.tolist() for part in checked_pose(matrix))
+    matrix = kinematics.pose(np.array([state.get(joint, 0.0) for joint in model.joints]), name)
+    return _checked_transform(matrix)
+
+
+def _checked_transform(pose: RigidTransform | Array) -> RigidTransform:
+    (x, y, z), (w, a, b, c) = (part.tolist() for part in checked_pose(pose))
     return RigidTransform((x, y, z), (a, b, c, w))
 
 

@@ -1,5 +1,6 @@
 """A joint trajectory that moves the tip along a curve with a trapezoid as its speed."""
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
@@ -25,6 +26,8 @@ Array = NDArray[np.float64]
 
 STEP_M, STEP_RAD = 5e-3, 0.05
 """Distance of the poses at which joint positions are computed first."""
+MOST_POSES = 20_000.0
+"""Longer paths have longer steps; no arm reaches so far."""
 DOUBLINGS = 5
 """How often their number is doubled while the tip leaves the curve between them."""
 OFF_CURVE_M, OFF_CURVE_RAD = 1e-4, 1e-3
@@ -158,7 +161,8 @@ class _Followed:
         self, name: str, curve: PoseCurve, kinematics: InverseKinematics, start: Array
     ) -> None:
         self._name, self._curve, self._kinematics = name, curve, kinematics
-        count = max(4, int(np.ceil(max(curve.length_m / STEP_M, curve.angle_rad / STEP_RAD))))
+        poses = max(curve.length_m / STEP_M, curve.angle_rad / STEP_RAD)
+        count = math.ceil(min(max(poses, 4.0), MOST_POSES))
         worst = 0.0
         for _ in range(DOUBLINGS + 1):
             self._points = self._follow(start, count)

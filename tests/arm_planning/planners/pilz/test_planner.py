@@ -221,6 +221,29 @@ def test_requests_that_cannot_be_met(request_, code, sentence):
     assert sentence in refused(ErrorCode[code], request_)
 
 
+@pytest.mark.parametrize("planner", ["PTP", "LIN"])
+@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+def test_numbers_of_a_pose_are_finite(planner, bad):
+    sentence = refused(
+        ErrorCode.INVALID_GOAL_CONSTRAINTS, asked(planner, pose_goal((bad, 0.0, 0.0)))
+    )
+    assert "finite" in sentence
+
+
+def test_a_goal_at_the_end_of_the_world_is_out_of_reach():
+    refused(ErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((1e5, 0.0, 0.0))))
+
+
+def test_a_rotation_that_is_none_is_refused():
+    goal = pose_goal((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+    refused(ErrorCode.INVALID_GOAL_CONSTRAINTS, asked("LIN", goal))
+
+
+def test_the_point_of_an_arc_is_finite():
+    path = auxiliary("interim", (float("nan"), 0.0, 0.0))
+    refused(ErrorCode.INVALID_GOAL_CONSTRAINTS, asked("CIRC", CIRC["goal"], path=path))
+
+
 def test_position_and_orientation_are_for_the_same_link():
     goal = pose_goal((0.0, 0.0, 0.0))
     other = dataclasses.replace(goal.orientations[0], link="l5")
