@@ -12,7 +12,7 @@ from arm_planning.robot.srdf import Srdf, parse_srdf
 ARM = robot(
     link("base", box()),
     *(link(name, box(size=0.02)) for name in ("upper", "$(arg tip)")),
-    joint("shoulder", "base", "upper", xyz="0 0 0.2"),
+    joint("shoulder", "base", "upper", xyz="0 0 0.3"),
     joint("elbow", "upper", "$(arg tip)", xyz="0 0 0.2"),
 )
 XACRO = ARM.replace("<robot", "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'", 1).replace(
