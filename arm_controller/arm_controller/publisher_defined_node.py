@@ -106,6 +106,7 @@ class PublisherDefined(Node):
                 logger.info(f"{label} reached after {elapsed_s:.1f} s")
                 return True
             if elapsed_s >= self._timeout_s:
+                problem = problem or "/joint_states has been silent since the pose was published"
                 logger.error(f"{label} not reached within {self._timeout_s:g} s: {problem}")
                 return False
 
