@@ -93,6 +93,7 @@ def declare(
 
     Raises:
         ParameterException: the given value has another type, or is out of bounds.
+        NodeParameterError: it is an empty list.
     """
     descriptor = ParameterDescriptor(description=about, read_only=read_only)
     is_whole, value = False, default
@@ -103,6 +104,8 @@ def declare(
         is_whole = type(number) is int
         value = float(number) if is_whole else default
     made: Any = node.declare_parameter(name, value, descriptor, ignore_override=is_whole)
+    if made.value is None:  # rclpy takes [] for a parameter of any type.
+        raise NodeParameterError(f"parameter {name}: must not be an empty list")
     return made.value
 
 
@@ -132,8 +135,8 @@ def declare_joints(node: Node, default: tuple[str, ...] = ("j0", "j1", "j2", "j3
         NodeParameterError: a name is empty, or there twice.
     """
     about = "Joints of a pose, in its controller's order"
-    names = declare(node, "joints", list(default), about) or []  # rclpy gives None for [].
-    if not names or not all(names) or len(set(names)) < len(names):
+    names = declare(node, "joints", list(default), about)
+    if not all(names) or len(set(names)) < len(names):
         raise NodeParameterError(f"parameter joints: must be different names, not {names}")
     return names
 

@@ -268,7 +268,9 @@ def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until
             {"print_period": "-1"},
             "Parameter print_period out of range Min: 0.0, Max: 1000000000.0, value: -1.0",
         ),
-        ({"joints": "[]"}, "parameter joints: must be different names, not []"),
+        ({"joints": "[]"}, "parameter joints: must not be an empty list"),
+        ({"print_period": "[]"}, "parameter print_period: must not be an empty list"),
+        ({"print_header": "[]"}, "parameter print_header: must not be an empty list"),
         ({"joints": "[a, b, a]"}, "parameter joints: must be different names"),
         (
             {"command_topic": "5"},
