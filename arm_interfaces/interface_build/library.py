@@ -77,7 +77,7 @@ def link_libraries(
     """
     target.mkdir(parents=True, exist_ok=True)
     names = LibraryNames(package.name)
-    objects = [path for unit in find_units(package, work) for path in unit.object_files]
+    objects = [unit.object_file for unit in find_units(package, work)]
     toolchain.link(objects, target / names.code, _code_flags(package, target, prefix))
     toolchain.link([], target / names.stub, _flags(names.stub, target, [names.code]))
 

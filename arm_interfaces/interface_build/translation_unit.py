@@ -5,6 +5,7 @@ one translation unit compile almost as fast as one; the whole build takes a thir
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from interface_build.toolchain import Toolchain
 from interface_build.work_folder import WorkFolder
 
 _MAX_BATCH = 20
+# Each description has its own static text under this name.
+_OWN_TEXT = "toplevel_type_raw_source"
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +28,15 @@ class CodeKind:
         name: name of the kind, for progress lines and object names.
         pattern: file name, with ``{}`` for the interface in snake case.
         in_introspection: whether the introspection generator writes it.
-        merged: whether several may share a translation unit. Descriptions may not, because each
-            defines static names of the types that it uses.
+        repeats: whether the files define the same static texts, such as the names of the types that
+            they use, so that only the first definition may stay.
         optimisation: compiler flag; data and code that runs once need none.
     """
 
     name: str
     pattern: str
     in_introspection: bool = False
-    merged: bool = True
+    repeats: bool = False
     optimisation: str = "-O0"
 
 
@@ -41,7 +44,7 @@ CODE_KINDS = (
     CodeKind("serialisation", "detail/{}__type_support_c.cpp", optimisation="-O1"),
     CodeKind("functions", "detail/{}__functions.c", optimisation="-O1"),
     CodeKind("conversion", "_{}_s.c", optimisation="-O1"),
-    CodeKind("descriptions", "detail/{}__description.c", merged=False),
+    CodeKind("descriptions", "detail/{}__description.c", repeats=True),
     CodeKind("introspection", "detail/{}__type_support.c", in_introspection=True),
     CodeKind("handles", "detail/{}__type_support.c"),
     CodeKind("dispatch", "{}__type_support.cpp"),
@@ -67,33 +70,38 @@ class TranslationUnit:
     name: str
 
     @property
-    def object_files(self) -> list[Path]:
-        """The object files to link."""
-        count = 1 if self.kind.merged else len(self.sources)
-        return [self.objects / f"{self.name}_{index}.o" for index in range(count)]
+    def object_file(self) -> Path:
+        """The object file to link."""
+        return self.objects / f"{self.name}.o"
 
     def compile(self, toolchain: Toolchain, includes: tuple[Path, ...]) -> None:
-        """Compile the files together, or one after the other.
+        """Compile the files together.
 
         Raises:
             CompileError: the compiler refused one of them.
         """
-        if self.kind.merged:
-            files = [self._write_merged()]
-        else:
-            files = [self.source_folder / source for source in self.sources]
+        merged = self.objects / f"{self.name}{Path(self.sources[0]).suffix}"
+        lines = self._texts() if self.kind.repeats else self._includes()
+        merged.write_text("\n".join(lines), encoding="utf-8")
         # The sources' folder comes first, because both generated folders have files with the same
         # path.
         folders = (self.source_folder, *includes)
-        for file, target in zip(files, self.object_files, strict=True):
-            toolchain.compile(file, target, folders, self.kind.optimisation)
+        toolchain.compile(merged, self.object_file, folders, self.kind.optimisation)
 
-    def _write_merged(self) -> Path:
-        """Write a file that includes all sources."""
-        path = self.objects / f"{self.name}{Path(self.sources[0]).suffix}"
-        lines = [f'#include "{source}"\n' for source in self.sources]
-        path.write_text("".join(lines), encoding="utf-8")
-        return path
+    def _includes(self) -> Iterator[str]:
+        """Yield a line for each source that includes it."""
+        return (f'#include "{source}"' for source in self.sources)
+
+    def _texts(self) -> Iterator[str]:
+        """Yield the lines of all sources, but the definitions of static texts only once."""
+        defined: set[str] = set()
+        for index, source in enumerate(self.sources):
+            yield f"#undef {_OWN_TEXT}\n#define {_OWN_TEXT} {_OWN_TEXT}_{index}"
+            for line in (self.source_folder / source).read_text(encoding="utf-8").splitlines():
+                if line not in defined:
+                    yield line
+                if line.startswith("static char ") and line.endswith(";"):
+                    defined.add(line)
 
 
 def find_units(package: InterfacePackage, work: WorkFolder) -> list[TranslationUnit]:

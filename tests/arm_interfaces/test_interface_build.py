@@ -153,7 +153,7 @@ def test_no_two_units_write_the_same_object(
     folder = build_module("work_folder").WorkFolder
     for package in packages:
         found = build_module("translation_unit").find_units(package, folder(tmp_path, package.name))
-        objects = [path for unit in found for path in unit.object_files]
+        objects = [unit.object_file for unit in found]
         assert len(objects) == len(set(objects))
 
 
