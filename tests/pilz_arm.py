@@ -47,15 +47,15 @@ KINEMATICS = InverseKinematics(MODEL, "arm")
 TIP = KINEMATICS.tip_pose(START)
 
 
-def point(offset):
-    x, y, z = np.array(TIP.position) + offset
+def point(offset, at=TIP):
+    x, y, z = np.array(at.position) + offset
     return PlacedShape(Sphere(1e-3), RigidTransform((float(x), float(y), float(z))))
 
 
-def pose_goal(offset, rotation=TIP.rotation, link="l6"):
+def pose_goal(offset, rotation=TIP.rotation, link="l6", at=TIP):
     """The tip's pose at the start, moved."""
     return Constraints(
-        positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (point(offset),)),),
+        positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (point(offset, at),)),),
         orientations=(OrientationConstraint(link, rotation, (1e-3,) * 3),),
     )
 

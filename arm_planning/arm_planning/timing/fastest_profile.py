@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 CELL = np.radians(18.0)
 """Largest turn of a cell of an arc, in rad; the path acceleration is constant in a cell."""
-FEWEST_CELLS = 300
+FEWEST_CELLS = 150
 """Arcs of a path of few pieces are divided into smaller cells, about so many in all."""
 
 

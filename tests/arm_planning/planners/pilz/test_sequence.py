@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 from pilz_arm import MODEL, READY, START, asked, joint_goal, pose_goal, tip_offsets
+from planning_models import model_of
+from robots import joint, link, robot
 
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
@@ -131,3 +133,28 @@ def test_a_radius_as_long_as_the_motion_before_is_refused():
     code, message = refused((SIDE, 0.11), (long, 0.0))
     assert code is ErrorCode.INVALID_MOTION_PLAN
     assert "stays within its radius of 0.11 m" in message
+
+
+def test_an_arm_of_seven_joints_ends_on_the_second_motion():
+    names = tuple(f"j{number}" for number in range(7))
+    axes = ("0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1")
+    arm = robot(
+        link("base"),
+        *(link(f"l{number}") for number in range(7)),
+        *(
+            joint(name, f"l{n - 1}" if n else "base", f"l{n}", xyz="0 0 0.2", axis=axes[n])
+            for n, name in enumerate(names)
+        ),
+    )
+    planner = PilzPlanner(model_of(arm, arm=(names, "l6")), CartesianLimits(0.1, 0.4, -0.4))
+    start = dict(zip(names, (0.1, 0.5, 0.2, 1.0, 0.1, 0.6, 0.0), strict=True))
+    tip = planner.kinematics("arm", "l6", start).tip_pose(list(start.values()))
+    requests = [
+        PlanRequest("arm", (pose_goal(offset, tip.rotation, at=tip),), planner="LIN")
+        for offset in ((0.0, 0.08, 0.0), (0.0, 0.08, 0.08))
+    ]
+    (apart,) = plan_sequence(planner, [SequenceItem(each) for each in requests], start)
+    items = [SequenceItem(requests[0], 0.03), SequenceItem(requests[1])]
+    (found,) = plan_sequence(planner, items, start)
+    assert found.positions[-1] == pytest.approx(apart.positions[-1], abs=1e-9)
+    assert found.duration_s < apart.duration_s
