@@ -116,7 +116,7 @@ def parse_srdf(
         root = SrdfElement.parse(text, source, remark or _log)
         if root.tag != "robot":
             raise root.error("is not an SRDF; its outermost element is <robot>")
-        return _Reader(root, robot).read()
+        return _SrdfReader(root, robot).read()
     except UrdfError as error:
         raise SrdfError(f"{source}, {error}") from error
     except XmlError as error:
@@ -139,7 +139,7 @@ class SrdfElement(UrdfElement):
         return self.text("name") if self.tag in NAMED and not is_part else ""
 
 
-class _Reader:
+class _SrdfReader:
     """Reads the parts of an SRDF, and leaves out what the robot does not have."""
 
     def __init__(self, root: UrdfElement, robot: Robot) -> None:

@@ -25,6 +25,7 @@ from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import pose_message, robot_state_message
 from arm_planning.ros.convert_shapes import solid_message
 from arm_planning.scene.allowed_collisions import AllowedCollisions
+from arm_planning.scene.object_changes import explicit_pose
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.scene import PlanningScene
 
@@ -69,7 +70,8 @@ def scene_message(model: PlanningModel, scene: PlanningScene, parts: int = 0) ->
 
 def object_message(each: CollisionObject, frame: str) -> ObjectMessage:
     """Return an object as a message that adds it; its pose is in `frame`."""
-    message = ObjectMessage(id=each.id, pose=pose_message(each.pose), operation=ObjectMessage.ADD)
+    pose = pose_message(explicit_pose(each))
+    message = ObjectMessage(id=each.id, pose=pose, operation=ObjectMessage.ADD)
     message.header.frame_id = frame
     message.type.db, message.type.key = each.type[1], each.type[0]
     message.subframe_names = list(each.subframes)

@@ -96,6 +96,17 @@ def placed_object(scene: PlanningScene, links: LinkPoses, change: ObjectChange) 
     return replace(inside, pose=pose)
 
 
+def explicit_pose(each: CollisionObject) -> RigidTransform:
+    """Return the pose with which a change adds an object as it is.
+
+    No pose and one shape means that the shape's pose is the object's. The same rotation written as
+    (0, 0, 0, -1) is a pose.
+    """
+    if each.pose == NO_POSE and len(each.shapes) == 1:
+        return RigidTransform(rotation=(0.0, 0.0, 0.0, -1.0))
+    return each.pose
+
+
 def joined(known: CollisionObject, added: CollisionObject) -> CollisionObject:
     """Return an object with the shapes and subframes of another, which stay where they are."""
     shift = known.pose.inverse().then(added.pose)

@@ -13,7 +13,7 @@ from arm_description.urdf.robot import Box, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.scene.attached_changes import AttachedChange
 from arm_planning.scene.frames import LinkPoses, frame_names, frame_pose
-from arm_planning.scene.object_changes import ObjectChange, Operation
+from arm_planning.scene.object_changes import ObjectChange, Operation, explicit_pose
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import FixedTransform, SceneChange, change_scene
@@ -114,11 +114,8 @@ def rebuilt(scene: PlanningScene) -> SceneChange:
 
 
 def add_again(body: CollisionObject) -> ObjectChange:
-    pose = body.pose
-    if pose == RigidTransform():
-        # The same rotation, which does not stand for "no pose".
-        pose = RigidTransform(rotation=(0.0, 0.0, 0.0, -1.0))
-    return ObjectChange(ADD, body.id, "", pose, body.shapes, dict(body.subframes), body.type)
+    pose, subframes = explicit_pose(body), dict(body.subframes)
+    return ObjectChange(ADD, body.id, "", pose, body.shapes, subframes, body.type)
 
 
 @given(st.lists(SCENES, min_size=1, max_size=3))
