@@ -33,6 +33,7 @@ class Chain:
         positions: positions of all other joints; one without a position is at 0.
 
     Attributes:
+        others: the joints beside the varying ones that the tip's pose depends on.
         moving: for each joint whether it moves the tip, itself or through a mimic joint, (n,).
         position: the placed tip's position, in m, (3,); overwritten by the next `place`.
         quaternion: its rotation as w, x, y, z, (4,); likewise.
@@ -47,6 +48,8 @@ class Chain:
         tree = kinematic_tree(robot, (tip,))
         carrying = tuple(tree.joints)
         self._map = position_map(robot, carrying, joints, positions)
+        leaders = (robot.leader_of(name, {*joints, *positions}).joint for name in carrying)
+        self.others = tuple(name for name in dict.fromkeys(leaders) if name not in joints)
         self.moving = self._map.matrix.any(axis=0)
         matrix = self._map.matrix
         # Without other joints and mimic joints in between, the model's joints are the given ones.

@@ -109,6 +109,7 @@ class InverseKinematics:
             raise PlanningError(ErrorCode.INVALID_LINK_NAME, message)
         self._names = tuple(names[index] for index in self._moving)
         self._chain = Chain(model.robot, self.tip, self._names, fixed)
+        self._others = {name: fixed.get(name, 0.0) for name in self._whole.others}
         self._lowest, self._highest = self.group.lower, self.group.upper
         lower, upper = self._lowest[self._moving], self._highest[self._moving]
         self.turning = np.array([model.robot.joint(name).type.turns for name in names])
@@ -139,6 +140,10 @@ class InverseKinematics:
         wraps = tuple(robot.joint(joint).type.wraps for joint in joints)
         group = JointGroup("joints", tuple(joints), wraps, limits, (tip,), robot.root, tip)
         return cls(PlanningModel(robot, robot.root, tuple(joints), {group.name: group}), group.name)
+
+    def holds_for(self, positions: JointPositions) -> bool:
+        """Whether the tip is where it would be with these positions of the other joints."""
+        return all(positions.get(name, 0.0) == value for name, value in self._others.items())
 
     def checked(self, state: Sequence[float] | Array) -> Array:
         """Return positions of the group as an array, (n,).
@@ -189,8 +194,8 @@ class InverseKinematics:
         """Return positions within the limits that bring the tip to a pose, (n,).
 
         The pose is reached within 1e-6 m and 1e-5 rad, where the arm is stretched out within ten
-        times as much. The search starts at the seed, and of equal
-        turns of a joint the one next to the seed is returned.
+        times as much. The search starts at the seed, and of equal turns of a joint the one next to
+        the seed is returned.
 
         Args:
             target: pose in the root link's frame; as an array a homogeneous transform, (4, 4).

@@ -12,10 +12,14 @@ SEED = np.full(6, 0.5)
 
 @pytest.fixture
 def kinematics() -> GroupKinematics:
-    links = [link(f"l{n}") for n in range(7)]
+    links = [link(name) for name in ("ground", "finger", *(f"l{n}" for n in range(7)))]
     joints = [
-        joint(f"j{n}", f"l{n}", f"l{n + 1}", axis=axis, xyz="0 0 0.2")
-        for n, axis in enumerate(AXES)
+        joint("lift", "ground", "l0", axis="0 0 1", kind="prismatic"),
+        joint("grip", "l6", "finger"),
+        *(
+            joint(f"j{n}", f"l{n}", f"l{n + 1}", axis=axis, xyz="0 0 0.2")
+            for n, axis in enumerate(AXES)
+        ),
     ]
     arm = (tuple(f"j{n}" for n in range(6)), "l6")
     return GroupKinematics(model_of(robot(*links, *joints), arm=arm), "arm")
@@ -42,3 +46,15 @@ def test_any_orientation_may_do(kinematics):
         kinematics("l6", target, SEED, most=1, random_seed=0, any_turn=False)
     (found,) = kinematics("l6", target, SEED, most=1, random_seed=0, any_turn=True)
     assert kinematics.of("l6").pose(found)[:3, 3] == pytest.approx((0.7, 0.0, 0.2), abs=2e-5)
+
+
+def test_other_positions_of_joints_that_do_not_matter_change_nothing(kinematics):
+    before = kinematics.of("l6")
+    assert kinematics.with_positions({"grip": 0.5}).of("l6") is before
+
+
+def test_positions_of_joints_below_the_arm_count(kinematics):
+    low = kinematics.of("l6").pose(SEED)
+    high = kinematics.with_positions({"lift": 0.3}).of("l6").pose(SEED)
+    assert high[2, 3] == pytest.approx(low[2, 3] + 0.3)
+    assert kinematics.of("l6").pose(SEED) == pytest.approx(low)
