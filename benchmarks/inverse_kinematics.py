@@ -19,9 +19,11 @@ import harness
 import numpy as np
 
 from arm_description import expand_xacro, parse_urdf, resolve_uri
+from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.search import Orientation
+from arm_planning.planners.cartesian import cartesian_path
 
 try:
     import pytracik
@@ -208,7 +210,22 @@ def others(count: int) -> list[harness.Row]:
     def nearest(target: np.ndarray, seed: np.ndarray) -> object:
         return five.solve(target, seed, orientation=Orientation.NEAREST)
 
+    arm = arms()[0]
+    mycobot = InverseKinematics.for_link(parse_urdf(arm.urdf), arm.tip, arm.joints)
+    ready = np.array([0.0, 0.0, 1.57, 1.57, 0.0, 0.0])
+    x, y, z = mycobot.tip_pose(ready).position
+    down = RigidTransform((x, y, z - 0.1), mycobot.tip_pose(ready).rotation)
+
+    def straight(target: RigidTransform, seed: np.ndarray) -> None:
+        path = cartesian_path(mycobot, seed, [target], 0.0025)
+        assert path.fraction == 1.0
+        assert len(path.points) >= 41
+
     return [
+        harness.Row(
+            "myCobot 280, a straight path of 100 mm in steps of 2.5 mm",
+            median_ms(straight, [(down, ready)] * count),
+        ),
         harness.Row("7 joints, `follow` a pose next to the seed's", median_ms(seven.follow, near)),
         harness.Row("7 joints, the nearest of `solutions`", median_ms(seven.solutions, near)),
         harness.Row("7 joints, a pose beyond the arm's length is refused", median_ms(refused, far)),

@@ -1,7 +1,8 @@
 """The joints between the root and a link, placed one state at a time.
 
-MuJoCo computes poses and Jacobians: for a chain of six joints that takes 1.5 us, where the same
-formulas in NumPy take 50.
+MuJoCo computes poses and Jacobians of a chain of six joints in 1.5 us, and a whole step of a
+descent takes 10. In NumPy a step takes 84 us, and 112 us for sixteen starts at once, which is no
+gain either: most searches need two starts.
 """
 
 import math
