@@ -30,6 +30,44 @@ URDF = f"""<robot name="r"><material name="m"><color rgba="1 0 0 1"/></material>
 <sensor name="c" type="camera"><update_rate>10</update_rate><camera><horizontal_fov>1</horizontal_fov>
 <image><width>64</width><height>48</height><format>R8G8B8</format></image>
 <clip><near>.1</near><far>9</far></clip></camera></sensor></gazebo></robot>"""
+SRDF = """<robot name="r"><group name="arm"><joint name="j0"/><link name="tip"/>
+<chain base_link="base" tip_link="tip"/></group><group name="all"><group name="arm"/></group>
+<group_state name="home" group="arm"><joint name="j0" value="0.5"/></group_state>
+<end_effector name="e" parent_link="arm" group="all" parent_group="arm"/>
+<virtual_joint name="v" type="planar" parent_frame="odom" child_link="base"/>
+<passive_joint name="j1"/><joint_property joint_name="j0" property_name="p" value="1"/>
+<disable_collisions link1="base" link2="arm" reason="Adjacent"/>
+<enable_collisions link1="base" link2="tip"/><disable_default_collisions link="tip"/></robot>"""
+JOINT_LIMITS = """default_velocity_scaling_factor: 0.5
+joint_limits:
+  j0: {has_velocity_limits: true, max_velocity: 2.0, min_position: -1.0, max_position: 1}
+  j1: {has_acceleration_limits: false, max_acceleration: 5.0, max_deceleration: -5.0}
+"""
+SCENE_FILE = """table
+* box
+0.5 0 0.25
+0 0 0 1
+2
+box
+0.2 0.05 0.5
+0 0 0
+0 0 0.6 0.8
+1 0 0 0.5
+mesh
+3 1
+0 0 0
+1 0 0
+0 1 0
+0 1 2
+0 0 0
+0 0 0 1
+0 0 0 0
+1
+top
+0 0 0.25
+0 0 0 1
+.
+"""
 XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:arg name="side" default="left"/><xacro:property name="size" value="${2 * 0.1}"/>
 <xacro:property name="names" value="${['a', 'b']}"/>

@@ -16,12 +16,14 @@ from arm_control.errors import ArmControlError
 from arm_controller.pose import PoseFileError
 from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError
+from arm_planning.errors import PlanningError
 from launch_py.errors import LaunchError
 
 LONGEST_ARGUMENT = 131_072
 """What Linux takes as one word of a command line, in bytes."""
 OWN_ERRORS = (
     *(ArmCliError, ArmControlError, DescriptionError, GazeboError, LaunchError, PoseFileError),
+    PlanningError,
 )
 
 
@@ -62,6 +64,42 @@ def _read_xacro(folder: Path, name: str, data: bytes) -> bool:
 
     parse_urdf(expand_xacro_file(seeds.write(folder, name, data)).text)
     return True
+
+
+def _read_srdf(_folder: Path, name: str, data: bytes) -> bool:
+    from arm_description.urdf.parser import parse_urdf
+    from arm_planning.robot.build import planning_model
+    from arm_planning.robot.srdf import parse_srdf
+    from arm_planning.robot.srdf_writer import srdf_text
+
+    robot = parse_urdf(seeds.URDF, remark=lambda _: None)
+    text = data.decode("utf-8", "surrogateescape")
+    srdf = parse_srdf(text, robot, name, lambda _: None)
+    planning_model(robot, srdf, warn=lambda _: None)
+    assert parse_srdf(srdf_text(srdf), robot, remark=lambda _: None) == srdf
+    return True
+
+
+def _read_planning_texts(_folder: Path, name: str, data: bytes) -> bool:
+    """Read a text as limits of joints and as a .scene file."""
+    from arm_description.urdf.parser import parse_urdf
+    from arm_planning.robot.build import planning_model
+    from arm_planning.robot.limits import read_joint_limits
+    from arm_planning.robot.srdf import Srdf
+    from arm_planning.scene.frames import LinkPoses
+    from arm_planning.scene.scene import PlanningScene
+    from arm_planning.scene.scene_file import with_scene_file
+
+    robot = parse_urdf(seeds.URDF, remark=lambda _: None)
+    text = data.decode("utf-8", "surrogateescape")
+
+    def read_limits() -> object:
+        limits = read_joint_limits(text, name, lambda _: None)
+        return planning_model(robot, Srdf("r"), limits, lambda _: None)
+
+    model = planning_model(robot, Srdf("r"), warn=lambda _: None)
+    scene, links = PlanningScene({"j0": 0.0}), LinkPoses(model, {})
+    return _succeeds(read_limits) | _succeeds(lambda: with_scene_file(scene, links, text, name))
 
 
 def _read_world(folder: Path, name: str, data: bytes) -> bool:
@@ -190,6 +228,10 @@ def _check_sentence(error: Exception) -> None:
 TARGETS: dict[str, Callable[[], Target]] = {
     "urdf": lambda: Target(_xml("a.urdf", seeds.URDF), _read_urdf),
     "xacro": lambda: Target(_xml("a.xacro", seeds.XACRO), _read_xacro),
+    "srdf": lambda: Target(_xml("a.srdf", seeds.SRDF), _read_srdf),
+    "planning": lambda: Target(
+        _text("a.yaml", seeds.JOINT_LIMITS, seeds.SCENE_FILE), _read_planning_texts
+    ),
     "sdf": lambda: Target(_xml("a.sdf", seeds.SDF), _read_world),
     "mjcf": lambda: Target(_xml("a.xml", seeds.MJCF), _read_mjcf),
     "meshes": lambda: Target(_mesh_maker(), _read_mesh),

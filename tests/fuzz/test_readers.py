@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 FUZZ = Path(__file__).with_name("fuzz.py")
-TARGETS = ("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments")
+TARGETS = (
+    *("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments"),
+    *("srdf", "planning"),
+)
 INPUTS = 200
 MOST_MB = 1000
 

@@ -110,7 +110,10 @@ class _Tree:
                 waiting.extend(joint.child for joint in reversed(joints))
 
     def chains(self, fingers: Container[str]) -> list[list[Joint]]:
-        """Return the chains between the bodies that carry several, without fingers."""
+        """Return the chains between bodies that carry several; fingers are left out.
+
+        A chain has a joint that does not follow another one.
+        """
         result: list[list[Joint]] = []
         waiting = list(reversed(self._joints_of(self._robot.root, fingers)))
         while waiting:
@@ -119,7 +122,8 @@ class _Tree:
             while len(after) == 1:
                 chain.append(after[0])
                 after = self._joints_of(chain[-1].child, fingers)
-            result.append(chain)
+            if any(joint.mimic is None for joint in chain):
+                result.append(chain)
             waiting.extend(reversed(after))
         return result
 
@@ -134,12 +138,14 @@ class _Tree:
     def _is_gripper(self, body: str, branches: Sequence[Sequence[Joint]]) -> bool:
         """Return whether the branches of a body are fingers.
 
-        They are shorter than what carries them; and they are called so, or move together, or slide,
-        or are many, or have one joint each.
+        They do not all follow joints elsewhere. They are shorter than what carries them; and they
+        are called so, or move together, or slide, or are many, or have one joint each.
         """
         above = self._above[body]
         joints = [joint for branch in branches for joint in branch]
-        deepest = max((self._above[joint.child] for joint in joints), default=above) - above
+        if all(joint.mimic is not None for joint in joints):
+            return False
+        deepest = max(self._above[joint.child] for joint in joints) - above
         leaders = {joint.mimic.joint for joint in joints if joint.mimic is not None}
         is_driven = all(
             joint.mimic is not None

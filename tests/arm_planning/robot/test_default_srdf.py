@@ -1,4 +1,6 @@
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from robots import joint, link, robot
 
 from arm_description import parse_urdf
@@ -6,7 +8,8 @@ from arm_description.urdf.robot import Robot
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.default_srdf import default_srdf
 from arm_planning.robot.model import PlanningModel
-from arm_planning.robot.srdf import EndEffector, Srdf
+from arm_planning.robot.srdf import EndEffector, Srdf, parse_srdf
+from arm_planning.robot.srdf_writer import srdf_text
 
 PAD = (
     "<collision><origin xyz='0 {y} 0.02'/><geometry><sphere radius='0.01'/></geometry></collision>"
@@ -140,3 +143,43 @@ def test_joints_that_are_not_planned_are_no_part_of_groups(kind: str):
     parts = [link("cart"), joint("drive", "world", "cart", kind=kind, limits=None)]
     model = read(link("world"), *parts, *serial("j", 3, "cart"))[2]
     assert model.group("arm").joints == ("j1", "j2", "j3")
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> str:
+    """Any tree of links, with joints of all kinds, some of which follow others."""
+    count = draw(st.integers(1, 14))
+    parts, scalar = [link("l0")], list[str]()
+    for number in range(1, count):
+        kind = draw(st.sampled_from([*["revolute"] * 3, "prismatic", "continuous", "fixed"]))
+        name = draw(st.sampled_from(["j", "finger", "left_"])) + str(number)
+        mimic = []
+        if scalar and kind not in ("fixed", "continuous") and draw(st.booleans()):
+            mimic = [f"<mimic joint='{draw(st.sampled_from(scalar))}'/>"]
+        if kind != "fixed" and not mimic:
+            scalar.append(name)
+        parent = draw(st.integers(max(0, number - 3), number - 1))
+        limits = draw(st.sampled_from([(-1.0, 2.0), (0.0, 0.0), (0.5, 1.0)]))
+        bounds = limits if kind in ("revolute", "prismatic") else None
+        parts.append(link(f"l{number}"))
+        parts.append(joint(name, f"l{parent}", f"l{number}", *mimic, kind=kind, limits=bounds))
+    return robot(*parts)
+
+
+@given(trees())
+def test_any_robot_has_groups_that_can_be_planned(text: str):
+    description = parse_urdf(text)
+    srdf = default_srdf(description)
+    assert parse_srdf(srdf_text(srdf), description, remark=pytest.fail) == srdf
+    model = planning_model(description, srdf, warn=lambda _: None)
+    single = [group for name, group in model.groups.items() if not srdf.groups[name].subgroups]
+    members = [name for group in single for name in group.joints]
+    assert sorted(members) == sorted(model.joints)
+    assert all(group.joints for group in single)
+    for (name, _), state in model.states.items():
+        group = model.group(name)
+        positions = group.positions(state)
+        assert ((group.lower <= positions) & (positions <= group.upper)).all()
+    for name, group in model.groups.items():
+        if srdf.groups[name].chains:
+            assert group.tip == srdf.groups[name].chains[0][1]
