@@ -31,17 +31,22 @@ def mend(
         PlanningError: TIMED_OUT.
     """
     random = np.random.default_rng(seed)
+    proved, rest = path[:1], path
     for _ in range(MOST_BENDS):
         deadline.check(DOING)
-        obstruction = checker.prove(path)
+        obstruction = checker.prove(rest)
         if obstruction is None:
-            return path
+            return np.concatenate([proved[:-1], rest])
         at = obstruction.segment
-        place = path[at] + np.clip(obstruction.fraction, 0.1, 0.9) * (path[at + 1] - path[at])
-        bent = _bend(path[at : at + 2], place, space, checker, random, deadline)
+        chord = rest[at : at + 2]
+        place = chord[0] + np.clip(obstruction.fraction, 0.1, 0.9) * (chord[1] - chord[0])
+        bent = _bend(chord, place, space, checker, random, deadline)
         if bent is None:
             return None
-        path = np.concatenate([path[: at + 1], bent, path[at + 1 :]])
+        proved = np.concatenate([proved[:-1], rest[: at + 1], bent, rest[at + 1 : at + 2]])
+        rest = rest[at + 1 :]
+        if len(rest) == 1:
+            return proved
     return None
 
 
