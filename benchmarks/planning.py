@@ -20,10 +20,10 @@ import numpy as np
 import ompl.base
 import ompl.geometric
 import ompl.util
-from arm_planning.collision.motion_proof import MotionProof
 from planning_problems import GROUP, SCENES, Cell, arms, cell
 
 from arm_planning.collision.model import CollisionModel
+from arm_planning.collision.motion_proof import MotionProof
 from arm_planning.errors import PlanningError
 from arm_planning.planners.problem import Deadline, PlanningProblem, path_length
 from arm_planning.planners.search import RrtConnectPlanner

@@ -37,6 +37,7 @@ SCRIPTS = (
     "soak.py",
     "sweep.py",
     "inverse_kinematics.py",
+    "planning.py",
     "fuzzing.py",
     "page.py",
 )
