@@ -8,15 +8,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.transforms import transform
-from arm_description.urdf.robot import Box, Capsule, Cylinder, Geometry, Link, Mesh, Sphere
-from arm_node.rigid_transform import RigidTransform
+from arm_description.transforms import wxyz_from_rpy
+from arm_description.urdf.robot import Box, Capsule, Cylinder, Link, Mesh, Sphere
+from arm_node.rigid_transform import Quaternion, RigidTransform, Vector
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
 Array = NDArray[np.float64]
+Placement = tuple[Vector, Quaternion]
 
 MIN_SIZE_M = 1e-6
 """MuJoCo refuses shapes without a volume; a link's shape without a size gets this one."""
@@ -30,13 +31,13 @@ class Geom:
 
     Attributes:
         type: MuJoCo's type.
-        pose: its pose in the frame of the body, (4, 4).
+        placement: its position and quaternion (w, x, y, z) in the frame of the body.
         size: half sizes, as MuJoCo has them.
         corners: of a piece of a mesh, (n, 3).
     """
 
     type: mujoco.mjtGeom
-    pose: Array
+    placement: Placement
     size: tuple[float, float, float] = (0.0, 0.0, 0.0)
     corners: Array | None = None
 
@@ -50,7 +51,7 @@ class Geom:
             corners = middle + scale * (self.corners - middle)
             if padding_m:
                 corners = (corners[:, None] + padding_m * CUBE).reshape(-1, 3)
-            return Geom(self.type, self.pose, corners=corners)
+            return Geom(self.type, self.placement, corners=corners)
         x, y, z = (scale * size for size in self.size)
         match self.type:
             case mujoco.mjtGeom.mjGEOM_BOX:
@@ -61,7 +62,7 @@ class Geom:
                 size = _sizes(x + padding_m, y)
             case _:
                 size = _sizes(x + padding_m)
-        return Geom(self.type, self.pose, size)
+        return Geom(self.type, self.placement, size)
 
 
 def link_geoms(link: Link, meshes: MeshPieces) -> tuple[Geom, ...]:
@@ -71,11 +72,7 @@ def link_geoms(link: Link, meshes: MeshPieces) -> tuple[Geom, ...]:
         PlanningError: a mesh cannot be used; the message names the link and the file.
     """
     try:
-        return tuple(
-            geom
-            for collision in link.collisions
-            for geom in _link_shape(collision.geometry, collision.origin.matrix(), meshes)
-        )
+        return meshes.of(link, lambda link: tuple(_link_shapes(link, meshes)))
     except PlanningError as error:
         raise PlanningError(error.code, f"link '{link.name}': {error}") from error
 
@@ -88,91 +85,97 @@ def object_geoms(thing: CollisionObject, meshes: MeshPieces) -> tuple[Geom, ...]
             the object.
     """
     try:
-        return tuple(
-            geom
-            for placed in thing.shapes
-            for geom in _object_shape(placed.shape, _pose_matrix(placed.pose), meshes)
-        )
+        return meshes.of(thing, lambda thing: tuple(_object_shapes(thing, meshes)))
     except PlanningError as error:
         raise PlanningError(error.code, f"object '{thing.id}': {error}") from error
 
 
-def object_pose(thing: CollisionObject) -> Array:
-    """Return the pose of an object as a (4, 4) matrix.
+def object_placement(thing: CollisionObject) -> Placement:
+    """Return the position of an object and its quaternion (w, x, y, z).
 
     Raises:
-        PlanningError: it is not valid; the message names the object.
+        PlanningError: they are not valid; the message names the object.
     """
     try:
-        return _pose_matrix(thing.pose)
+        return _placement(thing.pose)
     except PlanningError as error:
         raise PlanningError(error.code, f"object '{thing.id}': {error}") from error
 
 
-def _pose_matrix(pose: RigidTransform) -> Array:
-    """Return a pose as a (4, 4) matrix; a quaternion of another length is normalised."""
+def _placement(pose: RigidTransform) -> Placement:
+    """Return MuJoCo's form of a pose; a quaternion of another length is normalised."""
     length = hypot(*pose.rotation)
     if not (isfinite(length) and all(map(isfinite, pose.position)) and length > 0.0):
         raise PlanningError(ErrorCode.INVALID_OBJECT_NAME, f"it has no valid pose: {pose}")
     x, y, z, w = (part / length for part in pose.rotation)
-    return np.array(RigidTransform(pose.position, (x, y, z, w)).matrix())
+    return pose.position, (w, x, y, z)
 
 
-def _link_shape(geometry: Geometry, pose: Array, meshes: MeshPieces) -> Iterator[Geom]:
-    match geometry:
-        case Mesh():
-            for corners in meshes.of_file(geometry):
-                yield Geom(mujoco.mjtGeom.mjGEOM_MESH, pose, corners=corners)
-        case Capsule(radius, length):
-            yield Geom(mujoco.mjtGeom.mjGEOM_CAPSULE, pose, _sizes(radius, length / 2))
-        case _:
-            yield _primitive(geometry, pose)
+def _link_shapes(link: Link, meshes: MeshPieces) -> Iterator[Geom]:
+    for collision in link.collisions:
+        w, x, y, z = wxyz_from_rpy(collision.origin.rpy).tolist()
+        placement = collision.origin.xyz, (w, x, y, z)
+        match collision.geometry:
+            case Mesh():
+                for corners in meshes.of_file(collision.geometry):
+                    yield Geom(mujoco.mjtGeom.mjGEOM_MESH, placement, corners=corners)
+            case Capsule(radius, length):
+                size = _sizes(radius, length / 2)
+                yield Geom(mujoco.mjtGeom.mjGEOM_CAPSULE, placement, size)
+            case Box() | Sphere() | Cylinder():
+                yield _primitive(collision.geometry, placement)
 
 
-def _primitive(shape: Box | Sphere | Cylinder, pose: Array) -> Geom:
+def _primitive(shape: Box | Sphere | Cylinder, placement: Placement) -> Geom:
     match shape:
         case Box((x, y, z)):
-            return Geom(mujoco.mjtGeom.mjGEOM_BOX, pose, _sizes(x / 2, y / 2, z / 2))
+            return Geom(mujoco.mjtGeom.mjGEOM_BOX, placement, _sizes(x / 2, y / 2, z / 2))
         case Sphere(radius):
-            return Geom(mujoco.mjtGeom.mjGEOM_SPHERE, pose, _sizes(radius))
+            return Geom(mujoco.mjtGeom.mjGEOM_SPHERE, placement, _sizes(radius))
         case Cylinder(radius, length):
-            return Geom(mujoco.mjtGeom.mjGEOM_CYLINDER, pose, _sizes(radius, length / 2))
+            return Geom(mujoco.mjtGeom.mjGEOM_CYLINDER, placement, _sizes(radius, length / 2))
 
 
-def _object_shape(shape: Shape, pose: Array, meshes: MeshPieces) -> Iterator[Geom]:
+def _object_shapes(thing: CollisionObject, meshes: MeshPieces) -> Iterator[Geom]:
+    for placed in thing.shapes:
+        yield from _object_shape(placed.shape, placed.pose, meshes)
+
+
+def _object_shape(shape: Shape, pose: RigidTransform, meshes: MeshPieces) -> Iterator[Geom]:
+    placement = _placement(pose)
     match shape:
         case TriangleMesh():
             for corners in meshes.of_object(shape):
-                yield Geom(mujoco.mjtGeom.mjGEOM_MESH, pose, corners=corners)
+                yield Geom(mujoco.mjtGeom.mjGEOM_MESH, placement, corners=corners)
         case Plane(a, b, c, d):
-            yield Geom(mujoco.mjtGeom.mjGEOM_PLANE, pose @ _plane_pose(a, b, c, d), (1.0, 1.0, 1.0))
+            placement = _placement(pose.then(_plane_pose(a, b, c, d)))
+            yield Geom(mujoco.mjtGeom.mjGEOM_PLANE, placement, (1.0, 1.0, 1.0))
         case Cone(radius, height):
             _check_sizes("cone", radius, height)
-            yield Geom(mujoco.mjtGeom.mjGEOM_MESH, pose, corners=_cone(radius, height))
+            yield Geom(mujoco.mjtGeom.mjGEOM_MESH, placement, corners=_cone(radius, height))
         case Box(size):
             _check_sizes("box", *size)
-            yield _primitive(shape, pose)
+            yield _primitive(shape, placement)
         case Sphere(radius):
             _check_sizes("sphere", radius)
-            yield _primitive(shape, pose)
+            yield _primitive(shape, placement)
         case Cylinder(radius, length):
             _check_sizes("cylinder", radius, length)
-            yield _primitive(shape, pose)
+            yield _primitive(shape, placement)
 
 
-def _plane_pose(a: float, b: float, c: float, d: float) -> Array:
+def _plane_pose(a: float, b: float, c: float, d: float) -> RigidTransform:
     """Return the pose of a plane of MuJoCo, whose z axis points out of the half space."""
-    normal = np.array([a, b, c])
-    length = float(np.linalg.norm(normal))
+    length = hypot(a, b, c)
     if not (isfinite(length) and isfinite(d) and length > 0.0):
         raise PlanningError(
             ErrorCode.INVALID_OBJECT_NAME, f"a plane has no valid normal: {a:g}, {b:g}, {c:g}"
         )
-    z = normal / length
-    quaternion, rotation = np.zeros(4), np.zeros(9)
-    mujoco.mju_quatZ2Vec(quaternion, z)
-    mujoco.mju_quat2Mat(rotation, quaternion)
-    return transform(rotation.reshape(3, 3), -d / length * z)
+    quaternion = np.zeros(4)
+    mujoco.mju_quatZ2Vec(quaternion, np.array([a, b, c]) / length)
+    w, x, y, z = quaternion.tolist()
+    scale = -d / length**2
+    return RigidTransform((scale * a, scale * b, scale * c), (x, y, z, w))
 
 
 def _cone(radius: float, height: float) -> Array:

@@ -8,6 +8,7 @@
 
 import hashlib
 from collections.abc import Callable
+from typing import TypeVar, cast
 
 import mujoco
 import numpy as np
@@ -21,6 +22,8 @@ from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.scene.shapes import TriangleMesh
 
 Array = NDArray[np.float64]
+ThingT = TypeVar("ThingT")
+PartT = TypeVar("PartT")
 Pieces = tuple[Array, ...]
 """The corners of each convex piece, shapes (n, 3), m."""
 
@@ -39,7 +42,7 @@ PRODUCTS_AT_ONCE = 4_000_000
 
 
 class MeshPieces:
-    """Cuts meshes into convex pieces, and remembers the pieces.
+    """Cuts meshes into convex pieces, and remembers them, and the shapes of links and objects.
 
     Keep one for all the models of a robot: reading and cutting a mesh takes much longer than the
     rest of a model.
@@ -51,6 +54,7 @@ class MeshPieces:
     def __init__(self, resources: ResourceFinder | None = None) -> None:
         self._resources = resources or ResourceFinder()
         self._known: dict[object, Pieces] = {}
+        self._of: dict[int, tuple[object, tuple[object, ...]]] = {}
 
     def of_file(self, mesh: Mesh) -> Pieces:
         """Return the hulls of the parts of a link's mesh file, scaled.
@@ -69,6 +73,16 @@ class MeshPieces:
         content = hashlib.blake2b(np.ascontiguousarray(mesh.vertices).tobytes())
         content.update(np.ascontiguousarray(mesh.triangles).tobytes())
         return self._remembered(content.digest(), lambda: convex_pieces(mesh))
+
+    def of(self, thing: ThingT, make: Callable[[ThingT], tuple[PartT, ...]]) -> tuple[PartT, ...]:
+        """Return what was made of an unchanging thing, made now if this is the first time."""
+        if id(thing) not in self._of:
+            made = make(thing)
+            if len(self._of) >= MAX_REMEMBERED:
+                self._of.pop(next(iter(self._of)))
+            # The thing is kept, so that no other gets its id.
+            self._of[id(thing)] = (thing, made)
+        return cast(tuple[PartT, ...], self._of[id(thing)][1])
 
     def _remembered(self, key: object, make: Callable[[], Pieces]) -> Pieces:
         if key not in self._known:

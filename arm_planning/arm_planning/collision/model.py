@@ -60,7 +60,8 @@ class CollisionModel:
         self._group = group
         self._meshes = meshes or MeshPieces()
         self._joints = model.joints if group is None else model.group(group).joints
-        self._posed = self._compiled()
+        compiler = SceneCompiler(model, scene, self._joints, self._meshes)
+        self._posed = PosedScene(compiler.compile())
         self._model, self._data = self._posed.model, self._posed.data
         self._constant = self._constant_contacts()
 
@@ -68,6 +69,11 @@ class CollisionModel:
     def constant_contacts(self) -> tuple[Contact, ...]:
         """What collides in every state, the deepest first."""
         return self._constant
+
+    @property
+    def posed(self) -> PosedScene:
+        """The compiled scene; all its margins are 0 but while a motion is proved."""
+        return self._posed
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -132,16 +138,6 @@ class CollisionModel:
         """Return the model of the scene with other positions; joints not named keep theirs."""
         scene = replace(self._scene, positions={**self._scene.positions, **positions})
         return CollisionModel(self._planning_model, scene, self._group, self._meshes)
-
-    def exact_scene(self) -> PosedScene:
-        """Return a scene of its own whose distances are exact, not only what is in contact."""
-        return self._compiled(exact=True)
-
-    def _compiled(self, exact: bool = False) -> PosedScene:
-        compiler = SceneCompiler(
-            self._planning_model, self._scene, self._joints, self._meshes, exact
-        )
-        return PosedScene(compiler.compile())
 
     def _constant_contacts(self) -> tuple[Contact, ...]:
         self._posed.place(np.zeros(len(self._joints)))

@@ -69,7 +69,7 @@ class MotionProof:
 
     def __init__(self, model: CollisionModel) -> None:
         self._checker = model
-        self._posed = model.exact_scene()
+        self._posed = model.posed
         self._model, self._data = self._posed.model, self._posed.data
         self._scale = np.abs(self._posed.coordinates.matrix)
         self._range = self._limits()
@@ -111,6 +111,23 @@ class MotionProof:
         self._data.warning[CONTACT_FULL].number = 0
         self._relaxed = None
         self._ends = (path[0], path[-1])
+        try:
+            return self._prove_chords(path, extra)
+        finally:
+            # The checks of single states look for contacts only.
+            for out, _ in self._margins:
+                out[:] = 0.0
+
+    def is_free_edge(self, a: Array, b: Array) -> bool:
+        """Return whether the straight motion from one state to another is proved to be free.
+
+        Args:
+            a: positions of the joints, (n,).
+            b: likewise.
+        """
+        return self._checker.is_free(b) and self.prove(np.stack([a, b])) is None
+
+    def _prove_chords(self, path: Array, extra: Array) -> Obstruction | None:
         for segment, (start, end, spread) in enumerate(
             zip(path[:-1], path[1:], extra, strict=True)
         ):
@@ -121,15 +138,6 @@ class MotionProof:
             # Those that found no room are not known.
             return Obstruction(0, 0.0, None, "not proved: too many shapes are close to each other")
         return None
-
-    def is_free_edge(self, a: Array, b: Array) -> bool:
-        """Return whether the straight motion from one state to another is proved to be free.
-
-        Args:
-            a: positions of the joints, (n,).
-            b: likewise.
-        """
-        return self._checker.is_free(b) and self.prove(np.stack([a, b])) is None
 
     def _set_reach(self, bounds: Reach) -> None:
         model = self._model

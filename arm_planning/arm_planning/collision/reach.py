@@ -38,44 +38,47 @@ def reach(model: mujoco.MjModel, lower: Array, upper: Array) -> Reach:
     welds, part_of_body = np.unique(model.body_weldid, return_inverse=True)
     part = part_of_body[model.geom_bodyid]
     radius = np.zeros((len(welds), model.nq))
-    for geom in range(model.ngeom):
-        if part[geom]:
-            found = radius[part[geom]]
-            np.maximum(found, _radii(model, geom, lower, upper), out=found)
+    moving = np.flatnonzero(part)
+    radii = _radii(model, moving, lower, upper)
+    np.maximum.at(radius, part[moving], radii)
     carried = _carried(model, welds)
     apart = carried[:, None] ^ carried[None]
     pairs = np.where(carried[:, None], radius[:, None], radius[None]) * apart
     return Reach(part, part_of_body, pairs)
 
 
-def _radii(model: mujoco.MjModel, geom: int, lower: Array, upper: Array) -> Array:
-    """Return the largest distance of a geom's points from the axis of each joint, (nq,).
+def _radii(model: mujoco.MjModel, geoms: NDArray[np.intp], lower: Array, upper: Array) -> Array:
+    """Return the largest distance of geoms' points from the axis of each joint, (geoms, nq).
 
-    From the geom towards the root: all places of the geom in the frame of a body lie in a ball. A
+    From each geom towards the root: all places of the geom in the frame of a body lie in a ball. A
     joint turns the ball's middle on a circle, which lies with it in a larger ball around the middle
     of the circle; or slides it along a line.
     """
-    found = np.zeros(model.nq)
-    middle, radius = model.geom_pos[geom].copy(), float(model.geom_rbound[geom])
-    body = int(model.geom_bodyid[geom])
-    while body:
+    found = np.zeros((len(geoms), model.nq))
+    middle, radius = model.geom_pos[geoms], model.geom_rbound[geoms]
+    frame = model.geom_bodyid[geoms].copy()
+    rotation = np.zeros(9)
+    # A body comes after its parent.
+    for body in range(model.nbody - 1, 0, -1):
+        here = np.flatnonzero(frame == body)
+        if not len(here):
+            continue
         if model.body_jntnum[body]:
             joint = int(model.body_jntadr[body])
-            axis = model.jnt_axis[joint]
-            if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE:
-                found[joint] = 1.0
-                middle += axis * (lower[joint] + upper[joint]) / 2
-                radius += (upper[joint] - lower[joint]) / 2
+            axis, anchor = model.jnt_axis[joint], model.jnt_pos[joint]
+            if model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_SLIDE):
+                found[here, joint] = 1.0
+                middle[here] += axis * (lower[joint] + upper[joint]) / 2
+                radius[here] += (upper[joint] - lower[joint]) / 2
             else:
-                arm = middle - model.jnt_pos[joint]
-                along = axis * (arm @ axis)
-                radius += float(np.linalg.norm(arm - along))
-                middle = model.jnt_pos[joint] + along
-                found[joint] = radius
-        turned = np.zeros(3)
-        mujoco.mju_rotVecQuat(turned, middle, model.body_quat[body])
-        middle = model.body_pos[body] + turned
-        body = int(model.body_parentid[body])
+                arm = middle[here] - anchor
+                along = (arm @ axis)[:, None] * axis
+                radius[here] += np.linalg.norm(arm - along, axis=1)
+                middle[here] = anchor + along
+                found[here, joint] = radius[here]
+        mujoco.mju_quat2Mat(rotation, model.body_quat[body])
+        middle[here] = middle[here] @ rotation.reshape(3, 3).T + model.body_pos[body]
+        frame[here] = model.body_parentid[body]
     return found
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
-from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_pose
+from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
@@ -104,15 +104,16 @@ class _Part:
 class SceneCompiler:
     """Compiles a robot and its surroundings.
 
+    Distances are exact as well, where there is a margin, not only contacts. MuJoCo's own function
+    for two boxes is faster than that for other shapes, but its distances are wrong by centimetres;
+    so the robot's boxes are made of corners. And each pair of the robot's own geoms has a margin
+    of its own, if they are not too many.
+
     Args:
         model: the robot.
         scene: where everything is.
         varying: active joints that can move; all others stay at their positions in the scene.
         meshes: cuts meshes; keep it, because it remembers them.
-        exact: whether the distances of shapes that are apart matter as well. MuJoCo's own function
-            for two boxes is twice as fast as that for other shapes, and right about contacts, but
-            its distances are wrong by centimetres. So the robot's boxes are made of corners. And
-            each pair of the robot's own geoms has a margin of its own, if they are not too many.
     """
 
     def __init__(
@@ -121,12 +122,10 @@ class SceneCompiler:
         scene: PlanningScene,
         varying: Sequence[str],
         meshes: MeshPieces,
-        exact: bool = False,
     ) -> None:
         self._robot = model.robot
         self._scene = scene
         self._meshes = meshes
-        self._exact = exact
         names = [joint.name for joint in self._robot.joints_in_tree_order if joint.type.is_scalar]
         positions = position_map(self._robot, names, varying, scene.positions)
         moving = (positions.matrix != 0.0).sum(axis=1) > 0
@@ -208,7 +207,8 @@ class SceneCompiler:
         for attached in self._scene.attached.values():
             thing = attached.object
             link = self._link_of(attached)
-            body = link.body.add_body(name=f"attached {thing.id}", **_placement(object_pose(thing)))
+            position, quaternion = object_placement(thing)
+            body = link.body.add_body(name=f"attached {thing.id}", pos=position, quat=quaternion)
             part = _Part(
                 thing.id,
                 BodyKind.ROBOT_ATTACHED,
@@ -238,8 +238,9 @@ class SceneCompiler:
 
     def _add_objects(self) -> None:
         for thing in self._scene.objects.values():
+            position, quaternion = object_placement(thing)
             body = self._spec.worldbody.add_body(
-                name=f"object {thing.id}", **_placement(object_pose(thing))
+                name=f"object {thing.id}", pos=position, quat=quaternion
             )
             part = _Part(thing.id, BodyKind.WORLD_OBJECT, body, moves=False)
             self._objects.append(part)
@@ -247,19 +248,24 @@ class SceneCompiler:
                 self._add_geom(part, geom, OF_WORLD)
 
     def _add_geom(self, part: _Part, geom: Geom, bits: tuple[int, int]) -> None:
-        if self._exact and geom.type == mujoco.mjtGeom.mjGEOM_BOX and bits != OF_WORLD:
+        corners = geom.corners
+        if geom.type == mujoco.mjtGeom.mjGEOM_BOX and bits != OF_WORLD:
             corners = CUBE * geom.size
-            geom = Geom(mujoco.mjtGeom.mjGEOM_MESH, geom.pose, corners=corners)
-        added = part.body.add_geom(type=geom.type, **_placement(geom.pose))
+        hull = int(corners is not None and len(corners) > SEARCHED_CORNERS)
+        position, quaternion = geom.placement
+        added = part.body.add_geom(
+            type=geom.type if corners is None else mujoco.mjtGeom.mjGEOM_MESH,
+            pos=position,
+            quat=quaternion,
+            size=geom.size,
+            contype=hull,
+            conaffinity=hull,
+            mass=0.0,
+        )
+        if corners is not None:
+            added.meshname = self._asset(corners)
         _set_group(added, bits)
-        hull = geom.corners is not None and len(geom.corners) > SEARCHED_CORNERS
-        added.contype = added.conaffinity = int(hull)
-        added.mass = 0.0
         part.geoms.append((added, bits))
-        if geom.corners is None:
-            added.size = geom.size
-        else:
-            added.meshname = self._asset(geom.corners)
 
     def _asset(self, corners: Array) -> str:
         """Return the mesh of a piece, which several bodies may have."""
@@ -283,8 +289,7 @@ class SceneCompiler:
                 self._spec.add_exclude(bodyname1=first.body.name, bodyname2=second.body.name)
             elif first.weld != second.weld:
                 checked.append((first, second))
-        if self._exact:
-            self._name_pairs(robot, checked)
+        self._name_pairs(robot, checked)
         allowed = self._scene.allowed
         for thing in self._objects:
             for part in robot:
@@ -297,10 +302,11 @@ class SceneCompiler:
         if sum(len(inner[id(a)]) * len(inner[id(b)]) for a, b in checked) > MAX_NAMED_PAIRS:
             return
         for part in robot:
-            for number, (geom, (contype, conaffinity)) in enumerate(part.geoms):
+            for number, (geom, _) in enumerate(part.geoms):
                 geom.name = f"{number} of {part.body.name}"
-                _set_group(geom, (contype & ~SELF, conaffinity & ~SELF))
         for first, second in checked:
+            # MuJoCo looks at named pairs though their bodies are left out of its own search.
+            self._spec.add_exclude(bodyname1=first.body.name, bodyname2=second.body.name)
             for a, b in product(inner[id(first)], inner[id(second)]):
                 self._spec.add_pair(geomname1=a.name, geomname2=b.name)
 
@@ -313,12 +319,6 @@ class SceneCompiler:
             or first.name in second.touch
             or self._scene.allowed.may_touch(first.name, second.name)
         )
-
-
-def _placement(pose: Array) -> dict[str, Array]:
-    quaternion = np.zeros(4)
-    mujoco.mju_mat2Quat(quaternion, pose[:3, :3].ravel())
-    return {"pos": pose[:3, 3], "quat": quaternion}
 
 
 def _set_group(geom: mujoco.MjsGeom, bits: tuple[int, int]) -> None:

@@ -110,8 +110,10 @@ def dense(path: np.ndarray, step: float) -> np.ndarray:
     return np.concatenate(parts)
 
 
-@pytest.mark.parametrize("seed", [0, 3, 5, 6])
-def test_what_is_proved_is_free_in_the_eyes_of_another_library(seed):
+@pytest.mark.parametrize("named_pairs", [0, specification.MAX_NAMED_PAIRS])
+@pytest.mark.parametrize("seed", [0, 3])
+def test_what_is_proved_is_free_in_the_eyes_of_another_library(seed, named_pairs, monkeypatch):
+    monkeypatch.setattr(specification, "MAX_NAMED_PAIRS", named_pairs)
     model, scene, rng = random_scene(seed)
     group = model.group("every" if seed % 2 else "arm")
     checker = CollisionModel(model, scene, group.name)
@@ -311,6 +313,14 @@ def test_contacts_that_find_no_room_are_no_proof(monkeypatch):
     obstruction = proof.prove(line(-0.2, 0.0004))
     assert obstruction is not None
     assert str(obstruction) == "not proved: too many shapes are close to each other"
+
+
+def test_checks_of_states_after_a_proof_look_for_contacts_only():
+    wall = CollisionObject("wall", RigidTransform((1.0, 0.0, 0.0)), (PlacedShape(Sphere(0.1)),))
+    model = CollisionModel(model_of(SLIDER), PlanningScene({}, {"wall": wall}))
+    MotionProof(model).prove(line(0.0, 2.0))
+    assert model.is_free(np.array([0.799]))
+    assert not model.contacts(np.array([0.799]))
 
 
 def test_the_answer_does_not_depend_on_what_was_proved_before():
