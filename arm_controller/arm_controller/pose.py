@@ -65,7 +65,8 @@ def read_limits(description: str, joints: Sequence[str]) -> Limits:
         raise PoseError(f"it is not a URDF: {error}") from error
     for name in joints:
         if name not in movable:
-            raise PoseError(f"no movable joint '{name}'; the robot has {', '.join(movable)}")
+            existing = ", ".join(movable) or "none"
+            raise PoseError(f"no movable joint '{name}'; the robot has {existing}")
     return {name: bounds[name] for name in joints if name in bounds}
 
 

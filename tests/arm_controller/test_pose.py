@@ -81,6 +81,11 @@ def test_an_unknown_joint_is_refused_with_those_that_exist():
         read_limits(ROBOT, ["turn", "j9"])
 
 
+def test_a_robot_without_joints_has_none():
+    with pytest.raises(PoseError, match="no movable joint 'j0'; the robot has none"):
+        read_limits("<robot name='thing'><link name='thing'/></robot>", ["j0"])
+
+
 def test_a_fixed_joint_is_refused():
     with pytest.raises(PoseError, match="no movable joint 'glue'"):
         read_limits(ROBOT, ["glue"])
