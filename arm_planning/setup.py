@@ -12,6 +12,8 @@ REQUIREMENTS = [
     "ros-jazzy-common-interfaces==5.3.6",
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
 ]
+DATA_FOLDERS = ["launch"]
+DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
 
 setup(
     name=PACKAGE,
@@ -21,6 +23,7 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
+        *((f"share/{PACKAGE}/{path.parent}", [str(path)]) for path in DATA_FILES),
     ],
     install_requires=[
         "setuptools",
@@ -33,4 +36,9 @@ setup(
         "and timing, with the surface of MoveIt 2's move_group."
     ),
     license="Apache-2.0",
+    entry_points={
+        "console_scripts": ["move_group = arm_planning.move_group_node:main"],
+        "launch_py.packages": ["moveit_ros_move_group = arm_planning"],
+        "launch_py.nodes": ["move_group = move_group"],
+    },
 )

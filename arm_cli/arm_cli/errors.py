@@ -5,6 +5,7 @@ ArmCliError
 |-- NoSuchNameError         no such topic, node, service, type, file, ...
 |-- MessageError            values do not fit a message's fields
 |-- BagError                a recording cannot be written or read
+|-- MotionFailedError       a motion was not planned, or not executed
 |-- SimulationRefusedError  a simulation refuses a request
 `-- UnansweredError         a node does not answer
 """
@@ -38,6 +39,10 @@ class BagError(ArmCliError):
 
 class SimulationRefusedError(ArmCliError):
     """A simulation refuses a request; the message is the simulation's."""
+
+
+class MotionFailedError(ArmCliError):
+    """A motion was not planned, or not executed; the message is move_group's."""
 
 
 class UnansweredError(ArmCliError):

@@ -229,6 +229,7 @@ PLANNING = VerbFamily(
 VERBS = (
     PlainVerb("launch", "start the simulated arm, or any launch file", "launch"),
     PlainVerb("run", "run an executable of a package", "run"),
+    Verb("move", "plan a motion of the running robot, and execute it", "move"),
     TOPIC,
     NODE,
     PARAM,

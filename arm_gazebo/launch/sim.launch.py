@@ -17,6 +17,7 @@ from launch_py import (
     LogInfo,
     Notified,
     ReadyPanel,
+    SetLaunchConfiguration,
     Shutdown,
 )
 from launch_py.actions import OpaqueFunction
@@ -105,6 +106,12 @@ def node_arguments() -> list[DeclareLaunchArgument]:
             choices=SWITCH,
         ),
         DeclareLaunchArgument(
+            "planning",
+            default_value="false",
+            choices=["true", "false"],
+            description="start move_group, which plans motions for MoveIt's clients",
+        ),
+        DeclareLaunchArgument(
             "viewer",
             default_value="false",
             description="serve the browser page that shows and moves it",
@@ -159,6 +166,8 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
         check_display()
     find_world(words["world"])  # The simulation would say so, too, but among what has started.
     if words["robots"] or words["copies"] != "1":
+        if words["planning"] == "true":
+            raise UsageError("planning:=true plans for one robot; leave out robots:= and copies:=")
         robots = robots_of(words)
         panel = [] if words["robots"] else [panel_of(list(robots))]
         return [*simulate_several(robots), *panel]
@@ -169,6 +178,7 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
         *left_out({"": setup.left_out}),
         simulation({**setup.parameters(), **place}, [setup.controllers], words["namespace"]),
         state_publisher(publisher_parameters(setup.description), words["namespace"]),
+        SetLaunchConfiguration("planning_description", setup.description),
     ]
 
 
@@ -320,6 +330,14 @@ def generate_launch_description() -> LaunchDescription:
                 description="what RViz shows",
             ),
             OpaqueFunction(function=simulate),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(
+                    PathJoinSubstitution(
+                        [FindPackageShare("arm_planning"), "launch", "move_group.launch.py"]
+                    )
+                ),
+                condition=IfCondition(LaunchConfiguration("planning")),
+            ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(
                     PathJoinSubstitution(

@@ -1,10 +1,17 @@
 """Constraints on the robot's joints and on the poses of its links, by MoveIt's rules."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 
-from arm_node.rigid_transform import Quaternion, Vector
+from arm_description.urdf.robot import Sphere
+from arm_node.rigid_transform import Quaternion, RigidTransform, Vector
 from arm_planning.scene.objects import PlacedShape
+
+JOINT_TOLERANCE = 1e-4
+POSITION_TOLERANCE_M = 1e-4
+ORIENTATION_TOLERANCE = 1e-3
+"""MoveGroupInterface's defaults, rad and m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,3 +81,29 @@ class Constraints:
 
     def __bool__(self) -> bool:
         return bool(self.joints or self.positions or self.orientations)
+
+
+def joint_goal(positions: Mapping[str, float]) -> Constraints:
+    """Return the goal that joints are at positions, rad or m."""
+    return Constraints(
+        tuple(
+            JointConstraint(joint, position, JOINT_TOLERANCE, JOINT_TOLERANCE)
+            for joint, position in positions.items()
+        )
+    )
+
+
+def pose_goal(link: str, pose: RigidTransform) -> Constraints:
+    """Return the goal that a link is at a pose in the planning frame."""
+    place = PlacedShape(Sphere(POSITION_TOLERANCE_M), RigidTransform(pose.position))
+    return Constraints(
+        positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (place,)),),
+        orientations=(
+            OrientationConstraint(
+                link,
+                pose.rotation,
+                (ORIENTATION_TOLERANCE, ORIENTATION_TOLERANCE, ORIENTATION_TOLERANCE),
+                OrientationError.ROTATION_VECTOR,
+            ),
+        ),
+    )

@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.names import listing
+from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.kinematic_tree import kinematic_tree, position_map
 from arm_planning.robot.model import JointPositions, PlanningModel
@@ -65,3 +66,12 @@ class ForwardKinematics:
         result[:3, :3] = self._data.xmat[body].reshape(3, 3)
         result[:3, 3] = self._data.xpos[body]
         return result
+
+
+def as_rigid_transform(matrix: Array) -> RigidTransform:
+    """Return the pose of a homogeneous transform, (4, 4)."""
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(matrix[:3, :3]).ravel())
+    w, x, y, z = quaternion.tolist()
+    px, py, pz = matrix[:3, 3].tolist()
+    return RigidTransform((px, py, pz), (x, y, z, w))

@@ -93,3 +93,19 @@ class PlanningModel:
                 f"no group '{name}'; the robot has {listing(self.groups)}",
             )
         return self.groups[name]
+
+    def state(self, group: str, name: str) -> JointPositions:
+        """Return a named state of a group.
+
+        Raises:
+            PlanningError: INVALID_GROUP_NAME or INVALID_ROBOT_STATE: the group or the state does
+                not exist; the message names those that do.
+        """
+        known = {state: each for (owner, state), each in self.states.items() if owner == group}
+        if name not in known:
+            owner = self.group(group).name
+            raise PlanningError(
+                ErrorCode.INVALID_ROBOT_STATE,
+                f"group '{owner}' has no state '{name}'; it has {listing(known)}",
+            )
+        return known[name]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Duration, Time
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Point, Pose, Quaternion, Transform, Vector3
 from moveit_msgs.msg import MoveItErrorCodes, RobotState, RobotTrajectory
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -49,6 +49,12 @@ def pose_of(message: Pose, what: str) -> RigidTransform:
     """
     position = vector_of(message.position, f"the position of {what}")
     return RigidTransform(position, quaternion_of(message.orientation, what))
+
+
+def transform_of(message: Transform, what: str) -> RigidTransform:
+    """Return a transform as a pose; raises like `pose_of`."""
+    position = vector_of(message.translation, f"the position of {what}")
+    return RigidTransform(position, quaternion_of(message.rotation, what))
 
 
 def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, float]:
@@ -184,7 +190,7 @@ def trajectory_of(message: RobotTrajectory) -> Trajectory:
                 f"{count} joints",
             )
     times = np.array([seconds(point.time_from_start) for point in points])
-    positions = np.array([point.positions for point in points]).reshape(-1, count)
+    positions = np.array([point.positions for point in points]).reshape(len(points), count)
     if not np.isfinite(positions).all():
         raise PlanningError(
             ErrorCode.INVALID_MOTION_PLAN, "the trajectory has a position that is not finite"
@@ -207,4 +213,4 @@ def trajectory_of(message: RobotTrajectory) -> Trajectory:
 def _values(points: Sequence[Any], name: str, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
     missing = [math.nan] * count
     rows = [list(getattr(point, name)) or missing for point in points]
-    return np.array(rows).reshape(-1, count)
+    return np.array(rows).reshape(len(points), count)

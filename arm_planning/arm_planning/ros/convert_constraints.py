@@ -21,7 +21,7 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.request import PlanRequest
-from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, quaternion_of, vector_of
 from arm_planning.ros.convert_shapes import placed_shapes
 from arm_planning.scene.objects import PlacedShape
@@ -104,14 +104,12 @@ def constraints_of(message: ConstraintsMessage, frames: Frames, warn: Warn) -> C
     )
 
 
-def plan_request(
-    message: MotionPlanRequest, start: JointPositions | None, frames: Frames, warn: Warn
-) -> PlanRequest:
-    """Return a planning request.
+def plan_request(message: MotionPlanRequest, seed: int, frames: Frames, warn: Warn) -> PlanRequest:
+    """Return a planning request that starts from the scene's state.
 
     Args:
         message: the request.
-        start: its start state, converted; None for the scene's.
+        seed: the seed of its plan.
         frames: the frames of the scene that it is planned in.
         warn: takes what is passed over or replaced.
 
@@ -125,13 +123,13 @@ def plan_request(
         group=message.group_name,
         goals=tuple(constraints_of(each, frames, warn) for each in message.goal_constraints),
         path=constraints_of(message.path_constraints, frames, warn),
-        start=start,
         pipeline=message.pipeline_id,
         planner=message.planner_id,
         attempts=max(message.num_planning_attempts, 1),
         allowed_time_s=time_s,
         velocity_scaling=message.max_velocity_scaling_factor,
         acceleration_scaling=message.max_acceleration_scaling_factor,
+        seed=seed,
     )
 
 

@@ -11,8 +11,9 @@ from sensor_msgs.msg import JointState
 
 from arm_node.names import listing
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.workarounds.clocks import StampClock
 from arm_planning.robot.model import PlanningModel
-from arm_planning.ros.convert import seconds
+from arm_planning.ros.convert import NANOSECONDS, seconds
 
 DEPTH = 20
 """Messages kept until they are read: several publishers may share the topic."""
@@ -27,8 +28,14 @@ class JointStateMonitor:
     The topic is read when somebody asks, which costs nothing while nobody plans.
     """
 
-    def __init__(self, node: Node, model: PlanningModel) -> None:
-        """Subscribe to joint_states."""
+    def __init__(self, node: Node, model: PlanningModel, *others: Node) -> None:
+        """Subscribe to joint_states.
+
+        Args:
+            node: has the subscription.
+            model: the robot.
+            others: nodes that take simulation time from the stamps of the messages, as `node` does.
+        """
         self._model = model
         self._known = frozenset(model.joints)
         self._lock = threading.Lock()
@@ -37,6 +44,7 @@ class JointStateMonitor:
         self._stamp_s = 0.0
         self._arrived_s = -math.inf
         """On the system's clock, which is that of the middleware's time stamps."""
+        self._clocks = [StampClock(each) for each in (node, *others)]
         self._polled = PolledSubscriptions(node)
         self._subscription = self._polled.subscribe(
             JointState,
@@ -101,6 +109,8 @@ class JointStateMonitor:
                 continue
             self._arrived_s = arrival["received_timestamp"] * 1e-9
             self._stamp_s = seconds(message.header.stamp)
+            for clock in self._clocks:
+                clock.hear(tuple(message.name), round(self._stamp_s * NANOSECONDS))
             speeds = message.velocity if len(message.velocity) == len(message.name) else ()
             for index, (name, position) in enumerate(
                 zip(message.name, message.position, strict=True)

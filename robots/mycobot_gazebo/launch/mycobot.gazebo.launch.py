@@ -45,6 +45,7 @@ ARGUMENTS = {
     "headless": ("true", "false opens a window", SWITCH),
     "record_run": ("", "file to record the run to, for `arm sim replay`", None),
     "viewer": ("false", "serve the browser page that shows and moves it", SWITCH),
+    "planning": ("false", "start move_group, which plans motions for MoveIt's clients", SWITCH),
     "viewer_port": ("8080", "port of the page on 127.0.0.1", None),
     "x": ("0.0", "x of base_link in the world, in m", None),
     "y": ("0.0", "y of base_link in the world, in m", None),
@@ -150,6 +151,16 @@ def generate_launch_description() -> LaunchDescription:
                 for name, (value, text, choices) in table.items()
             ),
             OpaqueFunction(function=choose_controllers),
+            DeclareLaunchArgument(
+                "moveit_config",
+                default_value=PathJoinSubstitution(
+                    [
+                        *(FindPackageShare("mycobot_moveit_config"), "config"),
+                        LaunchConfiguration("robot_name"),
+                    ]
+                ),
+                description="folder of the MoveIt configuration that planning:=true takes",
+            ),
             simulation(),
             sliders,
             panel(),

@@ -1,0 +1,188 @@
+"""`arm move`: plan a motion of the running robot, and execute it."""
+
+import argparse
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from arm_cli.arguments import JSON, Argument, Exclusive, Flag, positive_number, verb
+from arm_cli.errors import CommandUsageError, NoSuchNameError
+from arm_cli.output import say
+from arm_cli.ros.connection import connect
+
+if TYPE_CHECKING:
+    from arm_planning.robot.model import JointGroup, PlanningModel
+
+EXTRA_TIME_S = 5.0
+"""How much longer than its planning time a plan may take to arrive."""
+
+
+@verb(
+    Exclusive(
+        Argument(
+            "--pose",
+            nargs="+",
+            type=float,
+            metavar="NUMBER",
+            help="X Y Z of the link in m, and ROLL PITCH YAW in rad for its orientation as well",
+        ),
+        Argument("--state", metavar="NAME", help="a named state of the group, such as home"),
+        Argument(
+            "--joints",
+            nargs="+",
+            metavar="JOINT=POSITION",
+            help="positions in rad or m; joints that are not named stay",
+        ),
+    ),
+    Argument("--group", default="", help="the group to move (default: the first chain)"),
+    Argument("--link", default="", help="the link that the pose is for (default: the group's tip)"),
+    Argument("--frame", default="", help="the frame of the pose (default: the planning frame)"),
+    Argument("--planner", default="", help="planner_id; `--pipeline` names its pipeline"),
+    Argument("--pipeline", default="", help="pipeline_id, such as pilz_industrial_motion_planner"),
+    Argument("--speed", type=positive_number, default=1.0, help="fraction of the velocity limits"),
+    Argument(
+        "--acceleration",
+        type=positive_number,
+        default=1.0,
+        help="fraction of the acceleration limits",
+    ),
+    Argument(
+        "--time", type=positive_number, default=5.0, metavar="SECONDS", help="time to plan in"
+    ),
+    Flag("--plan-only", help="plan, and do not move"),
+    JSON,
+)
+def move(options: argparse.Namespace) -> None:
+    """Plan and move; print what was planned.
+
+    Raises:
+        CommandUsageError: an argument is wrong.
+        NoSuchNameError: there is no such group, state or joint.
+        UnansweredError: no move_group runs, or it does not answer.
+        MotionFailedError: there is no plan, or the robot did not get there.
+    """
+    if options.pose is None and options.state is None and options.joints is None:
+        raise CommandUsageError(
+            "say where to: --pose X Y Z, --state NAME or --joints JOINT=POSITION"
+        )
+    if options.pose is not None and len(options.pose) not in (3, 6):
+        raise CommandUsageError(
+            f"--pose takes X Y Z or X Y Z ROLL PITCH YAW, not {len(options.pose)} numbers"
+        )
+    with connect() as session:
+        from arm_cli.ros.move_group import MoveGroupClient
+
+        client = MoveGroupClient(session)
+        model = client.model()
+        group = _group(model, options.group)
+        timeout_s = options.time + EXTRA_TIME_S if options.plan_only else None
+        result = client.move(_request(model, group, options), timeout_s)
+    if options.json:
+        say(json.dumps(_document(result)))
+    elif result.planned_trajectory.joint_trajectory.points:
+        say(_summary(result, group))
+    else:
+        say("the robot is there already")
+
+
+def _group(model: "PlanningModel", name: str) -> "JointGroup":
+    from arm_planning.errors import PlanningError
+
+    if not name:
+        return next((group for group in model.groups.values() if group.tip), None) or next(
+            iter(model.groups.values())
+        )
+    try:
+        return model.group(name)
+    except PlanningError as error:
+        raise NoSuchNameError(str(error)) from error
+
+
+def _goal(model: "PlanningModel", group: "JointGroup", options: argparse.Namespace) -> Any:
+    from arm_description.transforms import quaternion_from_rpy
+    from arm_planning.ros.goal_messages import joint_goal, pose_goal
+
+    if options.state is not None:
+        return joint_goal(_state(model, group.name, options.state))
+    if options.joints is not None:
+        return joint_goal(_joints(group, options.joints))
+    x, y, z, *rpy = options.pose
+    link = options.link or group.tip
+    if not link:
+        raise CommandUsageError(f"group '{group.name}' has no tip: name the link with --link")
+    turned = tuple(quaternion_from_rpy(rpy).tolist()) if rpy else None
+    return pose_goal(link, (x, y, z), turned, options.frame)
+
+
+def _state(model: "PlanningModel", group: str, name: str) -> Mapping[str, float]:
+    from arm_planning.errors import PlanningError
+
+    try:
+        return model.state(group, name)
+    except PlanningError as error:
+        raise NoSuchNameError(str(error)) from error
+
+
+def _joints(group: "JointGroup", words: list[str]) -> dict[str, float]:
+    positions: dict[str, float] = {}
+    for word in words:
+        joint, _, text = word.partition("=")
+        if joint not in group.joints:
+            raise NoSuchNameError(
+                f"group '{group.name}' has no joint '{joint}'; it has {', '.join(group.joints)}"
+            )
+        try:
+            positions[joint] = float(text)
+        except ValueError:
+            raise CommandUsageError(f"--joints {word}: write it as {joint}=0.5") from None
+    return positions
+
+
+def _request(model: "PlanningModel", group: "JointGroup", options: argparse.Namespace) -> Any:
+    """Return the action's goal."""
+    from moveit_msgs.action import MoveGroup
+
+    from arm_planning.ros.goal_messages import plan_message
+
+    goal = MoveGroup.Goal()
+    goal.request = plan_message(
+        group.name,
+        _goal(model, group, options),
+        planner_id=options.planner,
+        pipeline_id=options.pipeline,
+        num_planning_attempts=1,
+        allowed_planning_time=options.time,
+        max_velocity_scaling_factor=options.speed,
+        max_acceleration_scaling_factor=options.acceleration,
+    )
+    goal.planning_options.plan_only = options.plan_only
+    goal.planning_options.planning_scene_diff.is_diff = True
+    goal.planning_options.planning_scene_diff.robot_state.is_diff = True
+    return goal
+
+
+def _summary(result: Any, group: "JointGroup") -> str:
+    points = result.planned_trajectory.joint_trajectory.points
+    end = points[-1].time_from_start
+    duration_s = end.sec + end.nanosec * 1e-9
+    verb = "moved" if result.executed_trajectory.joint_trajectory.points else "planned for"
+    return (
+        f"{verb} group '{group.name}': {len(points)} points in {duration_s:.2f} s, planned in "
+        f"{result.planning_time * 1e3:.0f} ms"
+    )
+
+
+def _document(result: Any) -> dict[str, Any]:
+    trajectory = result.planned_trajectory.joint_trajectory
+    return {
+        "joints": list(trajectory.joint_names),
+        "planning_time_s": result.planning_time,
+        "points": [
+            {
+                "time_s": point.time_from_start.sec + point.time_from_start.nanosec * 1e-9,
+                "positions": list(point.positions),
+                "velocities": list(point.velocities),
+            }
+            for point in trajectory.points
+        ],
+    }

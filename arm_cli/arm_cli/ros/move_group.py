@@ -1,0 +1,86 @@
+"""Asks a running move_group: for its robot, and to move it."""
+
+from functools import partial
+from typing import Any
+
+from moveit_msgs.action import MoveGroup
+from moveit_msgs.msg import MoveItErrorCodes
+from rclpy.action.client import ActionClient
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+from arm_cli.errors import MotionFailedError, StoppedError, UnansweredError
+from arm_cli.ros.session import CommandSession
+from arm_description.urdf.parser import parse_urdf
+from arm_planning.robot.build import planning_model
+from arm_planning.robot.model import PlanningModel
+from arm_planning.robot.srdf import parse_srdf
+
+TIMEOUT_S = 5.0
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+URDF, SRDF = "/robot_description", "/robot_description_semantic"
+
+
+class MoveGroupClient:
+    """Asks move_group with the node of this command."""
+
+    def __init__(self, session: CommandSession) -> None:
+        self._session = session
+
+    def model(self) -> PlanningModel:
+        """Return the running robot with its groups and named states.
+
+        Raises:
+            UnansweredError: nobody publishes its descriptions.
+        """
+        texts: dict[str, str] = {}
+        for topic in (SRDF, URDF):
+            take = partial(_keep, texts, topic)
+            self._session.node.create_subscription(String, topic, take, LATCHED)
+        if not self._session.wait_until(lambda: len(texts) == 2, timeout_s=TIMEOUT_S):
+            missing = " and ".join(topic for topic in (SRDF, URDF) if topic not in texts)
+            raise UnansweredError(
+                f"nobody publishes {missing}: start the robot with planning:=true, as in "
+                "`arm launch mycobot planning:=true`"
+            )
+        robot = parse_urdf(texts[URDF])
+        # The limits do not matter here, so neither do remarks about them.
+        return planning_model(robot, parse_srdf(texts[SRDF], robot), warn=lambda _: None)
+
+    def move(self, goal: MoveGroup.Goal, timeout_s: float | None) -> MoveGroup.Result:
+        """Send a goal and return its result; Ctrl-C cancels it.
+
+        Args:
+            goal: what to do.
+            timeout_s: how long to wait for the result; None for as long as it takes.
+
+        Raises:
+            UnansweredError: no move_group runs, or it does not answer.
+            MotionFailedError: there is no plan, or the robot did not get there.
+        """
+        client = ActionClient(self._session.node, MoveGroup, "/move_action")
+        if not self._session.wait_until(client.server_is_ready, timeout_s=TIMEOUT_S):
+            raise UnansweredError("no move_group runs: start the robot with planning:=true")
+        handle = self._session.result(client.send_goal_async(goal), TIMEOUT_S)
+        if handle is None or not handle.accepted:
+            raise UnansweredError("move_group did not take the goal")
+        answer = self._answer(handle, timeout_s)
+        code = answer.error_code
+        if code.val != MoveItErrorCodes.SUCCESS:
+            raise MotionFailedError(code.message or f"move_group failed with code {code.val}")
+        return answer
+
+    def _answer(self, handle: Any, timeout_s: float | None) -> MoveGroup.Result:
+        try:
+            answer = self._session.result(handle.get_result_async(), timeout_s)
+        except StoppedError:
+            self._session.clear_stop()
+            self._session.result(handle.cancel_goal_async(), TIMEOUT_S)
+            raise
+        if answer is None:
+            raise UnansweredError(f"move_group has no result after {timeout_s:g} s")
+        return answer.result
+
+
+def _keep(texts: dict[str, str], topic: str, message: String) -> None:
+    texts[topic] = message.data

@@ -1,0 +1,194 @@
+"""From a request to a trajectory that is proved free: the steps of a planning pipeline.
+
+start state -> goal states -> path -> shortcuts -> timing -> proof, and the proof decides: a
+trajectory whose rounded corners come too close is timed again with tighter corners.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_planning.collision.contact import Contact
+from arm_planning.collision.model import CollisionModel
+from arm_planning.collision.motion_proof import MotionProof, Obstruction
+from arm_planning.constraints.evaluation import ConstraintEvaluator
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.timing.driven_spline import chord_deviation
+from arm_planning.timing.parameterize import parameterize
+from arm_planning.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+START_TOLERANCE = 0.01
+"""How far beyond a limit a start state is moved inside, rad or m: sensors are not exact."""
+CORNER_TOLERANCE = 0.1
+"""How far a rounded corner passes by its way point, as in TOTG, rad or m."""
+TIGHTENING = 0.25
+SMALLEST_CORNER = 0.002
+"""Tolerance of a corner, rad or m, below which the robot stops there instead."""
+RESAMPLE_DT_S = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class StartState:
+    """Where a plan begins: the positions of all active joints, and a remark if they were moved."""
+
+    positions: JointPositions
+    remark: str = ""
+
+
+def start_state(model: PlanningModel, group: JointGroup, scene: PlanningScene) -> StartState:
+    """Return the scene's state with the group's joints inside their limits.
+
+    Raises:
+        PlanningError: START_STATE_INVALID: a joint is unknown, or too far outside.
+    """
+    missing = [joint for joint in group.joints if joint not in scene.positions]
+    if missing:
+        raise PlanningError(
+            ErrorCode.START_STATE_INVALID,
+            f"the position of joint {', '.join(missing)} is not known; is it in /joint_states?",
+        )
+    moved: dict[str, float] = {}
+    for joint, limit in zip(group.joints, group.limits, strict=True):
+        position = scene.positions[joint]
+        inside = min(max(position, limit.lower), limit.upper)
+        if abs(position - inside) > START_TOLERANCE:
+            raise PlanningError(
+                ErrorCode.START_STATE_INVALID,
+                f"Start state out of bounds: joint '{joint}' is at {position:.4f}, outside its "
+                f"range [{limit.lower:.4f}, {limit.upper:.4f}] by {abs(position - inside):.4f}; "
+                f"move it inside (up to {START_TOLERANCE:g} is corrected)",
+            )
+        if position != inside:
+            moved[joint] = inside
+    if not moved:
+        return StartState(scene.positions)
+    remark = ", ".join(f"'{joint}' to {value:.4f}" for joint, value in moved.items())
+    return StartState(
+        {**scene.positions, **moved},
+        f"the start state is slightly outside of its limits; the plan moves joint {remark}",
+    )
+
+
+class SceneChecker:
+    """Collision checks and proofs in one scene: what planners ask. For one thread at a time."""
+
+    def __init__(self, model: CollisionModel) -> None:
+        self.model = model
+        self.proof = MotionProof(model)
+
+    def is_free(self, q: Array) -> bool:
+        """Return whether the robot is free at positions of the group, (n,)."""
+        return self.model.is_free(q)
+
+    def is_free_edge(self, a: Array, b: Array) -> bool:
+        """Return whether all states on the straight line between two are free."""
+        return self.proof.is_free_edge(a, b)
+
+    def prove(self, path: Array, deviation: Array | None = None) -> Obstruction | None:
+        """Return None if every state on a polyline, and within the deviation of it, is free."""
+        return self.proof.prove(path, deviation)
+
+    def prove_driven(self, trajectory: Trajectory) -> Obstruction | None:
+        """Return None if the points' lines and the curve that a controller drives are free."""
+        return self.prove(trajectory.positions, chord_deviation(trajectory))
+
+    def contacts(self, q: Array) -> tuple[Contact, ...]:
+        """Return what touches at positions of the group."""
+        return self.model.contacts(q)
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """How a path is timed.
+
+    Attributes:
+        velocity_scaling: fraction of the velocity limits, (0, 1].
+        acceleration_scaling: fraction of the acceleration limits, (0, 1].
+    """
+
+    velocity_scaling: float = 1.0
+    acceleration_scaling: float = 1.0
+
+
+def timed_and_proved(
+    path: Array,
+    group: JointGroup,
+    checker: SceneChecker | None,
+    constraints: ConstraintEvaluator,
+    timing: Timing,
+    corner: float = CORNER_TOLERANCE,
+) -> Trajectory:
+    """Return a trajectory along a path, every state of which is proved free.
+
+    Proved are the lines between the returned points and the curve that a controller drives.
+
+    Args:
+        path: way points whose straight connections are free, (m, n).
+        group: the joints.
+        checker: what is free; None to prove nothing.
+        constraints: what holds on the way; looked at in each returned point.
+        timing: speed.
+        corner: how far a rounded corner may pass by its way point, rad or m.
+
+    Raises:
+        PlanningError: INVALID_MOTION_PLAN: it cannot be made free; the message says where.
+    """
+    corners = np.full(len(path), corner)
+    while True:
+        trajectory = parameterize(
+            path,
+            group.limits,
+            joints=group.joints,
+            velocity_scaling=timing.velocity_scaling,
+            acceleration_scaling=timing.acceleration_scaling,
+            path_tolerance=corner,
+            resample_dt=RESAMPLE_DT_S,
+            max_deviation=corners,
+        )
+        obstruction = None if checker is None else checker.prove_driven(trajectory)
+        where = None if obstruction is None else obstruction.segment
+        problem = "" if obstruction is None else str(obstruction)
+        if where is None:
+            where, problem = _violation(trajectory, constraints)
+        if where is None:
+            return trajectory
+        nearby = _corners_near(path, trajectory.positions[where : where + 2])
+        open_corners = [index for index in nearby if corners[index] > 0.0]
+        if not open_corners:
+            raise PlanningError(
+                ErrorCode.INVALID_MOTION_PLAN, f"the timed motion is not free: {problem}"
+            )
+        corners[open_corners] *= TIGHTENING
+        corners[corners < SMALLEST_CORNER] = 0.0
+
+
+def _violation(trajectory: Trajectory, constraints: ConstraintEvaluator) -> tuple[int | None, str]:
+    if not constraints.constraints:
+        return None, ""
+    last = len(trajectory.positions) - 2
+    for index, q in enumerate(trajectory.positions):
+        if violation := constraints.violation(q):
+            return min(index, max(last, 0)), violation
+    return None, ""
+
+
+def _corners_near(path: Array, points: Array) -> list[int]:
+    """Return the way points between which a part of the trajectory is, its neighbours included."""
+    along = [_position_on(path, q) for q in points]
+    first, last = int(np.floor(min(along))), int(np.ceil(max(along)))
+    return [index for index in range(first, last + 1) if 0 < index < len(path) - 1]
+
+
+def _position_on(path: Array, q: Array) -> float:
+    """Return where on a polyline the nearest point to a state is: segment + fraction."""
+    start, step = path[:-1], np.diff(path, axis=0)
+    squared = np.maximum((step**2).sum(axis=1), 1e-30)
+    fraction = np.clip(((q - start) * step).sum(axis=1) / squared, 0.0, 1.0)
+    distance = np.linalg.norm(start + fraction[:, None] * step - q, axis=1)
+    nearest = int(np.argmin(distance))
+    return nearest + float(fraction[nearest])

@@ -1,0 +1,110 @@
+"""The node move_group: everything that MoveIt's clients talk to."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from moveit_msgs.msg import DisplayTrajectory
+from moveit_msgs.srv import GetGroupUrdf
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+
+from arm_node.executor_thread import ExecutorThread
+from arm_planning.errors import ErrorCode
+from arm_planning.execution.controllers import controllers_of_settings
+from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.request import PlanResponse
+from arm_planning.ros.controller_list import ControllerList
+from arm_planning.ros.convert import error_code, robot_state_message, trajectory_message
+from arm_planning.ros.move_action import MoveActions
+from arm_planning.ros.planning_services import PlanningServices
+from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.ros.robot_setup import RobotSetup, values_below
+from arm_planning.ros.scene_monitor import SceneMonitor
+from arm_planning.ros.state_services import StateServices
+from arm_planning.ros.trajectory_executor import TrajectoryExecutor
+
+THREADS = 6
+"""Callbacks that may wait at the same time: goals that run, their cancelling, and services."""
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LOGGER = logging.getLogger("move_group")
+
+
+class MoveGroup:
+    """Connects the planner to ROS: two nodes, as upstream.
+
+    `node` serves what may take long, on threads of its own; `scene_node` has the scene's topics.
+    """
+
+    def __init__(self, node: Node, scene_node: Node, setup: RobotSetup) -> None:
+        self._model = setup.model
+        self._node = node
+        self.monitor = SceneMonitor(scene_node, setup.model, setup.scene, node)
+        session = PlanningSession(setup, self.monitor)
+        settings = ExecutionSettings.read(values_below(node, "trajectory_execution"))
+        controllers = ControllerList(
+            node, controllers_of_settings(values_below(node, "moveit_simple_controller_manager"))
+        )
+        executor = TrajectoryExecutor(node, self.monitor.states, controllers.available, settings)
+        allows = node.get_parameter_or("allow_trajectory_execution", None)
+        self._actions = MoveActions(
+            node, session, executor, allows is None or allows.value is not False
+        )
+        self._plans = PlanningServices(node, session, self._display)
+        self._states = StateServices(node, session)
+        self._display_publisher = node.create_publisher(
+            DisplayTrajectory, "display_planned_path", 10
+        )
+        self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)
+        self._semantic.publish(String(data=setup.srdf))
+        self._executor = executor
+        scene_node.create_subscription(String, "trajectory_execution_event", self._take_event, 10)
+        node.create_service(GetGroupUrdf, "get_urdf", self._urdf)
+        node.create_service(Empty, "clear_octomap", _clear_octomap)
+
+    @contextmanager
+    def serving(self) -> Iterator[None]:
+        """Serve what may take long on threads of their own."""
+        multi = MultiThreadedExecutor(THREADS)
+        multi.add_node(self._node)
+        thread = ExecutorThread("planning", multi)
+        thread.start()
+        try:
+            yield
+        finally:
+            thread.stop()
+
+    def _take_event(self, event: String) -> None:
+        if event.data == "stop":
+            self._executor.stop()
+        else:
+            LOGGER.warning("Unknown event type: '%s'; there is 'stop'", event.data)
+
+    def _display(self, response: PlanResponse) -> None:
+        if not self._display_publisher.get_subscription_count():
+            return
+        message = DisplayTrajectory(model_id=self._model.robot.name)
+        message.trajectory = [trajectory_message(self._model.frame, response.trajectory)]
+        message.trajectory_start = robot_state_message(self._model, response.start)
+        self._display_publisher.publish(message)
+
+    def _urdf(self, request: Any, answer: GetGroupUrdf.Response) -> GetGroupUrdf.Response:
+        if request.group_name not in self._model.groups:
+            groups = ", ".join(self._model.groups)
+            answer.error_code = error_code(
+                ErrorCode.INVALID_GROUP_NAME,
+                f"no group '{request.group_name}'; the robot has {groups}",
+            )
+            return answer
+        answer.urdf_string = str(self._node.get_parameter("robot_description").value)
+        answer.error_code = error_code(ErrorCode.SUCCESS)
+        return answer
+
+
+def _clear_octomap(_request: Any, answer: Empty.Response) -> Empty.Response:
+    LOGGER.warning("the scene has no octomap to clear")
+    return answer

@@ -1,0 +1,139 @@
+"""The services that plan, and those about the planners."""
+
+import logging
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from moveit_msgs.msg import PlannerInterfaceDescription, RobotTrajectory
+from moveit_msgs.srv import (
+    GetCartesianPath,
+    GetMotionPlan,
+    QueryPlannerInterfaces,
+)
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.pipeline import Timing
+from arm_planning.planner import TimedCartesianPath, pipelines
+from arm_planning.planners.cartesian import JumpLimits
+from arm_planning.request import PlanResponse
+from arm_planning.ros.convert import (
+    error_code,
+    pose_of,
+    robot_state_message,
+    trajectory_message,
+)
+from arm_planning.ros.convert_constraints import constraints_of
+from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.scene.scene import PlanningScene
+
+LOGGER = logging.getLogger("move_group")
+
+
+class PlanningServices:
+    """Serves plan_kinematic_path, compute_cartesian_path and the queries about planners."""
+
+    def __init__(
+        self, node: Node, session: PlanningSession, display: Callable[[PlanResponse], None]
+    ) -> None:
+        """Offer the services; several threads must spin the node.
+
+        Args:
+            node: gets the services.
+            session: plans in the present scene.
+            display: publishes a plan on display_planned_path.
+        """
+        self._session = session
+        self._display = display
+        group = ReentrantCallbackGroup()
+        services: dict[str, tuple[type[Any], Callable[[Any, Any], Any]]] = {
+            "plan_kinematic_path": (GetMotionPlan, self._plan),
+            "compute_cartesian_path": (GetCartesianPath, self._cartesian),
+            "query_planner_interface": (QueryPlannerInterfaces, self._planners),
+        }
+        for name, (service, serve) in services.items():
+            node.create_service(service, name, serve, callback_group=group)
+
+    def _plan(self, request: Any, answer: GetMotionPlan.Response) -> GetMotionPlan.Response:
+        response = self._session.plan(request.motion_plan_request)
+        model = self._session.model
+        filled = answer.motion_plan_response
+        filled.group_name = request.motion_plan_request.group_name
+        filled.trajectory_start = robot_state_message(model, response.start)
+        filled.trajectory = trajectory_message(model.frame, response.trajectory)
+        filled.planning_time = response.planning_time_s
+        filled.error_code = error_code(response.code, response.message)
+        if response.trajectory is None:
+            LOGGER.error("%s: %s", response.code.name, response.message)
+        else:
+            self._display(response)
+        return answer
+
+    def _cartesian(self, request: Any, answer: GetCartesianPath.Response) -> Any:
+        started_s = time.monotonic()
+        session = self._session
+        try:
+            scene = session.state(request.start_state)
+            result = self._straight(request, scene)
+        except PlanningError as error:
+            LOGGER.error("compute_cartesian_path: %s", error)
+            answer.error_code = error_code(error.code, str(error))
+            answer.solution = RobotTrajectory()
+            return answer
+        answer.start_state = robot_state_message(session.model, scene.positions)
+        answer.solution = trajectory_message(session.model.frame, result.trajectory)
+        answer.fraction = result.fraction
+        answer.error_code = error_code(ErrorCode.SUCCESS, result.stopped)
+        if result.stopped:
+            LOGGER.warning("%s", result.stopped)
+        elapsed_s = time.monotonic() - started_s
+        self._display(
+            PlanResponse(ErrorCode.SUCCESS, "", dict(scene.positions), result.trajectory, elapsed_s)
+        )
+        return answer
+
+    def _straight(self, request: Any, scene: PlanningScene) -> TimedCartesianPath:
+        session = self._session
+        frames = session.frames(scene)
+        poses = [pose_of(pose, f"way point {i}") for i, pose in enumerate(request.waypoints)]
+        frame = request.header.frame_id.lstrip("/")
+        relative = bool(frame) and frame == request.link_name
+        if not relative:
+            mover, origin = frames.reference(frame)
+            if mover:
+                origin = session.planner.link_pose(mover, scene).then(origin)
+            poses = [origin.then(pose) for pose in poses]
+        return session.planner.cartesian_path(
+            request.group_name,
+            poses,
+            max_step_m=request.max_step,
+            link=request.link_name,
+            relative=relative,
+            jumps=JumpLimits(
+                request.jump_threshold,
+                request.revolute_jump_threshold,
+                request.prismatic_jump_threshold,
+            ),
+            avoids_collisions=request.avoid_collisions,
+            path=constraints_of(request.path_constraints, frames, LOGGER.warning),
+            timing=Timing(
+                request.max_velocity_scaling_factor, request.max_acceleration_scaling_factor
+            ),
+            scene=scene,
+        )
+
+    def _planners(self, _request: Any, answer: QueryPlannerInterfaces.Response) -> Any:
+        answer.planner_interfaces = [
+            PlannerInterfaceDescription(
+                name=title, pipeline_id=pipeline, planner_ids=self._ids(planners)
+            )
+            for pipeline, (title, planners) in pipelines().items()
+        ]
+        return answer
+
+    def _ids(self, planners: Sequence[str]) -> list[str]:
+        """Return planners' ids as MoveIt's: each alone, and for each group, as RViz lists them."""
+        groups = self._session.model.groups
+        return [*planners, *groups, *(f"{group}[{name}]" for group in groups for name in planners)]

@@ -1,0 +1,149 @@
+"""Plans requests in messages: in the present scene, with its changes, from the present state."""
+
+import logging
+import threading
+from collections.abc import Callable
+from functools import partial
+
+from moveit_msgs.msg import MotionPlanRequest, RobotState
+from moveit_msgs.msg import PlanningScene as SceneMessage
+
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import PlanningError
+from arm_planning.planner import Planner
+from arm_planning.request import PlanResponse
+from arm_planning.robot.model import PlanningModel
+from arm_planning.ros.convert_constraints import Frames, plan_request
+from arm_planning.ros.convert_scene import state_change_of
+from arm_planning.ros.robot_setup import RobotSetup
+from arm_planning.ros.scene_monitor import SceneMonitor
+from arm_planning.scene.frames import LinkPoses, frame_pose
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.scene_changes import SceneOutcome, change_scene
+from arm_planning.trajectory import Trajectory
+
+STATE_TIMEOUT_S = 1.0
+LOGGER = logging.getLogger("move_group")
+
+
+class PlanningSession:
+    """What all services and actions that plan have in common; any thread may call it.
+
+    Attributes:
+        model: the robot.
+        monitor: the present scene.
+    """
+
+    def __init__(self, setup: RobotSetup, monitor: SceneMonitor) -> None:
+        self.model: PlanningModel = setup.model
+        self.monitor = monitor
+        self._setup = setup
+        self._of_thread = threading.local()
+
+    @property
+    def planner(self) -> Planner:
+        """The calling thread's own planner, so that watching a motion never waits for a plan."""
+        planner: Planner | None = getattr(self._of_thread, "planner", None)
+        if planner is None:
+            planner = Planner(
+                self.model,
+                self.monitor.scene,
+                resources=self._setup.resources,
+                tip_limits=self._setup.tip_limits,
+            )
+            self._of_thread.planner = planner
+        return planner
+
+    def plan(self, request: MotionPlanRequest, diff: SceneMessage | None = None) -> PlanResponse:
+        """Plan from the request's start state in the present scene with changes."""
+        self._warn_if_stale()
+        try:
+            scene = self._in_state(self._scene(diff), request.start_state)
+            return self._plan(request, scene)
+        except PlanningError as error:
+            return PlanResponse(error.code, str(error), {}, None, 0.0)
+
+    def plan_from_present(self, request: MotionPlanRequest, diff: SceneMessage) -> PlanResponse:
+        """Plan from where the robot is, as a motion that follows at once must."""
+        if is_given(request.start_state):
+            LOGGER.warning(
+                "Execution of motions should always start at the robot's current state. "
+                "Ignoring the state supplied as start state in the motion planning request"
+            )
+        if is_given(diff.robot_state):
+            LOGGER.warning(
+                "Execution of motions should always start at the robot's current state. "
+                "Ignoring the state supplied as difference in the planning scene diff"
+            )
+            diff.robot_state = RobotState(is_diff=True)
+        self._warn_if_stale()
+        try:
+            return self._plan(request, self._scene(diff))
+        except PlanningError as error:
+            return PlanResponse(error.code, str(error), {}, None, 0.0)
+
+    def watch(self, trajectory: Trajectory) -> Callable[[float], str]:
+        """Return a function of the time since the start, which says what blocks the rest.
+
+        It looks only when the scene has changed since it last looked.
+        """
+        planned_in = self.monitor.scene
+
+        def blocked(elapsed_s: float) -> str:
+            nonlocal planned_in
+            scene = self.monitor.scene
+            if scene is planned_in:
+                return ""
+            planned_in = scene
+            return self.planner.blocked_ahead(trajectory, elapsed_s, self.monitor.current())
+
+        return blocked
+
+    def frames(self, scene: PlanningScene) -> Frames:
+        """Return the frames that a request in this scene may name."""
+        return Frames(self.model, scene, partial(self._frame, scene))
+
+    def state(self, message: RobotState) -> PlanningScene:
+        """Return the present scene with the robot in a state; an empty one is the present state."""
+        return self._in_state(self.monitor.current(), message)
+
+    def _plan(self, request: MotionPlanRequest, scene: PlanningScene) -> PlanResponse:
+        core = plan_request(request, self._setup.seed, self.frames(scene), LOGGER.warning)
+        return self.planner.plan(core, scene)
+
+    def _scene(self, diff: SceneMessage | None) -> PlanningScene:
+        scene = self.monitor.current()
+        return scene if diff is None else _all_of(self.monitor.applied(scene, diff))
+
+    def _in_state(self, scene: PlanningScene, state: RobotState) -> PlanningScene:
+        """Return the scene with the robot in a state; an empty one changes nothing."""
+        if not is_given(state):
+            return scene
+        change = state_change_of(self.model, state, LOGGER.warning)
+        frames = [each.object.header.frame_id for each in state.attached_collision_objects]
+        known = self.monitor.with_frames(scene, frames)
+        return _all_of(change_scene(self.model, known, change, LOGGER.warning))
+
+    def _frame(self, scene: PlanningScene, name: str) -> RigidTransform:
+        known = self.monitor.with_frames(scene, [name])
+        return frame_pose(known, LinkPoses(self.model, known.positions), name)
+
+    def _warn_if_stale(self) -> None:
+        if problem := self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S):
+            LOGGER.warning("%s", problem)
+
+
+def _all_of(outcome: SceneOutcome) -> PlanningScene:
+    """Return the changed scene of a request, which is refused if a part of it is not possible."""
+    if outcome.problems:
+        raise outcome.problems[0]
+    return outcome.scene
+
+
+def is_given(state: RobotState) -> bool:
+    """Return whether a state says anything: MoveIt calls the others empty."""
+    return bool(
+        state.joint_state.name
+        or state.multi_dof_joint_state.joint_names
+        or state.attached_collision_objects
+    )

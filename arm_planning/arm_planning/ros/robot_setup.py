@@ -1,0 +1,135 @@
+"""The robot of move_group: its URDF, SRDF and limits from the node's parameters."""
+
+import logging
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+from arm_description.resources import ResourceFinder
+from arm_description.urdf.parser import parse_urdf
+from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.planner import resting_positions
+from arm_planning.planners.pilz.cartesian_limits import CartesianLimits, cartesian_limits
+from arm_planning.robot.build import planning_model
+from arm_planning.robot.limits import joint_limit_settings
+from arm_planning.robot.model import PlanningModel
+from arm_planning.robot.srdf import parse_srdf
+from arm_planning.robot.srdf_writer import srdf_text
+from arm_planning.scene.allowed_collisions import allowed_collisions
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.srdf_maker import make_srdf
+
+URDF, SRDF = "robot_description", "robot_description_semantic"
+PLANNING = "robot_description_planning"
+TOPIC_TIMEOUT_S = 10.0
+LOGGER = logging.getLogger("move_group")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSetup:
+    """What move_group plans for.
+
+    Attributes:
+        model: the robot with its groups.
+        scene: the scene at the start: without objects.
+        srdf: text of the SRDF.
+        resources: finds the robot's meshes.
+        tip_limits: speeds of a group's tip for Pilz' planners.
+        seed: seed of all requests.
+    """
+
+    model: PlanningModel
+    scene: PlanningScene
+    srdf: str
+    resources: ResourceFinder
+    tip_limits: CartesianLimits
+    seed: int
+
+
+def move_group_node() -> Node:
+    """Return the node, whose parameters are those that it is given, as upstream."""
+    return Node(
+        "move_group",
+        allow_undeclared_parameters=True,
+        automatically_declare_parameters_from_overrides=True,
+    )
+
+
+def scene_node() -> Node:
+    """Return the node of the scene's topics; upstream it has a number at the end, too."""
+    return Node(f"move_group_private_{time.time_ns()}", enable_rosout=False)
+
+
+def read_setup(node: Node) -> RobotSetup:
+    """Return the robot that the node's parameters describe, or the topic robot_description.
+
+    Raises:
+        PlanningError: there is no description, or the SRDF or a limit cannot be used.
+        DescriptionError: the URDF cannot be used.
+    """
+    urdf = _text(node, URDF) or _from_topic(node, URDF)
+    paths = [Path(part) for part in _text(node, "package_path").split(":") if part]
+    resources = ResourceFinder.of_description(urdf, paths)
+    robot = parse_urdf(urdf)
+    srdf = _text(node, SRDF)
+    if not srdf:
+        LOGGER.info("no robot_description_semantic is given: groups are made from the URDF")
+        srdf = srdf_text(make_srdf(robot, LOGGER.warning, meshes=MeshPieces(resources)))
+    semantic = parse_srdf(srdf, robot)
+    given = values_below(node, PLANNING)
+    limits = joint_limit_settings(given, LOGGER.warning)
+    model = planning_model(robot, semantic, limits, LOGGER.warning)
+    scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
+    return RobotSetup(model, scene, srdf, resources, cartesian_limits(given), _seed(node))
+
+
+def values_below(node: Node, prefix: str) -> dict[str, Any]:
+    """Return the values of a node's parameters below a prefix, by the rest of their names."""
+    found: dict[str, Any] = node.get_parameters_by_prefix(prefix)
+    return {name: parameter.value for name, parameter in found.items()}
+
+
+def _text(node: Node, name: str) -> str:
+    value = node.get_parameter(name).value if node.has_parameter(name) else ""
+    if not isinstance(value, str):
+        raise PlanningError(ErrorCode.FAILURE, f"the parameter {name} is not a text")
+    return value
+
+
+def _seed(node: Node) -> int:
+    value = node.get_parameter("seed").value if node.has_parameter("seed") else 0
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise PlanningError(ErrorCode.FAILURE, f"seed is {value}; it is a whole number from 0")
+    return value
+
+
+def _from_topic(node: Node, topic: str) -> str:
+    """Wait for a description on a topic, as upstream does for 10 s."""
+    received: list[str] = []
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+    def take(message: String) -> None:
+        received.append(message.data)
+
+    subscription = node.create_subscription(String, topic, take, latched)
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    deadline_s = time.monotonic() + TOPIC_TIMEOUT_S
+    while not received and time.monotonic() < deadline_s and node.context.ok():
+        executor.spin_once(0.1)
+    executor.remove_node(node)
+    node.destroy_subscription(subscription)
+    if not received:
+        raise PlanningError(
+            ErrorCode.FAILURE,
+            f"there is no robot: the parameter {topic} is empty, and nobody published the topic "
+            f"{topic} within {TOPIC_TIMEOUT_S:g} s",
+        )
+    return received[0]

@@ -1,0 +1,222 @@
+"""The present planning scene: changed by topics and services, published as it changes."""
+
+import logging
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped
+from moveit_msgs.msg import (
+    AttachedCollisionObject,
+    CollisionObject,
+    PlanningSceneWorld,
+)
+from moveit_msgs.msg import PlanningScene as SceneMessage
+from moveit_msgs.srv import ApplyPlanningScene, GetPlanningScene
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+from tf2_msgs.msg import TFMessage
+
+from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import PlanningError
+from arm_planning.robot.model import PlanningModel
+from arm_planning.ros.convert import robot_state_message
+from arm_planning.ros.convert_scene import frames_in, scene_change_of
+from arm_planning.ros.joint_state_monitor import JointStateMonitor
+from arm_planning.ros.scene_messages import scene_message
+from arm_planning.scene.frames import LinkPoses, frame_names
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.scene_changes import SceneOutcome, change_scene
+
+SERVICES_DEPTH = 10
+MONITORED_DEPTH = 100
+PUBLISH_HZ = 4.0
+MOVED = 1e-6
+"""Change of a joint from which the state is published again, rad or m."""
+TRANSFORMS_TAKEN = 200
+LOGGER = logging.getLogger("move_group")
+
+
+class SceneMonitor:
+    """Holds the present scene; any thread may read or change it.
+
+    Attributes:
+        states: the robot's state.
+    """
+
+    def __init__(
+        self, node: Node, model: PlanningModel, scene: PlanningScene, *others: Node
+    ) -> None:
+        """Listen to the scene's topics, and offer its services.
+
+        Args:
+            node: has the topics and services.
+            model: the robot.
+            scene: the scene at the start.
+            others: nodes that take the robot's time, too.
+        """
+        self._model = model
+        self._scene = scene
+        self._lock = threading.Lock()
+        self.states = JointStateMonitor(node, model, *others)
+        self._frames = _TransformReader(node)
+        self._publisher = node.create_publisher(
+            SceneMessage, "monitored_planning_scene", MONITORED_DEPTH
+        )
+        self._published: PlanningScene | None = None
+        topics: dict[str, tuple[type[Any], Callable[[Any], None]]] = {
+            "planning_scene": (SceneMessage, self._hear_scene),
+            "planning_scene_world": (PlanningSceneWorld, self._hear_world),
+            "collision_object": (CollisionObject, self._hear_object),
+            "attached_collision_object": (AttachedCollisionObject, self._hear_attached),
+        }
+        for topic, (message, take) in topics.items():
+            node.create_subscription(message, topic, take, SERVICES_DEPTH)
+        node.create_service(GetPlanningScene, "get_planning_scene", self._serve_get)
+        node.create_service(ApplyPlanningScene, "apply_planning_scene", self._serve_apply)
+        node.create_timer(1.0 / PUBLISH_HZ, self._publish)
+
+    @property
+    def scene(self) -> PlanningScene:
+        """The scene without the latest joint states; the same object until something changes."""
+        return self._scene
+
+    def current(self) -> PlanningScene:
+        """Return the scene with the robot where it is now."""
+        scene, known = self._scene, self.states.positions()
+        return replace(scene, positions={**scene.positions, **known})
+
+    def with_frames(self, scene: PlanningScene, names: Iterable[str]) -> PlanningScene:
+        """Return the scene with those frames on /tf that it does not know by itself."""
+        known = frame_names(scene, LinkPoses(self._model, scene.positions))
+        found: dict[str, RigidTransform] = {}
+        for name in {name.lstrip("/") for name in names} - {"", *known}:
+            pose = self._frames.pose(name, self._model.frame)
+            if pose is not None:
+                found[name] = pose
+        return replace(scene, transforms={**scene.transforms, **found}) if found else scene
+
+    def applied(self, scene: PlanningScene, message: SceneMessage) -> SceneOutcome:
+        """Return what a message makes of a scene.
+
+        Raises:
+            PlanningError: the message cannot be used at all.
+        """
+        change = scene_change_of(self._model, message, LOGGER.warning)
+        known = self.with_frames(scene, frames_in(message))
+        outcome = change_scene(self._model, known, change, LOGGER.warning)
+        if outcome.scene.transforms == known.transforms and known is not scene:
+            # Frames on /tf move: they are looked up each time.
+            outcome = replace(outcome, scene=replace(outcome.scene, transforms=scene.transforms))
+        return outcome
+
+    def change(self, message: SceneMessage) -> str:
+        """Change the present scene; return what was not possible, or "". Any thread."""
+        with self._lock:
+            try:
+                outcome = self.applied(self.current(), message)
+            except PlanningError as error:
+                LOGGER.error("%s", error)
+                return str(error)
+            self._scene = outcome.scene
+        for problem in outcome.problems:
+            LOGGER.error("%s", problem)
+        return "; ".join(map(str, outcome.problems))
+
+    def _hear_scene(self, message: SceneMessage) -> None:
+        self.change(message)
+
+    def _hear_world(self, message: PlanningSceneWorld) -> None:
+        removes_all = CollisionObject(operation=CollisionObject.REMOVE)
+        self._change_objects([removes_all, *message.collision_objects])
+
+    def _hear_object(self, message: CollisionObject) -> None:
+        self._change_objects([message])
+
+    def _change_objects(self, objects: Sequence[CollisionObject]) -> None:
+        scene = SceneMessage(is_diff=True)
+        scene.robot_state.is_diff = True
+        scene.world.collision_objects = objects
+        self.change(scene)
+
+    def _hear_attached(self, message: AttachedCollisionObject) -> None:
+        scene = SceneMessage(is_diff=True)
+        scene.robot_state.is_diff = True
+        scene.robot_state.attached_collision_objects = [message]
+        self.change(scene)
+
+    def _serve_get(self, request: Any, answer: GetPlanningScene.Response) -> Any:
+        answer.scene = scene_message(self._model, self.current(), request.components.components)
+        return answer
+
+    def _serve_apply(self, request: Any, answer: ApplyPlanningScene.Response) -> Any:
+        answer.success = not self.change(request.scene)
+        return answer
+
+    def _publish(self) -> None:
+        scene = self.current()
+        before = self._published
+        if before is None or replace(before, positions=scene.positions) != scene:
+            self._publisher.publish(scene_message(self._model, scene))
+        elif _has_moved(before, scene):
+            message = SceneMessage(is_diff=True, robot_model_name=self._model.robot.name)
+            message.robot_state = robot_state_message(self._model, scene.positions)
+            message.robot_state.is_diff = True
+            self._publisher.publish(message)
+        else:
+            return
+        self._published = scene
+
+
+class _TransformReader:
+    """Reads /tf and /tf_static, only when somebody asks for a frame."""
+
+    def __init__(self, node: Node) -> None:
+        self._polled = PolledSubscriptions(node)
+        latched = QoSProfile(depth=TRANSFORMS_TAKEN, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._subscriptions = (
+            self._polled.subscribe(TFMessage, "/tf_static", latched),
+            self._polled.subscribe(TFMessage, "/tf", QoSProfile(depth=TRANSFORMS_TAKEN)),
+        )
+        self._latest: dict[str, TransformStamped] = {}
+        self._lock = threading.Lock()
+
+    def pose(self, name: str, planning_frame: str) -> RigidTransform | None:
+        """Return a frame's pose in the planning frame; None if no transforms connect them."""
+        with self._lock:
+            for subscription in self._subscriptions:
+                for raw, _ in self._polled.take(subscription, TRANSFORMS_TAKEN):
+                    message: TFMessage = deserialize_message(raw, TFMessage)
+                    for transform in message.transforms:
+                        self._latest[transform.child_frame_id.lstrip("/")] = transform
+            ours = self._in_root(planning_frame.lstrip("/"))
+            theirs = self._in_root(name.lstrip("/"))
+        if ours[0] != theirs[0]:
+            return None
+        return ours[1].inverse().then(theirs[1])
+
+    def _in_root(self, name: str) -> tuple[str, RigidTransform]:
+        """Return the root above a frame, and the frame's pose in it."""
+        pose, passed = RigidTransform(), {name}
+        while name in self._latest:
+            stamped = self._latest[name]
+            translation, rotation = stamped.transform.translation, stamped.transform.rotation
+            step = RigidTransform(
+                (translation.x, translation.y, translation.z),
+                (rotation.x, rotation.y, rotation.z, rotation.w),
+            )
+            pose, name = step.then(pose), stamped.header.frame_id.lstrip("/")
+            if name in passed:
+                break
+            passed.add(name)
+        return name, pose
+
+
+def _has_moved(before: PlanningScene, after: PlanningScene) -> bool:
+    return any(
+        abs(position - before.positions.get(joint, position + 1.0)) > MOVED
+        for joint, position in after.positions.items()
+    )

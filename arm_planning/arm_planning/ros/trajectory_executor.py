@@ -1,0 +1,307 @@
+"""Runs trajectories on the controllers' actions, and stops them."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from action_msgs.msg import GoalStatus
+from control_msgs.action import FollowJointTrajectory, GripperCommand, ParallelGripperCommand
+from rclpy.action.client import ActionClient
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.execution.controllers import (
+    ControllerKind,
+    TrajectoryController,
+    choose_controllers,
+    part_for,
+)
+from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.ros.convert import trajectory_message
+from arm_planning.ros.joint_state_monitor import JointStateMonitor
+from arm_planning.trajectory import Trajectory
+
+ACTIONS: dict[ControllerKind, type[Any]] = {
+    ControllerKind.FOLLOW_JOINT_TRAJECTORY: FollowJointTrajectory,
+    ControllerKind.GRIPPER_COMMAND: GripperCommand,
+    ControllerKind.PARALLEL_GRIPPER_COMMAND: ParallelGripperCommand,
+}
+POLL_S = 0.005
+SERVER_TIMEOUT_S = 2.0
+STATE_TIMEOUT_S = 1.0
+STOP_TIMEOUT_S = 2.0
+REST_TIMEOUT_S = 1.0
+RESTS = 1e-3
+"""Speed below which the robot counts as still, rad/s or m/s."""
+
+Watch = Callable[[float], str]
+"""Takes the time since the start in s; returns why the rest of the way is blocked, or ""."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How an execution ended: MoveIt's code, and the reason unless it succeeded."""
+
+    code: ErrorCode
+    message: str = ""
+
+
+class TrajectoryExecutor:
+    """Runs one trajectory at a time; a thread that calls `execute` waits for its end."""
+
+    def __init__(
+        self,
+        node: Node,
+        states: JointStateMonitor,
+        controllers: Callable[[], Sequence[TrajectoryController]],
+        settings: ExecutionSettings,
+    ) -> None:
+        """Prepare to run trajectories; other threads must spin the node.
+
+        Args:
+            node: has the action clients.
+            states: the robot's state.
+            controllers: returns the controllers that there are now.
+            settings: tolerances and time limits.
+        """
+        self._node = node
+        self._states = states
+        self._controllers = controllers
+        self._settings = settings
+        self._group = ReentrantCallbackGroup()
+        self._clients: dict[tuple[str, ControllerKind], ActionClient] = {}
+        self._busy = threading.Lock()
+        self._stop = threading.Event()
+
+    def stop(self) -> None:
+        """Stop the robot; `execute` returns PREEMPTED. Any thread."""
+        self._stop.set()
+
+    def execute(
+        self, trajectory: Trajectory, names: Sequence[str] = (), watch: Watch | None = None
+    ) -> Outcome:
+        """Run a trajectory to its end.
+
+        Args:
+            trajectory: what to run; its first point is where the robot is.
+            names: the only controllers to use; empty for any.
+            watch: called while the robot moves.
+
+        Returns:
+            SUCCESS, or why the robot did not get to the end: CONTROL_FAILED, TIMED_OUT, PREEMPTED,
+            or MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE.
+        """
+        if not self._busy.acquire(blocking=False):
+            busy = "Cannot push a new trajectory while another is being executed"
+            return Outcome(ErrorCode.CONTROL_FAILED, busy)
+        try:
+            self._stop.clear()
+            if not len(trajectory.times_s):
+                return Outcome(ErrorCode.SUCCESS)
+            chosen = choose_controllers(list(self._controllers()), trajectory.joints, names)
+            self._check_start(trajectory)
+            run = _Run([self._goal(trajectory, each) for each in chosen])
+            return self._follow(run, trajectory, watch)
+        except PlanningError as error:
+            return Outcome(error.code, str(error))
+        finally:
+            self._busy.release()
+
+    def _check_start(self, trajectory: Trajectory) -> None:
+        tolerance = self._settings.start_tolerance
+        if tolerance <= 0.0:
+            return
+        if problem := self._states.wait_for_fresh(STATE_TIMEOUT_S):
+            raise _failure(f"Failed to validate trajectory: {problem}")
+        present = self._states.positions()
+        for joint, wanted in zip(trajectory.joints, trajectory.positions[0].tolist(), strict=True):
+            distance = abs(wanted - present.get(joint, wanted))
+            if distance > tolerance:
+                raise _failure(
+                    "Invalid Trajectory: start point deviates from current robot state more than "
+                    f"{tolerance:g} at joint '{joint}': it is at {present[joint]:.4f}, the "
+                    f"trajectory starts at {wanted:.4f}; plan again from where the robot is"
+                )
+
+    def _goal(self, trajectory: Trajectory, controller: TrajectoryController) -> "_Goal":
+        key = (controller.action_name, controller.kind)
+        if key not in self._clients:
+            self._clients[key] = ActionClient(
+                self._node,
+                ACTIONS[controller.kind],
+                controller.action_name,
+                callback_group=self._group,
+            )
+        client = self._clients[key]
+        if not client.wait_for_server(SERVER_TIMEOUT_S):
+            raise _failure(
+                f"Action client not connected to action server: {controller.action_name}; is the "
+                "controller active? `arm control list_controllers` tells"
+            )
+        part = part_for(trajectory, controller)
+        longest_s = self._settings.longest_s(trajectory.duration_s, controller)
+        return _Goal(controller, client, _goal_message(part, controller), longest_s)
+
+    def _follow(self, run: "_Run", trajectory: Trajectory, watch: Watch | None) -> Outcome:
+        start_s = self._states.stamp_s
+        run.send()
+        while True:
+            if outcome := run.outcome():
+                if outcome.code is ErrorCode.SUCCESS:
+                    self._wait_until_still()
+                else:
+                    run.cancel()
+                return outcome
+            if self._stop.wait(POLL_S):
+                run.cancel()
+                return Outcome(ErrorCode.PREEMPTED, "the motion was stopped")
+            elapsed_s = self._states.stamp_s - start_s
+            if self._settings.monitors_duration and elapsed_s > run.longest_s:
+                run.cancel()
+                return Outcome(
+                    ErrorCode.TIMED_OUT,
+                    "Controller is taking too long to execute trajectory (the expected upper bound "
+                    f"for the trajectory execution was {run.longest_s:.2f} seconds). Stopping "
+                    "trajectory.",
+                )
+            if watch is not None and (blocked := watch(elapsed_s)):
+                run.cancel()
+                return Outcome(
+                    ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE,
+                    f"the way ahead is no longer free: {blocked}",
+                )
+
+    def _wait_until_still(self) -> None:
+        deadline_s = time.monotonic() + REST_TIMEOUT_S
+        while self._states.largest_speed() > RESTS and time.monotonic() < deadline_s:
+            time.sleep(POLL_S)
+
+
+class _Run:
+    """The goals of one trajectory, one for each controller."""
+
+    def __init__(self, goals: "list[_Goal]") -> None:
+        self._goals = goals
+        self.longest_s = max(goal.longest_s for goal in goals)
+
+    def send(self) -> None:
+        for goal in self._goals:
+            goal.send()
+
+    def outcome(self) -> Outcome | None:
+        """Return how it ended: the first failure, or success once all have ended."""
+        outcomes = [goal.outcome() for goal in self._goals]
+        for outcome in outcomes:
+            if outcome is not None and outcome.code is not ErrorCode.SUCCESS:
+                return outcome
+        return None if None in outcomes else Outcome(ErrorCode.SUCCESS)
+
+    def cancel(self) -> None:
+        """Cancel what still runs, and wait until the controllers have said that it ended."""
+        for goal in self._goals:
+            goal.cancel()
+        deadline_s = time.monotonic() + STOP_TIMEOUT_S
+        while any(goal.runs for goal in self._goals) and time.monotonic() < deadline_s:
+            time.sleep(POLL_S)
+
+
+class _Goal:
+    """One controller's goal; its futures complete on the threads that spin the node."""
+
+    def __init__(
+        self, controller: TrajectoryController, client: ActionClient, message: Any, longest_s: float
+    ) -> None:
+        self.longest_s = longest_s
+        self._controller = controller
+        self._client = client
+        self._message = message
+        self._handle: Any = None
+        self._result: Any = None
+        self._refused = False
+        self._wants_cancel = False
+        self._lost_since_s = 0.0
+
+    def send(self) -> None:
+        self._client.send_goal_async(self._message).add_done_callback(self._answered)
+
+    @property
+    def runs(self) -> bool:
+        return self._result is None and not self._refused and self._client.server_is_ready()
+
+    def cancel(self) -> None:
+        self._wants_cancel = True
+        if self._handle is not None and self._result is None:
+            self._handle.cancel_goal_async()
+
+    def outcome(self) -> Outcome | None:
+        name = self._controller.name
+        if self._refused:
+            return Outcome(
+                ErrorCode.CONTROL_FAILED, f"controller '{name}' refused the trajectory; see its log"
+            )
+        if self._result is not None:
+            return self._ended(self._result)
+        if self._client.server_is_ready():
+            self._lost_since_s = 0.0
+        elif not self._lost_since_s:
+            self._lost_since_s = time.monotonic()
+        elif time.monotonic() - self._lost_since_s > SERVER_TIMEOUT_S:
+            return Outcome(
+                ErrorCode.CONTROL_FAILED, f"controller '{name}' ended while it moved the robot"
+            )
+        return None
+
+    def _answered(self, future: Any) -> None:
+        handle = future.result()
+        if handle is None or not handle.accepted:
+            self._refused = True
+            return
+        self._handle = handle
+        handle.get_result_async().add_done_callback(self._has_result)
+        if self._wants_cancel:
+            handle.cancel_goal_async()
+
+    def _has_result(self, future: Any) -> None:
+        self._result = future.result()
+
+    def _ended(self, result: Any) -> Outcome:
+        succeeded = result.status == GoalStatus.STATUS_SUCCEEDED
+        stalled = getattr(result.result, "stalled", False)
+        if succeeded or (stalled and self._controller.stall_is_success):
+            return Outcome(ErrorCode.SUCCESS)
+        name = self._controller.name
+        if result.status == GoalStatus.STATUS_CANCELED:
+            return Outcome(ErrorCode.PREEMPTED, f"controller '{name}' was told to stop")
+        reason = getattr(result.result, "error_string", "") or (
+            "a thing stops the gripper" if stalled else "see its log"
+        )
+        return Outcome(ErrorCode.CONTROL_FAILED, f"controller '{name}' gave up: {reason}")
+
+
+def _goal_message(part: Trajectory, controller: TrajectoryController) -> Any:
+    if controller.kind is ControllerKind.FOLLOW_JOINT_TRAJECTORY:
+        trajectory = trajectory_message("", part).joint_trajectory
+        for point in trajectory.points:
+            # Missing derivatives are NaN here and empty in a message.
+            point.velocities = point.velocities if np.isfinite(point.velocities).all() else []
+            known = np.isfinite(point.accelerations).all()
+            point.accelerations = point.accelerations if known else []
+        return FollowJointTrajectory.Goal(trajectory=trajectory)
+    position = float(part.positions[-1, part.joints.index(controller.joints[0])])
+    if controller.kind is ControllerKind.GRIPPER_COMMAND:
+        goal = GripperCommand.Goal()
+        goal.command.position, goal.command.max_effort = position, controller.max_effort
+        return goal
+    goal = ParallelGripperCommand.Goal()
+    goal.command.name, goal.command.position = [controller.joints[0]], [position]
+    if controller.max_effort:
+        goal.command.effort = [controller.max_effort]
+    return goal
+
+
+def _failure(sentence: str) -> PlanningError:
+    return PlanningError(ErrorCode.CONTROL_FAILED, sentence)

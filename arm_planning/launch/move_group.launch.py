@@ -1,0 +1,94 @@
+"""Motion planning for a robot: the node move_group, for a simulation or a real arm that runs."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+from launch_py import Action, DeclareLaunchArgument, LaunchDescription, Notified, ReadyPanel
+from launch_py.actions import OpaqueFunction
+from launch_py.errors import UsageError
+from launch_py.launch_context import LaunchContext
+from launch_py.ros import Node
+
+INSTALL = "motion planning needs MoveIt's messages: pip install ./arm_moveit_interfaces"
+
+
+def move_group(context: LaunchContext) -> list[Action]:
+    """Return the node with its configuration.
+
+    Raises:
+        UsageError: the configuration cannot be used, or MoveIt's messages are not installed.
+    """
+    # Imported here, so that --show-args needs only this file.
+    from arm_description.errors import DescriptionError
+    from arm_description.resources import ResourceFinder
+    from arm_planning.configuration import move_group_parameters
+    from arm_planning.errors import PlanningError
+
+    words = context.launch_configurations
+    if find_spec("moveit_msgs") is None:
+        raise UsageError(INSTALL)
+    configured = {}
+    if words["moveit_config"]:
+        try:
+            given = words["moveit_config"]
+            folder = ResourceFinder().find(given) if "://" in given else Path(given).expanduser()
+            configured = move_group_parameters(folder)
+        except (PlanningError, DescriptionError) as error:
+            raise UsageError(f"moveit_config:={words['moveit_config']}: {error}") from error
+    own = {
+        "robot_description": words.get("planning_description", ""),
+        "use_sim_time": words["use_sim_time"] == "true",
+        "package_path": words.get("package_path", ""),
+        "seed": seed(words["planning_seed"]),
+    }
+    return [
+        Node(
+            package="arm_planning",
+            executable="move_group",
+            namespace=words.get("namespace", ""),
+            parameters=[{**configured, **own}],
+            ready=Notified(),
+        ),
+        ReadyPanel(
+            title="Motion planning is up",
+            topics=[("/move_action", "moveit_msgs/action/MoveGroup, as MoveIt's move_group")],
+            commands=[("move", "arm move --help")],
+        ),
+    ]
+
+
+def seed(text: str) -> int:
+    """Return the seed in an argument.
+
+    Raises:
+        UsageError: it is no whole number from 0.
+    """
+    if not text.isdecimal():
+        raise UsageError(f"planning_seed:={text} is not a whole number from 0")
+    return int(text)
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the node and its arguments."""
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                "moveit_config",
+                default_value="",
+                description="folder of a MoveIt configuration: SRDF, joint_limits.yaml, "
+                "kinematics.yaml, moveit_controllers.yaml; by default all is made from the URDF",
+            ),
+            DeclareLaunchArgument(
+                "planning_seed",
+                default_value="0",
+                description="seed of the planners: the same request gets the same plan",
+            ),
+            DeclareLaunchArgument(
+                "use_sim_time",
+                default_value="true",
+                choices=["true", "false"],
+                description="the node uses the time of the joint states' stamps",
+            ),
+            OpaqueFunction(function=move_group),
+        ]
+    )
