@@ -77,8 +77,8 @@ def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, 
 
 def pose_message(pose: RigidTransform) -> Pose:
     """Return a pose as a message."""
-    x, y, z = pose.position
-    i, j, k, w = pose.rotation
+    x, y, z = map(float, pose.position)
+    i, j, k, w = map(float, pose.rotation)
     return Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=i, y=j, z=k, w=w))
 
 

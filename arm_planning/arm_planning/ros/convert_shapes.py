@@ -58,20 +58,24 @@ def solid_message(shape: Shape) -> SolidPrimitive | Mesh | PlaneMessage:
     """Return a shape as the message of its kind."""
     match shape:
         case Box(size):
-            return SolidPrimitive(type=SolidPrimitive.BOX, dimensions=list(size))
+            return _primitive(SolidPrimitive.BOX, size)
         case Sphere(radius):
-            return SolidPrimitive(type=SolidPrimitive.SPHERE, dimensions=[radius])
+            return _primitive(SolidPrimitive.SPHERE, (radius,))
         case Cylinder(radius, length):
-            return SolidPrimitive(type=SolidPrimitive.CYLINDER, dimensions=[length, radius])
+            return _primitive(SolidPrimitive.CYLINDER, (length, radius))
         case Cone(radius, height):
-            return SolidPrimitive(type=SolidPrimitive.CONE, dimensions=[height, radius])
+            return _primitive(SolidPrimitive.CONE, (height, radius))
         case Plane(a, b, c, d):
-            return PlaneMessage(coef=[a, b, c, d])
+            return PlaneMessage(coef=[float(number) for number in (a, b, c, d)])
         case TriangleMesh(vertices, triangles):
             return Mesh(
                 vertices=[Point(x=x, y=y, z=z) for x, y, z in vertices.tolist()],
                 triangles=[MeshTriangle(vertex_indices=row) for row in triangles.tolist()],
             )
+
+
+def _primitive(kind: int, sizes: Iterable[float]) -> SolidPrimitive:
+    return SolidPrimitive(type=kind, dimensions=[float(size) for size in sizes])
 
 
 def _placed(
