@@ -24,6 +24,8 @@ SAMPLES = 64
 """Joint positions, or poses, that are drawn for a goal whose middle cannot be reached."""
 ALIKE = 1e-2
 """Goal states that differ by less in each joint are one, in rad or m."""
+WIDE = 0.1
+"""Tolerance of an orientation, in rad, from which other orientations are tried as well."""
 SLACK = 1e-4
 """How much inverse kinematics may miss a tolerance, rad or m."""
 FULL_TURN = 2.0 * math.pi
@@ -131,8 +133,15 @@ class GoalSampler:
         if not goal.positions and not goal.orientations:
             yield self._joint_candidate(goal, None)
             return
-        for link, pose, any_turn in poses_of(goal, self.pose, self.start, None):
+        for link, pose, any_turn in poses_of(self._merged(goal), self.pose, self.start, None):
             yield from self._inverse(link, pose, any_turn, judge, most=1)
+
+    def _merged(self, goal: Constraints) -> Constraints:
+        """Return a goal of a pose with what the constraints on the way say of poses."""
+        return Constraints(
+            positions=goal.positions + self.path.positions,
+            orientations=goal.orientations + self.path.orientations,
+        )
 
     def _candidates(self, goal: Constraints, judge: "_Judge") -> Iterator[Array]:
         """Yield the middle of the goal, then samples if it is wide or its middle is no use."""
@@ -144,13 +153,15 @@ class GoalSampler:
                     return
                 yield self._joint_candidate(goal, random)
             return
-        for link, pose, any_turn in poses_of(goal, self.pose, self.start, None):
+        merged = self._merged(goal)
+        is_wide = _is_wide(merged)
+        for link, pose, any_turn in poses_of(merged, self.pose, self.start, None):
             yield from self._inverse(link, pose, any_turn, judge, most=MOST)
         for index in range(SAMPLES):
-            if judge.accepted and (index >= MOST or not judge.is_wide):
+            if judge.accepted and (index >= MOST or not is_wide):
                 return
             for link, pose, any_turn in poses_of(
-                goal, self.pose, self._random_state(random), random
+                merged, self.pose, self._random_state(random), random
             ):
                 yield from self._inverse(link, pose, any_turn, judge, most=2)
 
@@ -208,9 +219,6 @@ class _Judge:
         self._sampler = sampler
         self._goal = self._evaluator(goal)
         self._path = self._evaluator(sampler.path)
-        self.is_wide = any(max(each.tolerances) > 0.1 for each in goal.orientations) or not (
-            goal.positions and goal.orientations
-        )
         self.accepted = 0
         self._errors: dict[int, PlanningError] = {}
 
@@ -273,6 +281,12 @@ class _Judge:
 
 def _violation(goal: ConstraintEvaluator, q: Array) -> str:
     return next((each.sentence for each in goal.results(q) if each.excess > SLACK), "")
+
+
+def _is_wide(goal: Constraints) -> bool:
+    """Whether a goal leaves so much open that its middle is only one of many."""
+    turns = [max(each.tolerances) for each in goal.orientations]
+    return max(turns, default=0.0) > WIDE or not (goal.positions and goal.orientations)
 
 
 def _is_new(q: Array, others: list[Array]) -> bool:
