@@ -54,7 +54,9 @@ def read_limits(description: str, joints: Sequence[str]) -> Limits:
         PoseError: it is not a URDF, or has no such joint; the message names those that it has.
     """
     try:
-        found = {j.get("name", ""): j for j in ElementTree.fromstring(description).iter("joint")}
+        # Only the robot's own: <ros2_control> and <transmission> name joints as well.
+        joint_elements = ElementTree.fromstring(description).findall("joint")
+        found = {joint.get("name", ""): joint for joint in joint_elements}
         movable = {name: j for name, j in found.items() if j.get("type", "fixed") != "fixed"}
         bounds = {
             name: (float(limit.get("lower", 0.0)), float(limit.get("upper", 0.0)))

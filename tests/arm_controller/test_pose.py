@@ -17,6 +17,7 @@ from arm_controller.pose import (
     read_pose_file,
     shown,
 )
+from arm_description import expand_xacro, resolve_uri
 
 JOINTS = ("j0", "j1", "j2", "j3")
 
@@ -79,6 +80,15 @@ def test_a_pose_on_the_limits_is_allowed_and_one_just_beyond_is_not(limits):
 def test_an_unknown_joint_is_refused_with_those_that_exist():
     with pytest.raises(PoseError, match="no movable joint 'j9'; the robot has turn, slide, wheel"):
         read_limits(ROBOT, ["turn", "j9"])
+
+
+def test_the_arm_of_the_suite_has_the_limits_of_its_description():
+    description = expand_xacro(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
+    assert "<ros2_control" in description  # It names the joints a second time, without type.
+    limits = read_limits(description, JOINTS)
+    assert limits["j0"] == (-2.57, 2.57)
+    with pytest.raises(PoseError, match="joint 'j0' cannot go to 9"):
+        check_limits((9.0, 0.0, 0.0, 0.0), JOINTS, limits)
 
 
 def test_a_robot_without_joints_has_none():
