@@ -163,20 +163,18 @@ class _Followed:
         self._name, self._curve, self._kinematics = name, curve, kinematics
         poses = max(curve.length_m / STEP_M, curve.angle_rad / STEP_RAD)
         count = math.ceil(min(max(poses, 4.0), MOST_POSES))
-        worst = 0.0
         for _ in range(DOUBLINGS + 1):
             self._points = self._follow(start, count)
             self._slopes = np.gradient(self._points, axis=0, edge_order=2)
-            off, worst = self._off_curve()
-            if off <= 1.0:
+            if self._is_on_curve():
                 return
             count *= 2
-        changes = np.abs(np.diff(self._points, axis=0))[int(worst * count)]
-        joint = int(changes.argmax())
+        changes = np.abs(np.diff(self._points, axis=0))
+        step, joint = (int(each) for each in np.unravel_index(changes.argmax(), changes.shape))
         raise PlanningError(
             ErrorCode.PLANNING_FAILED,
             f"{name}: joint '{kinematics.group.joints[joint]}' would have to jump by "
-            f"{changes[joint]:.3g} {self._where(worst)}, near a singularity",
+            f"{changes[step, joint]:.3g} {self._where(step / len(changes))}, near a singularity",
         )
 
     def positions(self, shares: Array) -> Array:
@@ -195,17 +193,15 @@ class _Followed:
                 ) from error
         return np.array(points)
 
-    def _off_curve(self) -> tuple[float, float]:
-        """Return how far the tip leaves the curve, as a part of what it may, and at which share."""
+    def _is_on_curve(self) -> bool:
+        """Return whether the tip stays near the curve half way between the points."""
         count = len(self._points) - 1
         shares = (np.arange(count) + 0.5) / count
-        worst, at = 0.0, 0.0
         for share, q in zip(shares.tolist(), self.positions(shares), strict=True):
             off = PoseLine(self._kinematics.tip_pose(q), self._curve.at(share))
-            size = max(off.length_m / OFF_CURVE_M, off.angle_rad / OFF_CURVE_RAD)
-            if size > worst:
-                worst, at = size, share
-        return worst, at
+            if off.length_m > OFF_CURVE_M or off.angle_rad > OFF_CURVE_RAD:
+                return False
+        return True
 
     def _where(self, share: float) -> str:
         x, y, z = self._curve.at(share).position
