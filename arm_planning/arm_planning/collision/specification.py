@@ -291,9 +291,13 @@ class SceneCompiler:
                 checked.append((first, second))
         self._name_pairs(robot, checked)
         allowed = self._scene.allowed
+        named = {name for pair in allowed.pairs for name in pair} | set(allowed.defaults)
         for thing in self._objects:
             for part in robot:
-                if allowed.may_touch(thing.name, part.name) or thing.name in part.touch:
+                # Of many objects most are nowhere named, and so may touch nothing.
+                known = thing.name in named or part.name in allowed.defaults
+                may = known and allowed.may_touch(thing.name, part.name)
+                if may or thing.name in part.touch:
                     self._spec.add_exclude(bodyname1=thing.body.name, bodyname2=part.body.name)
 
     def _name_pairs(self, robot: list[_Part], checked: list[tuple[_Part, _Part]]) -> None:

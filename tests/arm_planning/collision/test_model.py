@@ -110,6 +110,16 @@ def test_the_base_collides_with_objects_though_it_never_moves():
     assert pairs(slider(box, allowed=allowed), 0.0) == set()
 
 
+@pytest.mark.parametrize(
+    ("defaults", "free"),
+    [({"base": True}, True), ({"box": True}, True), ({"base": True, "box": False}, False)],
+)
+def test_defaults_allow_objects_to_touch(defaults, free):
+    box = thing("box", Box((0.2, 0.2, 0.2)), 0.15, 0.0, 0.0)
+    model = slider(box, allowed=AllowedCollisions({}, defaults))
+    assert model.is_free(np.zeros(1)) == free
+
+
 def test_a_contact_of_the_base_says_what_where_and_how_deep():
     (contact,) = slider(thing("ball", Sphere(0.1), 0.19, 0.0, 0.0)).contacts(np.zeros(1))
     assert str(contact) == "base with ball, 10 mm deep"
