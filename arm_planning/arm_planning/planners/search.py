@@ -1,5 +1,6 @@
 """The suite's own planner: a straight path first, then RRT-Connect, shortcuts and a proof."""
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,6 +17,8 @@ from arm_planning.planners.straight import straight_to_any
 
 Array = NDArray[np.float64]
 
+_logger = logging.getLogger(__name__)
+
 RACE_FACTOR, RACE_EXTRA = 2, 32
 """After the first attempt found a path, the others may take so many iterations altogether."""
 
@@ -24,7 +27,8 @@ RACE_FACTOR, RACE_EXTRA = 2, 32
 class RrtConnectPlanner:
     """Plans by RRT-Connect; the same problem with the same seed has the same answer.
 
-    Iterations are counted, never timed: a busy machine gives the same path later, or none.
+    Iterations are counted, never timed: a busy machine gives the same path later, or none. Of
+    several attempts, those that finish in time count.
     """
 
     def plan(self, problem: PlanningProblem) -> Array:
@@ -46,10 +50,22 @@ class RrtConnectPlanner:
     def _paths(self, problem: PlanningProblem, goals: Array, *, is_proved: bool) -> Iterator[Array]:
         """Yield the path of each attempt that succeeds, shortened and proved."""
         space = space_of(problem, goals, is_proved=is_proved)
-        for attempt, found in race(problem, space, goals):
-            path = shortened_and_proved(problem, space, found, attempt)
-            if path is not None:
-                yield path
+        has_path = False
+        try:
+            for attempt, found in race(problem, space, goals):
+                path = shortened_and_proved(problem, space, found, attempt)
+                if path is not None:
+                    has_path = True
+                    yield path
+        except PlanningError as error:
+            # The time that further attempts lack is no reason to lose the path of a finished one.
+            if error.code is not ErrorCode.TIMED_OUT or not has_path:
+                raise
+            _logger.warning(
+                "the planning time ended before all %d attempts did: the best of those that "
+                "finished is returned, and a busier machine may return another",
+                problem.attempts,
+            )
 
 
 def shortened_and_proved(

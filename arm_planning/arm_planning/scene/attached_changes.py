@@ -9,6 +9,7 @@ from arm_planning.scene.object_changes import (
     ObjectChange,
     Operation,
     check_poses,
+    in_frame,
     joined,
     placed_object,
 )
@@ -68,6 +69,9 @@ def _attached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
         before = replace(known.object, pose=links[known.link].then(known.object.pose))
         body, touching = joined(before, body), touching | known.touch_links
     pose = links[change.link].inverse().then(body.pose)
+    if change.object.shapes and change.object.frame == change.link and known is None:
+        # Clients send scenes back: what is given in the link's own frame stays so to the bit.
+        pose = in_frame(change.object).pose
     attached = AttachedBody(replace(body, pose=pose), change.link, touching)
     objects = {key: each for key, each in scene.objects.items() if key != name}
     return replace(scene, attached={**scene.attached, name: attached}, objects=objects)

@@ -91,7 +91,7 @@ def placed_object(scene: PlanningScene, links: LinkPoses, change: ObjectChange) 
         raise refusal(f"{owner} has no shapes; give it a primitive, a mesh or a plane")
     check_poses(change)
     check_shapes(change.shapes, owner)
-    inside = _in_frame(change)
+    inside = in_frame(change)
     pose = frame_pose(scene, links, change.frame).then(inside.pose)
     return replace(inside, pose=pose)
 
@@ -120,7 +120,7 @@ def joined(known: CollisionObject, added: CollisionObject) -> CollisionObject:
     )
 
 
-def _in_frame(change: ObjectChange) -> CollisionObject:
+def in_frame(change: ObjectChange) -> CollisionObject:
     """Return the object with its pose in the frame of the change."""
     pose, shapes = change.pose, change.shapes
     if pose == NO_POSE and len(shapes) == 1:

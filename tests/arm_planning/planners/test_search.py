@@ -114,6 +114,17 @@ def test_a_deadline_while_shortening_gives_no_half_shortened_path():
         PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, deadline=late))
 
 
+def test_attempts_that_come_too_late_lose_no_path_that_was_found():
+    clock = SteppedClock()
+    three = planar_problem(PlanarArm(POSTS), START, GOAL, attempts=3, deadline=Deadline(1e6, clock))
+    best = PLANNER.plan(three)
+    late = Deadline(clock.readings - 1.0, SteppedClock())
+    path = PLANNER.plan(planar_problem(PlanarArm(POSTS), START, GOAL, attempts=3, deadline=late))
+    assert path[-1].tolist() == GOAL
+    assert all(map(PlanarArm(POSTS).is_free, dense(path)))
+    assert path_length(path) >= path_length(best)
+
+
 def test_a_start_in_collision_is_named():
     problem = planar_problem(PlanarArm(((1.0, 0.0, 0.2),)), [0.0, 0.0], [1.0, 0.0])
     with pytest.raises(

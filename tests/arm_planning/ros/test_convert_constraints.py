@@ -145,3 +145,12 @@ def test_a_request_has_moveits_defaults_and_the_nodes_seed():
     assert (request.allowed_time_s, request.attempts) == (1.0, 1)
     assert not request.path
     assert plan_request(MotionPlanRequest(), 0, frames(), print).goals == ()
+
+
+def test_unequal_tolerances_about_the_axes_of_a_turned_frame_are_refused():
+    turned = RigidTransform((0.0, 0.0, 0.0), (0.0, 0.0, HALF, HALF))
+    message = pose_goal("tip", (0.1, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), "table")
+    assert converted(message, table=turned).orientations
+    message.orientation_constraints[0].absolute_z_axis_tolerance = 3.0
+    with pytest.raises(PlanningError, match="about the axes of 'table', which is turned"):
+        converted(message, table=turned)
