@@ -40,6 +40,7 @@ def move_group(context: LaunchContext) -> list[Action]:
         "use_sim_time": words["use_sim_time"] == "true",
         "package_path": words.get("package_path", ""),
         "seed": seed(words["planning_seed"]),
+        "scene_from_world": words["scene_from_world"] == "true",
     }
     return [
         Node(
@@ -82,6 +83,13 @@ def generate_launch_description() -> LaunchDescription:
                 "planning_seed",
                 default_value="0",
                 description="seed of the planners: the same request gets the same plan",
+            ),
+            DeclareLaunchArgument(
+                "scene_from_world",
+                default_value="false",
+                choices=["true", "false"],
+                description="the simulation's things are objects of the planning scene, as they "
+                "move",
             ),
             DeclareLaunchArgument(
                 "use_sim_time",

@@ -28,6 +28,7 @@ from arm_planning.srdf_maker import make_srdf
 
 URDF, SRDF = "robot_description", "robot_description_semantic"
 PLANNING = "robot_description_planning"
+FOLLOW = "scene_from_world"
 TOPIC_TIMEOUT_S = 10.0
 LOGGER = logging.getLogger("move_group")
 
@@ -43,6 +44,7 @@ class RobotSetup:
         resources: finds the robot's meshes.
         tip_limits: speeds of a group's tip for Pilz' planners.
         seed: seed of all requests.
+        follows_world: whether the simulation's things are objects of the scene.
     """
 
     model: PlanningModel
@@ -51,6 +53,7 @@ class RobotSetup:
     resources: ResourceFinder
     tip_limits: CartesianLimits
     seed: int
+    follows_world: bool
 
 
 def move_group_node() -> Node:
@@ -87,7 +90,8 @@ def read_setup(node: Node) -> RobotSetup:
     limits = joint_limit_settings(given, LOGGER.warning)
     model = planning_model(robot, semantic, limits, LOGGER.warning)
     scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
-    return RobotSetup(model, scene, srdf, resources, cartesian_limits(given), _seed(node))
+    follows = node.has_parameter(FOLLOW) and node.get_parameter(FOLLOW).value is True
+    return RobotSetup(model, scene, srdf, resources, cartesian_limits(given), _seed(node), follows)
 
 
 def values_below(node: Node, prefix: str) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from arm_planning.ros.convert import robot_state_message
 from arm_planning.ros.convert_scene import frames_in, scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.scene_messages import scene_message
+from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
@@ -63,6 +64,8 @@ class SceneMonitor:
         self._lock = threading.Lock()
         self.states = JointStateMonitor(node, model, *others)
         self._frames = _TransformReader(node)
+        self._world: WorldObjects | None = None
+        self._things: frozenset[str] = frozenset()
         self._publisher = node.create_publisher(
             SceneMessage, "monitored_planning_scene", MONITORED_DEPTH
         )
@@ -79,14 +82,34 @@ class SceneMonitor:
         node.create_service(ApplyPlanningScene, "apply_planning_scene", self._serve_apply)
         node.create_timer(1.0 / PUBLISH_HZ, self._publish)
 
+    def follow_world(self, node: Node) -> None:
+        """Let the simulation's things be objects of the scene, from now on and as they move."""
+        self._world = WorldObjects(node, lambda name: self._frames.pose(name, self._model.frame))
+
     @property
     def scene(self) -> PlanningScene:
         """The scene without the latest joint states; the same object until something changes."""
+        self._take_world()
         return self._scene
+
+    def _take_world(self) -> None:
+        if self._world is None:
+            return
+        with self._lock:
+            things = self._world.take()
+            if things is None:
+                return
+            scene = self._scene
+            others = {
+                name: each for name, each in scene.objects.items() if name not in self._things
+            }
+            new = {name: each for name, each in things.items() if name not in scene.attached}
+            self._scene = replace(scene, objects={**new, **others})
+            self._things = frozenset(new) - others.keys()
 
     def current(self) -> PlanningScene:
         """Return the scene with the robot where it is now."""
-        scene, known = self._scene, self.states.positions()
+        scene, known = self.scene, self.states.positions()
         return replace(scene, positions={**scene.positions, **known})
 
     def with_frames(self, scene: PlanningScene, names: Iterable[str]) -> PlanningScene:
@@ -115,9 +138,10 @@ class SceneMonitor:
 
     def change(self, message: SceneMessage) -> str:
         """Change the present scene; return what was not possible, or "". Any thread."""
+        present = self.current()
         with self._lock:
             try:
-                outcome = self.applied(self.current(), message)
+                outcome = self.applied(replace(self._scene, positions=present.positions), message)
             except PlanningError as error:
                 LOGGER.error("%s", error)
                 return str(error)

@@ -1,0 +1,48 @@
+"""Objects of the scene from the simulated world's shapes."""
+
+import numpy as np
+from geometry_msgs.msg import Point, Vector3
+from visualization_msgs.msg import Marker
+
+from arm_description.urdf.robot import Box, Cylinder, Sphere
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.ros.world_objects import objects_of
+from arm_planning.scene.shapes import TriangleMesh
+
+RAISED = RigidTransform((0.0, 0.0, -0.5))
+
+
+def marker(kind: int, number: int = 0, name: str = "thing", x: float = 0.0) -> Marker:
+    message = Marker(ns=name, id=number, type=kind, scale=Vector3(x=0.2, y=0.2, z=0.6))
+    message.pose.position.x = x
+    return message
+
+
+def test_shapes_of_one_name_are_one_object_where_its_first_shape_stands():
+    made = objects_of([marker(Marker.CUBE, 0, x=1.0), marker(Marker.CYLINDER, 1, x=1.5)], RAISED)
+    thing = made["thing"]
+    assert thing.pose.position == (1.0, 0.0, -0.5)
+    box, cylinder = thing.shapes
+    assert (box.shape, box.pose) == (Box((0.2, 0.2, 0.6)), RigidTransform())
+    assert (cylinder.shape, cylinder.pose.position) == (Cylinder(0.1, 0.6), (0.5, 0.0, 0.0))
+
+
+def test_an_ellipsoid_is_the_ball_about_it():
+    made = objects_of([marker(Marker.SPHERE)], RAISED)
+    assert made["thing"].shapes[0].shape == Sphere(0.3)
+
+
+def test_triangles_share_their_corners_and_flat_ones_are_left_out():
+    message = marker(Marker.TRIANGLE_LIST)
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 0)]
+    corners += [(0, 0, 0), (1, 1, 0)]
+    message.points = [Point(x=float(x), y=float(y), z=float(z)) for x, y, z in corners]
+    shape = objects_of([message], RAISED)["thing"].shapes[0].shape
+    assert isinstance(shape, TriangleMesh)
+    assert shape.vertices.shape == (4, 3)
+    assert shape.triangles.shape == (2, 3)
+    assert np.isclose(shape.vertices[shape.triangles[1]].sum(axis=0), (2.0, 2.0, 0.0)).all()
+
+
+def test_what_has_no_solid_shape_is_left_out():
+    assert objects_of([marker(Marker.TEXT_VIEW_FACING), marker(Marker.TRIANGLE_LIST)], RAISED) == {}
