@@ -131,14 +131,13 @@ def limits_of(
         jerk = _maximum(given.has_jerk_limits, given.max_jerk)
         result[joint.name] = JointLimits(lower, upper, velocity, acceleration, jerk)
     assumed = [
-        f"{kind} limit: {listing(names)}"
-        for kind, names in (("velocity", no_velocity), ("acceleration", no_acceleration))
+        f"without {kind} limit: {listing(names)}"
+        for kind, names in (("a velocity", no_velocity), ("an acceleration", no_acceleration))
         if names
     ]
     if assumed:
         warn(
-            f"joints without a {'; without an '.join(assumed)}: these values are assumed, set them "
-            "in joint_limits.yaml"
+            f"joints {'; '.join(assumed)}: these values are assumed, set them in joint_limits.yaml"
         )
     return result
 

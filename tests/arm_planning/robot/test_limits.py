@@ -65,6 +65,12 @@ def test_missing_limits_are_assumed_with_one_warning():
     ]
 
 
+def test_a_missing_acceleration_limit_alone_is_named():
+    warnings: list[str] = []
+    limits(part(), warnings)
+    assert warnings[0].startswith("joints without an acceleration limit: j (")
+
+
 def test_a_file_is_read():
     text = """
       default_velocity_scaling_factor: 0.5
