@@ -1,11 +1,11 @@
 """The node move_group: everything that MoveIt's clients talk to."""
 
 import logging
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from moveit_msgs.msg import DisplayTrajectory
 from moveit_msgs.srv import GetGroupUrdf
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
@@ -17,14 +17,17 @@ from arm_node.executor_thread import ExecutorThread
 from arm_planning.errors import ErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
 from arm_planning.execution.settings import ExecutionSettings
-from arm_planning.request import PlanResponse
 from arm_planning.ros.controller_list import ControllerList
-from arm_planning.ros.convert import error_code, robot_state_message, trajectory_message
+from arm_planning.ros.convert import error_code
+from arm_planning.ros.geometry_files import GeometryFiles
 from arm_planning.ros.move_action import MoveActions
+from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.robot_setup import RobotSetup, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
+from arm_planning.ros.sequence_server import SequenceServer
+from arm_planning.ros.sequence_session import SequenceSession
 from arm_planning.ros.state_services import StateServices
 from arm_planning.ros.trajectory_executor import TrajectoryExecutor
 
@@ -52,14 +55,30 @@ class MoveGroup:
             node, controllers_of_settings(values_below(node, "moveit_simple_controller_manager"))
         )
         executor = TrajectoryExecutor(node, self.monitor.states, controllers.available, settings)
+        display = PlanDisplay(node, setup.model)
+        one_at_a_time = threading.Lock()
         allows = node.get_parameter_or("allow_trajectory_execution", None)
-        self._actions = MoveActions(
-            node, session, executor, allows is None or allows.value is not False
-        )
-        self._plans = PlanningServices(node, session, self._display)
-        self._states = StateServices(node, session)
-        self._display_publisher = node.create_publisher(
-            DisplayTrajectory, "display_planned_path", 10
+        allows_execution = allows is None or allows.value is not False
+        self._served = (
+            MoveActions(
+                node,
+                session,
+                executor,
+                display,
+                one_at_a_time,
+                allows_execution=allows_execution,
+            ),
+            SequenceServer(
+                node,
+                SequenceSession(session),
+                executor,
+                display,
+                one_at_a_time,
+                allows_execution=allows_execution,
+            ),
+            PlanningServices(node, session, display),
+            StateServices(node, session),
+            GeometryFiles(node, setup.model, self.monitor),
         )
         self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)
         self._semantic.publish(String(data=setup.srdf))
@@ -85,14 +104,6 @@ class MoveGroup:
             self._executor.stop()
         else:
             LOGGER.warning("Unknown event type: '%s'; there is 'stop'", event.data)
-
-    def _display(self, response: PlanResponse) -> None:
-        if not self._display_publisher.get_subscription_count():
-            return
-        message = DisplayTrajectory(model_id=self._model.robot.name)
-        message.trajectory = [trajectory_message(self._model.frame, response.trajectory)]
-        message.trajectory_start = robot_state_message(self._model, response.start)
-        self._display_publisher.publish(message)
 
     def _urdf(self, request: Any, answer: GetGroupUrdf.Response) -> GetGroupUrdf.Response:
         if request.group_name not in self._model.groups:

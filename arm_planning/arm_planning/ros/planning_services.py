@@ -1,7 +1,6 @@
 """The services that plan, and those about the planners."""
 
 import logging
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -18,7 +17,6 @@ from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
-from arm_planning.request import PlanResponse
 from arm_planning.ros.convert import (
     error_code,
     pose_of,
@@ -26,6 +24,7 @@ from arm_planning.ros.convert import (
     trajectory_message,
 )
 from arm_planning.ros.convert_constraints import constraints_of
+from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.scene.scene import PlanningScene
 
@@ -35,15 +34,13 @@ LOGGER = logging.getLogger("move_group")
 class PlanningServices:
     """Serves plan_kinematic_path, compute_cartesian_path and the queries about planners."""
 
-    def __init__(
-        self, node: Node, session: PlanningSession, display: Callable[[PlanResponse], None]
-    ) -> None:
+    def __init__(self, node: Node, session: PlanningSession, display: PlanDisplay) -> None:
         """Offer the services; several threads must spin the node.
 
         Args:
             node: gets the services.
             session: plans in the present scene.
-            display: publishes a plan on display_planned_path.
+            display: shows plans.
         """
         self._session = session
         self._display = display
@@ -68,11 +65,10 @@ class PlanningServices:
         if response.trajectory is None:
             LOGGER.error("%s: %s", response.code.name, response.message)
         else:
-            self._display(response)
+            self._display.show(response.start, [response.trajectory])
         return answer
 
     def _cartesian(self, request: Any, answer: GetCartesianPath.Response) -> Any:
-        started_s = time.monotonic()
         session = self._session
         try:
             scene = session.state(request.start_state)
@@ -88,10 +84,7 @@ class PlanningServices:
         answer.error_code = error_code(ErrorCode.SUCCESS, result.stopped)
         if result.stopped:
             LOGGER.warning("%s", result.stopped)
-        elapsed_s = time.monotonic() - started_s
-        self._display(
-            PlanResponse(ErrorCode.SUCCESS, "", dict(scene.positions), result.trajectory, elapsed_s)
-        )
+        self._display.show(scene.positions, [result.trajectory])
         return answer
 
     def _straight(self, request: Any, scene: PlanningScene) -> TimedCartesianPath:

@@ -11,7 +11,7 @@ from moveit_msgs.msg import PlanningScene as SceneMessage
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
 from arm_planning.planner import Planner
-from arm_planning.request import PlanResponse
+from arm_planning.request import PlanRequest, PlanResponse
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert_constraints import Frames, plan_request
 from arm_planning.ros.convert_scene import state_change_of
@@ -56,9 +56,8 @@ class PlanningSession:
 
     def plan(self, request: MotionPlanRequest, diff: SceneMessage | None = None) -> PlanResponse:
         """Plan from the request's start state in the present scene with changes."""
-        self._warn_if_stale()
         try:
-            scene = self._in_state(self._scene(diff), request.start_state)
+            scene = self.in_state(self.scene_for(diff), request.start_state)
             return self._plan(request, scene)
         except PlanningError as error:
             return PlanResponse(error.code, str(error), {}, None, 0.0)
@@ -70,31 +69,63 @@ class PlanningSession:
                 "Execution of motions should always start at the robot's current state. "
                 "Ignoring the state supplied as start state in the motion planning request"
             )
-        if is_given(diff.robot_state):
+        try:
+            return self._plan(request, self.scene_for(diff, from_present=True))
+        except PlanningError as error:
+            return PlanResponse(error.code, str(error), {}, None, 0.0)
+
+    def scene_for(
+        self, diff: SceneMessage | None = None, *, from_present: bool = False
+    ) -> PlanningScene:
+        """Return the scene to plan in: the present one with changes.
+
+        Args:
+            diff: the changes; never a whole scene, whatever it says of itself.
+            from_present: whether the robot stays where it is, because it moves at once.
+
+        Raises:
+            PlanningError: a change is not possible.
+        """
+        self._warn_if_stale()
+        scene = self.monitor.current()
+        if diff is None:
+            return scene
+        if from_present and is_given(diff.robot_state):
             LOGGER.warning(
                 "Execution of motions should always start at the robot's current state. "
                 "Ignoring the state supplied as difference in the planning scene diff"
             )
             diff.robot_state = RobotState(is_diff=True)
-        self._warn_if_stale()
-        try:
-            return self._plan(request, self._scene(diff))
-        except PlanningError as error:
-            return PlanResponse(error.code, str(error), {}, None, 0.0)
+        # As upstream: clients send a default message, which would otherwise clear the scene.
+        diff.is_diff = True
+        return _all_of(self.monitor.applied(scene, diff))
 
-    def watch(self, trajectory: Trajectory) -> Callable[[float], str]:
+    def request(self, message: MotionPlanRequest, scene: PlanningScene) -> PlanRequest:
+        """Return a request without its start state, its frames those of a scene.
+
+        Raises:
+            PlanningError: it names what does not exist.
+        """
+        return plan_request(message, self._setup.seed, self.frames(scene), LOGGER.warning)
+
+    def watch(self, trajectory: Trajectory, planned_in: PlanningScene) -> Callable[[float], str]:
         """Return a function of the time since the start, which says what blocks the rest.
 
         It looks only when the scene has changed since it last looked.
+
+        Args:
+            trajectory: what the robot does.
+            planned_in: the monitor's scene from before the plan, so that changes while it was
+                made count.
         """
-        planned_in = self.monitor.scene
+        seen = planned_in
 
         def blocked(elapsed_s: float) -> str:
-            nonlocal planned_in
+            nonlocal seen
             scene = self.monitor.scene
-            if scene is planned_in:
+            if scene is seen:
                 return ""
-            planned_in = scene
+            seen = scene
             return self.planner.blocked_ahead(trajectory, elapsed_s, self.monitor.current())
 
         return blocked
@@ -105,17 +136,12 @@ class PlanningSession:
 
     def state(self, message: RobotState) -> PlanningScene:
         """Return the present scene with the robot in a state; an empty one is the present state."""
-        return self._in_state(self.monitor.current(), message)
+        return self.in_state(self.monitor.current(), message)
 
     def _plan(self, request: MotionPlanRequest, scene: PlanningScene) -> PlanResponse:
-        core = plan_request(request, self._setup.seed, self.frames(scene), LOGGER.warning)
-        return self.planner.plan(core, scene)
+        return self.planner.plan(self.request(request, scene), scene)
 
-    def _scene(self, diff: SceneMessage | None) -> PlanningScene:
-        scene = self.monitor.current()
-        return scene if diff is None else _all_of(self.monitor.applied(scene, diff))
-
-    def _in_state(self, scene: PlanningScene, state: RobotState) -> PlanningScene:
+    def in_state(self, scene: PlanningScene, state: RobotState) -> PlanningScene:
         """Return the scene with the robot in a state; an empty one changes nothing."""
         if not is_given(state):
             return scene

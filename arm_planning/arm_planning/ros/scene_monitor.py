@@ -150,6 +150,11 @@ class SceneMonitor:
             LOGGER.error("%s", problem)
         return "; ".join(map(str, outcome.problems))
 
+    def update(self, change: Callable[[PlanningScene], PlanningScene]) -> None:
+        """Change the present scene by a function; if it raises, nothing changes. Any thread."""
+        with self._lock:
+            self._scene = change(self.current())
+
     def _hear_scene(self, message: SceneMessage) -> None:
         self.change(message)
 
