@@ -245,6 +245,14 @@ def client() -> Iterator[Client]:
     connected.close()
 
 
+@pytest.fixture(scope="module")
+def client_for_file() -> Iterator[Client]:
+    """Return a default rclpy client that serves all tests of a file."""
+    connected = Client()
+    yield connected
+    connected.close()
+
+
 @pytest.fixture
 def client_in() -> Iterator[Callable[[int], Client]]:
     """Return a function that makes a client in a ROS domain."""
