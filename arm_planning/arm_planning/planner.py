@@ -308,6 +308,9 @@ class Planner:
             violation=evaluator.violation if path else None,
         )
         judge = checker if avoids_collisions else None
+        if len(found.points) < 2:
+            # There is no motion to prove; `stopped` says what is wrong with the start.
+            judge, evaluator = None, self._evaluator(Constraints(), own, scene)
         trajectory = timed_and_proved(
             found.points, own, judge, evaluator, timing, corner=STRAIGHT_CORNER
         )

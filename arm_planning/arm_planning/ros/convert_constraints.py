@@ -163,12 +163,16 @@ def _has_region(message: PositionMessage, warn: Warn) -> bool:
 def _position(message: PositionMessage, frames: Frames, warn: Warn) -> PositionConstraint:
     owner = f"the region of the position constraint on '{message.link_name}'"
     region = message.constraint_region
-    shapes = placed_shapes(
-        owner, region.primitives, region.primitive_poses, region.meshes, region.mesh_poses
-    )
+    try:
+        shapes = placed_shapes(
+            owner, region.primitives, region.primitive_poses, region.meshes, region.mesh_poses
+        )
+        what = f"the offset of '{message.link_name}'"
+        point = vector_of(message.target_point_offset, what)
+    except PlanningError as error:
+        raise _invalid(str(error)) from error
     frame, origin = frames.reference(message.header.frame_id)
     link, offset = frames.link_and_offset(message.link_name)
-    point = vector_of(message.target_point_offset, f"the offset of '{message.link_name}'")
     return PositionConstraint(
         link,
         offset.then(RigidTransform(point)).position,
@@ -182,7 +186,11 @@ def _orientation(message: OrientationMessage, frames: Frames, warn: Warn) -> Ori
     link, offset = frames.link_and_offset(message.link_name)
     frame, origin = frames.reference(message.header.frame_id)
     what = f"the orientation constraint on '{message.link_name}'"
-    wanted = quaternion_product(origin.rotation, quaternion_of(message.orientation, what))
+    try:
+        given = quaternion_of(message.orientation, what)
+    except PlanningError as error:
+        raise _invalid(str(error)) from error
+    wanted = quaternion_product(origin.rotation, given)
     tolerances = (
         message.absolute_x_axis_tolerance,
         message.absolute_y_axis_tolerance,

@@ -1,6 +1,8 @@
 """What the actions have in common: their servers, feedback, ends and cancelling."""
 
 import logging
+import threading
+from collections import deque
 from collections.abc import Callable
 from typing import Any
 
@@ -25,18 +27,59 @@ def action_server(
     name: str,
     serve: Callable[[ServerGoalHandle], Any],
     group: ReentrantCallbackGroup,
+    turns: "Turns | None" = None,
 ) -> ActionServer:
-    """Offer an action that takes every goal and every wish to cancel it."""
+    """Offer an action that takes every goal and every wish to cancel it, each in its turn."""
+
+    def serve_in_turn(goal: ServerGoalHandle) -> Any:
+        try:
+            return serve(goal)
+        finally:
+            if turns is not None:
+                turns.end()
+
     return ActionServer(
         node,
         action,
         name,
-        serve,
+        serve_in_turn,
         callback_group=group,
         goal_callback=lambda _: GoalResponse.ACCEPT,
         cancel_callback=lambda _: CancelResponse.ACCEPT,
+        handle_accepted_callback=_begin if turns is None else turns.take,
         result_timeout=RESULT_TIMEOUT_S,
     )
+
+
+def _begin(goal: ServerGoalHandle) -> None:
+    goal.execute()
+
+
+class Turns:
+    """Lets goals begin one after the other. Those that wait hold no thread of the executor."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._waiting: deque[ServerGoalHandle] = deque()
+        self._is_busy = False
+
+    def take(self, goal: ServerGoalHandle) -> None:
+        """Begin a goal, or let it wait for its turn."""
+        with self._lock:
+            if self._is_busy:
+                self._waiting.append(goal)
+                return
+            self._is_busy = True
+        goal.execute()
+
+    def end(self) -> None:
+        """Begin the next goal."""
+        with self._lock:
+            if not self._waiting:
+                self._is_busy = False
+                return
+            goal = self._waiting.popleft()
+        goal.execute()
 
 
 class Feedback:

@@ -1,7 +1,6 @@
 """The actions move_action and execute_trajectory: plan, execute, watch, replan, cancel."""
 
 import logging
-import threading
 import time
 
 from moveit_msgs.action import ExecuteTrajectory, MoveGroup
@@ -21,6 +20,7 @@ from arm_planning.ros.goals import (
     CANCELLED,
     DEFAULT_REPLANS,
     Feedback,
+    Turns,
     action_server,
     cancellable,
     finish,
@@ -45,7 +45,7 @@ class MoveActions:
         session: PlanningSession,
         executor: TrajectoryExecutor,
         display: PlanDisplay,
-        one_at_a_time: threading.Lock,
+        turns: Turns,
         *,
         allows_execution: bool,
     ) -> None:
@@ -56,36 +56,34 @@ class MoveActions:
             session: plans in the present scene.
             executor: moves the robot.
             display: shows plans.
-            one_at_a_time: held by the goal that plans and moves.
+            turns: of the goals that plan and move.
             allows_execution: false for planning alone.
         """
         self._session = session
         self._executor = executor
         self._allows_execution = allows_execution
         self._display = display
-        self._one_at_a_time = one_at_a_time
         group = ReentrantCallbackGroup()
-        self._move = action_server(node, MoveGroup, "move_action", self._serve_move, group)
+        self._move = action_server(node, MoveGroup, "move_action", self._serve_move, group, turns)
         self._execute = action_server(
             node, ExecuteTrajectory, "execute_trajectory", self._serve_execute, group
         )
 
     def _serve_move(self, goal: ServerGoalHandle) -> MoveGroup.Result:
         feedback = Feedback(goal, MoveGroup.Feedback)
-        with self._one_at_a_time:
-            result = MoveGroup.Result()
-            started_s = time.monotonic()
-            feedback.say("PLANNING")
-            options = goal.request.planning_options
-            plans_only = options.plan_only or not self._allows_execution
-            if goal.is_cancel_requested:
-                outcome = CANCELLED
-            elif plans_only:
-                outcome = self._plan_only(goal, result)
-            else:
-                outcome = self._plan_and_execute(goal, result, feedback)
-            result.planning_time = result.planning_time or time.monotonic() - started_s
-            result.error_code = error_code(outcome.code, outcome.message)
+        result = MoveGroup.Result()
+        started_s = time.monotonic()
+        feedback.say("PLANNING")
+        options = goal.request.planning_options
+        plans_only = options.plan_only or not self._allows_execution
+        if goal.is_cancel_requested:
+            outcome = CANCELLED
+        elif plans_only:
+            outcome = self._plan_only(goal, result)
+        else:
+            outcome = self._plan_and_execute(goal, result, feedback)
+        result.planning_time = result.planning_time or time.monotonic() - started_s
+        result.error_code = error_code(outcome.code, outcome.message)
         finish(goal, outcome)
         feedback.say("IDLE")
         return result

@@ -1,7 +1,6 @@
 """The node move_group: everything that MoveIt's clients talk to."""
 
 import logging
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -20,6 +19,7 @@ from arm_planning.execution.settings import ExecutionSettings
 from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code
 from arm_planning.ros.geometry_files import GeometryFiles
+from arm_planning.ros.goals import Turns
 from arm_planning.ros.move_action import MoveActions
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
@@ -56,7 +56,7 @@ class MoveGroup:
         )
         executor = TrajectoryExecutor(node, self.monitor.states, controllers.available, settings)
         display = PlanDisplay(node, setup.model)
-        one_at_a_time = threading.Lock()
+        turns = Turns()
         allows = node.get_parameter_or("allow_trajectory_execution", None)
         allows_execution = allows is None or allows.value is not False
         self._served = (
@@ -65,7 +65,7 @@ class MoveGroup:
                 session,
                 executor,
                 display,
-                one_at_a_time,
+                turns,
                 allows_execution=allows_execution,
             ),
             SequenceServer(
@@ -73,7 +73,7 @@ class MoveGroup:
                 SequenceSession(session),
                 executor,
                 display,
-                one_at_a_time,
+                turns,
                 allows_execution=allows_execution,
             ),
             PlanningServices(node, session, display),

@@ -17,6 +17,7 @@ from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
+from arm_planning.ros.answering import answering
 from arm_planning.ros.convert import (
     error_code,
     pose_of,
@@ -51,7 +52,7 @@ class PlanningServices:
             "query_planner_interface": (QueryPlannerInterfaces, self._planners),
         }
         for name, (service, serve) in services.items():
-            node.create_service(service, name, serve, callback_group=group)
+            node.create_service(service, name, answering(name, serve), callback_group=group)
 
     def _plan(self, request: Any, answer: GetMotionPlan.Response) -> GetMotionPlan.Response:
         response = self._session.plan(request.motion_plan_request)

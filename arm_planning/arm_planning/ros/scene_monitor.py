@@ -14,6 +14,7 @@ from moveit_msgs.msg import (
 )
 from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.srv import ApplyPlanningScene, GetPlanningScene
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
@@ -80,7 +81,9 @@ class SceneMonitor:
             node.create_subscription(message, topic, take, SERVICES_DEPTH)
         node.create_service(GetPlanningScene, "get_planning_scene", self._serve_get)
         node.create_service(ApplyPlanningScene, "apply_planning_scene", self._serve_apply)
-        node.create_timer(1.0 / PUBLISH_HZ, self._publish)
+        # Not on simulation time: it advances only when somebody reads the joint states.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        node.create_timer(1.0 / PUBLISH_HZ, self._publish, clock=steady)
 
     def follow_world(self, node: Node) -> None:
         """Let the simulation's things be objects of the scene, from now on and as they move."""

@@ -1,7 +1,6 @@
 """The action sequence_move_group and the service plan_sequence_path: Pilz' sequences."""
 
 import logging
-import threading
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -18,6 +17,7 @@ from arm_planning.ros.goals import (
     CANCELLED,
     DEFAULT_REPLANS,
     Feedback,
+    Turns,
     action_server,
     cancellable,
     finish,
@@ -40,7 +40,7 @@ class SequenceServer:
         sequences: SequenceSession,
         executor: TrajectoryExecutor,
         display: PlanDisplay,
-        one_at_a_time: threading.Lock,
+        turns: Turns,
         *,
         allows_execution: bool,
     ) -> None:
@@ -51,17 +51,16 @@ class SequenceServer:
             sequences: plans in the present scene.
             executor: moves the robot.
             display: shows plans.
-            one_at_a_time: held by the goal that plans and moves.
+            turns: of the goals that plan and move.
             allows_execution: false for planning alone.
         """
         self._sequences = sequences
         self._executor = executor
         self._display = display
-        self._one_at_a_time = one_at_a_time
         self._allows_execution = allows_execution
         group = ReentrantCallbackGroup()
         self._action = action_server(
-            node, MoveGroupSequence, "sequence_move_group", self._serve, group
+            node, MoveGroupSequence, "sequence_move_group", self._serve, group, turns
         )
         node.create_service(
             GetMotionSequence, "plan_sequence_path", self._serve_plan, callback_group=group
@@ -82,16 +81,15 @@ class SequenceServer:
         executes = self._allows_execution and not options.plan_only
         attempts = (options.replan_attempts or DEFAULT_REPLANS) if options.replan else 1
         outcome = CANCELLED
-        with self._one_at_a_time:
-            for _ in range(attempts if executes else 1):
-                if goal.is_cancel_requested:
-                    outcome = CANCELLED
-                    break
-                outcome = self._attempt(goal, result, feedback, executes=executes)
-                if outcome.code is not ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
-                    break
-                time.sleep(max(options.replan_delay, 0.0))
-            result.response.error_code = error_code(outcome.code, outcome.message)
+        for _ in range(attempts if executes else 1):
+            if goal.is_cancel_requested:
+                outcome = CANCELLED
+                break
+            outcome = self._attempt(goal, result, feedback, executes=executes)
+            if outcome.code is not ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
+                break
+            time.sleep(max(options.replan_delay, 0.0))
+        result.response.error_code = error_code(outcome.code, outcome.message)
         finish(goal, outcome)
         feedback.say("IDLE")
         return result

@@ -13,6 +13,7 @@ from rclpy.node import Node
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import Contact
 from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.ros.answering import answering
 from arm_planning.ros.convert import (
     error_code,
     pose_message,
@@ -41,7 +42,7 @@ class StateServices:
             "check_state_validity": (GetStateValidity, self._validity),
         }
         for name, (service, serve) in services.items():
-            node.create_service(service, name, serve, callback_group=group)
+            node.create_service(service, name, answering(name, serve), callback_group=group)
 
     def _inverse(self, request: Any, answer: GetPositionIK.Response) -> GetPositionIK.Response:
         try:
