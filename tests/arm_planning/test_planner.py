@@ -1,0 +1,83 @@
+"""The face of planning without ROS, on the myCobot."""
+
+from dataclasses import replace
+
+import pytest
+from planning_models import MYCOBOT
+
+from arm_description import expand_xacro
+from arm_description.resources import ResourceFinder
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.planner import Planner
+from arm_planning.request import PlanRequest
+from arm_planning.scene.objects import CollisionObject, PlacedShape
+from arm_planning.scene.shapes import Box
+
+BENT = (0.0, -0.7, -1.0, 0.2, 0.0, 0.0)
+TURN = "link1_to_link2"
+
+
+@pytest.fixture(scope="module")
+def made() -> Planner:
+    finder = ResourceFinder()
+    return Planner.of_urdf(expand_xacro(finder.find(MYCOBOT)), resources=finder)
+
+
+@pytest.fixture
+def planner(made: Planner) -> Planner:
+    """A planner with the arm bent, and nothing around it."""
+    bent = dict(zip(made.model.group("arm").joints, BENT, strict=True))
+    made.scene = replace(made.scene, positions={**made.scene.positions, **bent}, objects={})
+    return made
+
+
+def put_floor(planner: Planner, below_m: float) -> RigidTransform:
+    """Put a plate below the flange; return the pose of the flange at its centre."""
+    flange = planner.link_pose("link6_flange")
+    x, y, z = flange.position
+    centre = RigidTransform((x, y, z - below_m))
+    plate = CollisionObject("floor", centre, (PlacedShape(Box((0.3, 0.3, 0.02))),))
+    planner.scene = replace(planner.scene, objects={"floor": plate})
+    return RigidTransform(centre.position, flange.rotation)
+
+
+def test_a_straight_path_from_a_start_in_collision_stays_there_and_says_why(planner):
+    end = put_floor(planner, 0.08)
+    assert planner.contacts("arm")
+    found = planner.cartesian_path("arm", [end], max_step_m=0.005, link="link6_flange")
+    assert found.fraction == 0.0
+    assert len(found.trajectory.positions) == 1
+    assert "floor" in found.stopped
+
+
+def test_a_plan_from_a_start_in_collision_names_what_touches(planner):
+    put_floor(planner, 0.08)
+    with pytest.raises(PlanningError, match="floor") as caught:
+        planner.move("arm", {TURN: 0.5})
+    assert caught.value.code is ErrorCode.START_STATE_IN_COLLISION
+
+
+def test_a_start_slightly_outside_is_moved_inside_and_said(planner):
+    limit = planner.model.group("arm").limits[0].upper
+    goal = planner.plan(PlanRequest("arm", (), start={TURN: limit + 0.02}))
+    assert goal.code is ErrorCode.START_STATE_INVALID
+    planner.scene = replace(
+        planner.scene, positions={**planner.scene.positions, TURN: limit + 0.005}
+    )
+    trajectory = planner.move("arm", {TURN: 1.0})
+    assert trajectory.positions[0, 0] == limit
+    assert trajectory.positions[-1, 0] == pytest.approx(1.0, abs=2e-4)
+
+
+def test_a_thing_put_into_the_way_blocks_only_what_is_ahead(planner):
+    trajectory = planner.move("arm", {TURN: 1.0})
+    assert planner.blocked_ahead(trajectory, 0.0) == ""
+    middle = trajectory.positions[len(trajectory.positions) // 2]
+    joints = dict(zip(trajectory.joints, middle.tolist(), strict=True))
+    there = replace(planner.scene, positions={**planner.scene.positions, **joints})
+    centre = RigidTransform(planner.link_pose("link6_flange", there).position)
+    thing = CollisionObject("thing", centre, (PlacedShape(Box((0.02, 0.02, 0.02))),))
+    blocked = replace(planner.scene, objects={"thing": thing})
+    assert "thing" in planner.blocked_ahead(trajectory, 0.0, blocked)
+    assert planner.blocked_ahead(trajectory, trajectory.duration_s, blocked) == ""
