@@ -8,6 +8,7 @@ from planning_models import MYCOBOT
 from arm_description import expand_xacro
 from arm_description.resources import ResourceFinder
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.constraints.constraints import pose_goal
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.request import PlanRequest
@@ -81,3 +82,18 @@ def test_a_thing_put_into_the_way_blocks_only_what_is_ahead(planner):
     blocked = replace(planner.scene, objects={"thing": thing})
     assert "thing" in planner.blocked_ahead(trajectory, 0.0, blocked)
     assert planner.blocked_ahead(trajectory, trajectory.duration_s, blocked) == ""
+
+
+def test_the_line_of_pilz_does_not_lead_through_a_thing(planner):
+    end = put_floor(planner, 0.08)
+    floor = planner.scene.objects["floor"]
+    x, y, z = floor.pose.position
+    low = replace(floor, pose=RigidTransform((x, y, z - 0.06)))
+    planner.scene = replace(planner.scene, objects={"floor": low})
+    assert not planner.contacts("arm")
+    goal = (pose_goal("link6_flange", end),)
+    response = planner.plan(
+        PlanRequest("arm", goal, pipeline="pilz_industrial_motion_planner", planner="LIN")
+    )
+    assert response.trajectory is None
+    assert "floor" in response.message
