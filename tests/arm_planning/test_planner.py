@@ -1,14 +1,17 @@
 """The face of planning without ROS, on the myCobot."""
 
 from dataclasses import replace
+from itertools import pairwise
 
+import numpy as np
 import pytest
+from collision_judge import Judge
 from planning_models import MYCOBOT
 
 from arm_description import expand_xacro
 from arm_description.resources import ResourceFinder
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.constraints.constraints import pose_goal
+from arm_planning.constraints.constraints import joint_goal, pose_goal
 from arm_planning.errors import ErrorCode, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.request import PlanRequest
@@ -97,3 +100,30 @@ def test_the_line_of_pilz_does_not_lead_through_a_thing(planner):
     )
     assert response.trajectory is None
     assert "floor" in response.message
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_every_state_of_a_plan_among_random_boxes_is_free(planner, seed):
+    random = np.random.default_rng(seed)
+    arm = planner.model.group("arm").joints
+    goal = dict(zip(arm, (1.5, -0.5, -1.2, 0.4, 0.3, 0.2), strict=True))
+    crowded = planner.scene
+    while len(crowded.objects) < 8:
+        place = RigidTransform(tuple(random.uniform((-0.3, -0.3, 0.0), (0.3, 0.3, 0.4)).tolist()))
+        name = f"box{len(crowded.objects)}"
+        thing = CollisionObject(name, place, (PlacedShape(Box((0.05, 0.05, 0.05))),))
+        more = replace(crowded, objects={**crowded.objects, name: thing})
+        at_goal = replace(more, positions={**more.positions, **goal})
+        if not planner.contacts("arm", more) and not planner.contacts("arm", at_goal):
+            crowded = more
+    request = PlanRequest("arm", (joint_goal(goal),), seed=seed, allowed_time_s=20.0)
+    found, again = planner.plan(request, crowded), planner.plan(request, crowded)
+    assert found.trajectory is not None, found.message
+    assert again.trajectory is not None, again.message
+    path = found.trajectory.positions
+    assert path.tobytes() == again.trajectory.positions.tobytes()
+    judge = Judge(planner.model, crowded)
+    for a, b in pairwise(path):
+        for fraction in np.linspace(0.0, 1.0, 2 + int(np.abs(b - a).max() / 0.01)):
+            q = dict(zip(arm, (a + fraction * (b - a)).tolist(), strict=True))
+            assert judge.is_free({**crowded.positions, **q})
