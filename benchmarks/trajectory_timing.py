@@ -25,7 +25,7 @@ import numpy as np
 import toppra
 from toppra import algorithm, constraint, interpolator
 
-from arm_planning.robot.model import JointLimits
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import DrivenSpline
 from arm_planning.timing.parameterize import PATH_TOLERANCE, parameterize
 from arm_planning.timing.rounded_path import RoundedPath, rounded_paths
@@ -97,7 +97,7 @@ def worked(job: Callable[[], Any]) -> tuple[Any, float]:
 
 def own(points: np.ndarray) -> Answer:
     """Time a path with the suite."""
-    limits = [JointLimits(-np.pi, np.pi, VELOCITY, ACCELERATION)] * JOINTS
+    limits = [PlanningLimits(-np.pi, np.pi, VELOCITY, ACCELERATION)] * JOINTS
     joints = [f"j{number}" for number in range(JOINTS)]
     found, work_s = worked(lambda: parameterize(points, limits, joints=joints))
     times = np.arange(0.0, found.duration_s, 1e-3)

@@ -6,8 +6,8 @@ from robots import joint, link, robot
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
@@ -54,14 +54,14 @@ def point(offset, at=TIP):
 
 def pose_goal(offset, rotation=TIP.rotation, link="l6", at=TIP):
     """The tip's pose at the start, moved."""
-    return Constraints(
+    return MotionConstraints(
         positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (point(offset, at),)),),
         orientations=(OrientationConstraint(link, rotation, (1e-3,) * 3),),
     )
 
 
 def joint_goal(*positions, names=NAMES):
-    return Constraints(
+    return MotionConstraints(
         joints=tuple(
             JointConstraint(name, position, 0.0, 0.0)
             for name, position in zip(names, positions, strict=True)
@@ -71,7 +71,7 @@ def joint_goal(*positions, names=NAMES):
 
 def auxiliary(name, offset, link="l6"):
     """Path constraints with the point of CIRC."""
-    return Constraints(
+    return MotionConstraints(
         positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (point(offset),)),), name=name
     )
 

@@ -8,10 +8,10 @@ import numpy as np
 from robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
-from arm_planning.constraints.constraints import Constraints
+from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, PlanningProblem
-from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+from arm_planning.robot.model import JointGroup, PlanningLimits, PlanningModel
 
 FLOOR_M = 1e-4
 Disc = tuple[float, float, float]
@@ -106,7 +106,7 @@ def planar_model(joints: int, limit: float = 3.0) -> PlanningModel:
             for index, name in enumerate(names)
         ),
     )
-    limits = (JointLimits(-limit, limit, 3.0, 3.0),) * joints
+    limits = (PlanningLimits(-limit, limit, 3.0, 3.0),) * joints
     group = JointGroup("arm", names, (False,) * joints, limits, links[1:], "l0", links[-1])
     return PlanningModel(parse_urdf(text), "l0", names, {"arm": group})
 
@@ -128,7 +128,7 @@ def planar_problem(
     arm: PlanarArm,
     start: list[float],
     *goals: list[float],
-    path: Constraints | None = None,
+    path: MotionConstraints | None = None,
     deadline: Deadline = NO_DEADLINE,
     seed: int = 0,
     attempts: int = 1,

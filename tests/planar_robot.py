@@ -1,7 +1,7 @@
 """A planar arm with a gripper finger, for tests of planning."""
 
 from arm_description import Robot, parse_urdf
-from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+from arm_planning.robot.model import JointGroup, PlanningLimits, PlanningModel
 
 PLANAR = """
 <robot name="planar">
@@ -34,7 +34,7 @@ def planar_robot() -> Robot:
 def planar_model() -> PlanningModel:
     """Return the arm with one group, `arm`, and one named state, `folded`."""
     robot = planar_robot()
-    limits = (JointLimits(-3.0, 3.0, 2.0, 4.0), JointLimits(-2.5, 2.5, 2.0, 4.0))
+    limits = (PlanningLimits(-3.0, 3.0, 2.0, 4.0), PlanningLimits(-2.5, 2.5, 2.0, 4.0))
     group = JointGroup(
         "arm",
         ("shoulder", "elbow"),

@@ -5,7 +5,7 @@ import math
 from arm_description import expand_xacro, parse_urdf
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Robot
-from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+from arm_planning.robot.model import JointGroup, PlanningLimits, PlanningModel
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 
 MYCOBOT = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
@@ -31,7 +31,7 @@ def group_of(robot: Robot, name: str, joints: tuple[str, ...], tip: str) -> Join
     """A group with the limits of the URDF, and 3 per s^2."""
     found = [robot.joint(joint) for joint in joints]
     limits = tuple(
-        JointLimits(
+        PlanningLimits(
             -math.inf if joint.type.wraps or joint.limit is None else joint.limit.lower,
             math.inf if joint.type.wraps or joint.limit is None else joint.limit.upper,
             joint.limit.velocity if joint.limit is not None else 3.0,

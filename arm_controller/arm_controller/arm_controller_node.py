@@ -10,7 +10,7 @@ from rclpy.timer import Timer
 from arm_controller.pose import Pose, PoseError, read_pose, shown
 from arm_controller.ros_arm import CONTROLLER, POLL_S, JointReadings, PositionCommands
 from arm_controller.ros_node import (
-    NodeParameterError,
+    NodeSettingError,
     declare,
     declare_joints,
     given,
@@ -52,7 +52,7 @@ class ArmController(Node):
         try:
             self._line.format(name="", index=0, position="", velocity="", effort="")
         except (ValueError, LookupError, AttributeError) as error:
-            raise NodeParameterError(
+            raise NodeSettingError(
                 f"parameter print_format: '{self._line}' may contain {{name}}, {{index}}, "
                 "{position}, {velocity} and {effort}"
             ) from error
@@ -70,7 +70,7 @@ class ArmController(Node):
         numbers = numbers_in(value)
         if numbers is None:
             wanted = f"a list of {len(self._joints)} numbers"
-            raise NodeParameterError(f"parameter desired_param: must be {wanted}, not {value!r}")
+            raise NodeSettingError(f"parameter desired_param: must be {wanted}, not {value!r}")
         self.add_pre_set_parameters_callback(lambda changed: [_in_doubles(one) for one in changed])
         self.add_on_set_parameters_callback(self._check_parameters)
         self.add_post_set_parameters_callback(self._apply_parameters)
@@ -79,7 +79,7 @@ class ArmController(Node):
         self.declare_parameter("desired_param", kind, descriptor, ignore_override=True)
         (result,) = self.set_parameters([Parameter("desired_param", kind, numbers)])
         if not result.successful:
-            raise NodeParameterError(result.reason)
+            raise NodeSettingError(result.reason)
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         try:

@@ -21,7 +21,7 @@ from arm_controller.pick_plan import (
 from arm_controller.pose import ArmControllerError
 from arm_controller.ros_arm import LATCHED
 from arm_controller.ros_arm_actions import POLL_S, ArmActions
-from arm_controller.ros_node import NodeParameterError, declare, given, numbers_in, run
+from arm_controller.ros_node import NodeSettingError, declare, given, numbers_in, run
 
 TOPIC = "robot_description"
 DEFAULT = PickTask()
@@ -39,7 +39,7 @@ class PickAndPlaceNode(Node):
         super().__init__("mycobot_pick_and_place")
         place = numbers_in(given(self, "position", [DEFAULT.x, DEFAULT.y]))
         if place is None or len(place) != 2 or not all(map(isfinite, place)):
-            raise NodeParameterError("parameter position: must be a list of two numbers, x and y")
+            raise NodeSettingError("parameter position: must be a list of two numbers, x and y")
         x, y = place
         about = "Position of the object, x and y in the frame of the robot's base (m)"
         descriptor = ParameterDescriptor(description=about, read_only=True)

@@ -8,6 +8,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from types import FrameType
 from typing import Any, TypeVar
 
 import rclpy
@@ -23,11 +24,13 @@ from arm_controller.pose import ArmControllerError
 
 TIMES_S = (0.001, 1e9)
 """Shortest and longest time of a parameter: thirty years fit into ROS's 64 bits of nanoseconds."""
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""The signals that end a program."""
 NodeT = TypeVar("NodeT", bound=Node)
 ValueT = TypeVar("ValueT")
 
 
-class NodeParameterError(ArmControllerError):
+class NodeSettingError(ArmControllerError):
     """A parameter has an invalid value; the message names it and says what it must be."""
 
 
@@ -44,14 +47,21 @@ def run(make_node: Callable[[], NodeT], work: Callable[[NodeT], int | None] | No
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join(dict.fromkeys([*prefixes, sys.prefix]))
     node, has_ros = None, False
+    interrupts: list[int] = []
+
+    def interrupt(number: int, _frame: FrameType | None) -> None:
+        interrupts.append(number)
+        raise KeyboardInterrupt
+
     try:
+        # With its own handlers, rclpy calls this one too, and ends `rclpy.spin` at SIGTERM.
+        for number in (signal.SIGINT,) if work is None else ENDING:
+            if signal.getsignal(number) != signal.SIG_IGN:  # As under nohup.
+                signal.signal(number, interrupt)
         if work is None:
             rclpy.init()
         else:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-            for number in (signal.SIGTERM, signal.SIGHUP):
-                if signal.getsignal(number) != signal.SIG_IGN:  # As under nohup.
-                    signal.signal(number, signal.default_int_handler)
         has_ros = True
         node = make_node()
         return (work or rclpy.spin)(node) or 0
@@ -61,8 +71,10 @@ def run(make_node: Callable[[], NodeT], work: Callable[[NodeT], int | None] | No
         get_logger(os.path.basename(sys.argv[0])).fatal(str(error))
         return 1
     except Exception as error:
-        if has_ros and not ok():
-            return 0  # The signal came while the node was made, or while rclpy was about to wait.
+        if interrupts or (has_ros and not ok()):
+            # The signal came while the node was made, while rclpy was about to wait, or while it
+            # converted a message, which turns KeyboardInterrupt into a RuntimeError.
+            return 0
         if node is not None or not isinstance(error, RuntimeError):
             raise
         # rclpy refuses an argument, a file or a name.
@@ -93,7 +105,7 @@ def declare(
 
     Raises:
         ParameterException: the given value has another type, or is out of bounds.
-        NodeParameterError: it is an empty list.
+        NodeSettingError: it is an empty list.
     """
     descriptor = ParameterDescriptor(description=about, read_only=read_only)
     is_whole, value = False, default
@@ -105,7 +117,7 @@ def declare(
         value = float(number) if is_whole else default
     made: Any = node.declare_parameter(name, value, descriptor, ignore_override=is_whole)
     if made.value is None:  # rclpy takes [] for a parameter of any type.
-        raise NodeParameterError(f"parameter {name}: must not be an empty list")
+        raise NodeSettingError(f"parameter {name}: must not be an empty list")
     return made.value
 
 
@@ -132,12 +144,12 @@ def declare_joints(node: Node, default: tuple[str, ...] = ("j0", "j1", "j2", "j3
     """Declare the parameter `joints`, and return it: the joints of a pose, in its order.
 
     Raises:
-        NodeParameterError: a name is empty, or there twice.
+        NodeSettingError: a name is empty, or there twice.
     """
     about = "Joints of a pose, in its controller's order"
     names = declare(node, "joints", list(default), about)
     if not all(names) or len(set(names)) < len(names):
-        raise NodeParameterError(f"parameter joints: must be different names, not {names}")
+        raise NodeSettingError(f"parameter joints: must be different names, not {names}")
     return names
 
 

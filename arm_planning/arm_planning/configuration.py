@@ -10,7 +10,7 @@ from typing import Any
 
 from arm_node.limited_yaml import YamlError, load_yaml
 from arm_node.user_file import read_text
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 
 PLANNING = "robot_description_planning"
 SEMANTIC = "robot_description_semantic"
@@ -81,4 +81,4 @@ def _text(path: Path) -> str:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.FAILURE, sentence)
+    return PlanningError(MoveItErrorCode.FAILURE, sentence)

@@ -8,7 +8,7 @@ PlanningError            a request that cannot be answered, or a plan that was n
 from enum import IntEnum
 
 
-class ErrorCode(IntEnum):
+class MoveItErrorCode(IntEnum):
     """The values of moveit_msgs/MoveItErrorCodes."""
 
     SUCCESS = 1
@@ -51,7 +51,7 @@ class PlanningError(Exception):
         code: MoveIt's code of the failure.
     """
 
-    def __init__(self, code: ErrorCode, message: str) -> None:
+    def __init__(self, code: MoveItErrorCode, message: str) -> None:
         super().__init__(message)
         self.code = code
 
@@ -60,7 +60,7 @@ class SrdfError(PlanningError):
     """An SRDF that cannot be used; the message names the element and its line."""
 
     def __init__(self, message: str) -> None:
-        super().__init__(ErrorCode.FAILURE, message)
+        super().__init__(MoveItErrorCode.FAILURE, message)
 
 
 class MissingOmplError(PlanningError):
@@ -68,6 +68,6 @@ class MissingOmplError(PlanningError):
 
     def __init__(self) -> None:
         super().__init__(
-            ErrorCode.PLANNING_FAILED,
+            MoveItErrorCode.PLANNING_FAILED,
             "OMPL's planners need the package ompl: pip install 'arm-suite[ompl]'",
         )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Joint, Robot
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ def kinematic_tree(
     """
     if len(robot.links) > MAX_LINKS:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"robot '{robot.name}' has {len(robot.links)} links; planning takes {MAX_LINKS}",
         )
     spec = mujoco.MjSpec()

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.collision.contact import Contact
+from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
 from arm_planning.constraints.evaluation import ConstraintEvaluator
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.timing.driven_spline import chord_deviation
 from arm_planning.timing.parameterize import parameterize
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def start_state(model: PlanningModel, group: JointGroup, scene: PlanningScene) -
     missing = [joint for joint in group.joints if joint not in scene.positions]
     if missing:
         raise PlanningError(
-            ErrorCode.START_STATE_INVALID,
+            MoveItErrorCode.START_STATE_INVALID,
             f"the position of joint {', '.join(missing)} is not known; is it in /joint_states?",
         )
     moved: dict[str, float] = {}
@@ -58,7 +58,7 @@ def start_state(model: PlanningModel, group: JointGroup, scene: PlanningScene) -
         inside = min(max(position, limit.lower), limit.upper)
         if abs(position - inside) > START_TOLERANCE:
             raise PlanningError(
-                ErrorCode.START_STATE_INVALID,
+                MoveItErrorCode.START_STATE_INVALID,
                 f"Start state out of bounds: joint '{joint}' is at {position:.4f}, outside its "
                 f"range [{limit.lower:.4f}, {limit.upper:.4f}] by {abs(position - inside):.4f}; "
                 f"move it inside (up to {START_TOLERANCE:g} is corrected)",
@@ -93,11 +93,11 @@ class SceneChecker:
         """Return None if every state on a polyline, and within the deviation of it, is free."""
         return self.proof.prove(path, deviation)
 
-    def prove_driven(self, trajectory: Trajectory) -> Obstruction | None:
+    def prove_driven(self, trajectory: TimedTrajectory) -> Obstruction | None:
         """Return None if the points' lines and the curve that a controller drives are free."""
         return self.prove(trajectory.positions, chord_deviation(trajectory))
 
-    def contacts(self, q: Array) -> tuple[Contact, ...]:
+    def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
         """Return what touches at positions of the group."""
         return self.model.contacts(q)
 
@@ -122,7 +122,7 @@ def timed_and_proved(
     constraints: ConstraintEvaluator,
     timing: Timing,
     corner: float = CORNER_TOLERANCE,
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return a trajectory along a path, every state of which is proved free.
 
     Proved are the lines between the returned points and the curve that a controller drives.
@@ -161,13 +161,15 @@ def timed_and_proved(
         open_corners = [index for index in nearby if corners[index] > 0.0]
         if not open_corners:
             raise PlanningError(
-                ErrorCode.INVALID_MOTION_PLAN, f"the timed motion is not free: {problem}"
+                MoveItErrorCode.INVALID_MOTION_PLAN, f"the timed motion is not free: {problem}"
             )
         corners[open_corners] *= TIGHTENING
         corners[corners < SMALLEST_CORNER] = 0.0
 
 
-def _violation(trajectory: Trajectory, constraints: ConstraintEvaluator) -> tuple[int | None, str]:
+def _violation(
+    trajectory: TimedTrajectory, constraints: ConstraintEvaluator
+) -> tuple[int | None, str]:
     if not constraints.constraints:
         return None, ""
     last = len(trajectory.positions) - 2

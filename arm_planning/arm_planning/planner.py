@@ -12,12 +12,12 @@ from arm_description.resources import ResourceFinder
 from arm_description.urdf.parser import parse_urdf
 from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.collision.contact import Contact
+from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
-from arm_planning.constraints.constraints import Constraints, joint_goal, pose_goal
+from arm_planning.constraints.constraints import MotionConstraints, joint_goal, pose_goal
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform
 from arm_planning.kinematics.group_kinematics import GroupKinematics
@@ -37,7 +37,7 @@ from arm_planning.robot.srdf import parse_srdf
 from arm_planning.scene.allowed_collisions import allowed_collisions
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.srdf_maker import make_srdf
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 OMPL, PILZ = "ompl", "pilz_industrial_motion_planner"
@@ -61,7 +61,7 @@ class TimedCartesianPath:
         stopped: why and where it stops; "" if it reaches the end.
     """
 
-    trajectory: Trajectory
+    trajectory: TimedTrajectory
     fraction: float
     stopped: str
 
@@ -138,7 +138,7 @@ class Planner:
         if request.start:
             scene = replace(scene, positions={**scene.positions, **request.start})
         start: JointPositions = scene.positions
-        trajectory, code = None, ErrorCode.SUCCESS
+        trajectory, code = None, MoveItErrorCode.SUCCESS
         try:
             group = self._group(request.group)
             begin = start_state(self.model, group, scene)
@@ -163,7 +163,7 @@ class Planner:
         timing: Timing = FULL_SPEED,
         seed: int = 0,
         scene: PlanningScene | None = None,
-    ) -> Trajectory:
+    ) -> TimedTrajectory:
         """Return a motion from the scene's state to a goal.
 
         Args:
@@ -192,7 +192,9 @@ class Planner:
             raise PlanningError(response.code, response.message)
         return response.trajectory
 
-    def contacts(self, group: str = "", scene: PlanningScene | None = None) -> tuple[Contact, ...]:
+    def contacts(
+        self, group: str = "", scene: PlanningScene | None = None
+    ) -> tuple[CollisionContact, ...]:
         """Return what touches in the scene's state, the deepest contact of each pair.
 
         Args:
@@ -224,7 +226,7 @@ class Planner:
         link: tuple[str, RigidTransform] | None = None,
         timeout_s: float = 0.0,
         avoids_collisions: bool = False,
-        constraints: Constraints | None = None,
+        constraints: MotionConstraints | None = None,
         scene: PlanningScene | None = None,
     ) -> dict[str, float]:
         """Return the positions of all active joints with a link at a pose.
@@ -271,7 +273,7 @@ class Planner:
         relative: bool = False,
         jumps: JumpLimits = NO_JUMP_LIMITS,
         avoids_collisions: bool = True,
-        path: Constraints = Constraints(),
+        path: MotionConstraints = MotionConstraints(),
         timing: Timing = FULL_SPEED,
         scene: PlanningScene | None = None,
     ) -> TimedCartesianPath:
@@ -310,7 +312,7 @@ class Planner:
         judge = checker if avoids_collisions else None
         if len(found.points) < 2:
             # There is no motion to prove; `stopped` says what is wrong with the start.
-            judge, evaluator = None, self._evaluator(Constraints(), own, scene)
+            judge, evaluator = None, self._evaluator(MotionConstraints(), own, scene)
         trajectory = timed_and_proved(
             found.points, own, judge, evaluator, timing, corner=STRAIGHT_CORNER
         )
@@ -318,7 +320,7 @@ class Planner:
 
     def sequence(
         self, items: Sequence[SequenceItem], scene: PlanningScene | None = None
-    ) -> tuple[Trajectory, ...]:
+    ) -> tuple[TimedTrajectory, ...]:
         """Return the motions of Pilz' planners one after the other, blended where asked for.
 
         Raises:
@@ -342,7 +344,7 @@ class Planner:
             obstruction = checker.prove_driven(trajectory)
             if obstruction is not None:
                 raise PlanningError(
-                    ErrorCode.INVALID_MOTION_PLAN,
+                    MoveItErrorCode.INVALID_MOTION_PLAN,
                     f"the motion is not free: {obstruction}; Pilz' planners go around nothing, "
                     "the pipeline 'ompl' does",
                 )
@@ -350,7 +352,7 @@ class Planner:
         return found
 
     def evaluate(
-        self, constraints: Constraints, scene: PlanningScene | None = None
+        self, constraints: MotionConstraints, scene: PlanningScene | None = None
     ) -> tuple[ConstraintResult, ...]:
         """Return what each constraint says about the scene's state."""
         scene = scene or self.scene
@@ -365,7 +367,7 @@ class Planner:
         return evaluator.results(every.positions(scene.positions))
 
     def blocked_ahead(
-        self, trajectory: Trajectory, elapsed_s: float, scene: PlanningScene | None = None
+        self, trajectory: TimedTrajectory, elapsed_s: float, scene: PlanningScene | None = None
     ) -> str:
         """Return what blocks the rest of a motion that runs since so many seconds, or ""."""
         scene = scene or self.scene
@@ -387,14 +389,14 @@ class Planner:
 
     def _goal(
         self, group: JointGroup, goal: JointPositions | str | RigidTransform, link: str
-    ) -> Constraints:
+    ) -> MotionConstraints:
         if isinstance(goal, RigidTransform):
             return pose_goal(link or group.tip, goal)
         if isinstance(goal, str):
             goal = self.model.state(group.name, goal)
         return joint_goal(goal)
 
-    def _group_of(self, trajectory: Trajectory) -> str:
+    def _group_of(self, trajectory: TimedTrajectory) -> str:
         """Return the group with the joints of a trajectory; "" for the whole robot.
 
         Raises:
@@ -404,7 +406,7 @@ class Planner:
             if group.joints == trajectory.joints:
                 return name
         joints = listing(trajectory.joints)
-        raise PlanningError(ErrorCode.INVALID_GROUP_NAME, f"no group has the joints {joints}")
+        raise PlanningError(MoveItErrorCode.INVALID_GROUP_NAME, f"no group has the joints {joints}")
 
     def _joints(self, group: str) -> Sequence[str]:
         return self._group(group).joints if group else self.model.joints
@@ -412,7 +414,7 @@ class Planner:
     def _group(self, name: str) -> JointGroup:
         if not name:
             raise PlanningError(
-                ErrorCode.INVALID_GROUP_NAME,
+                MoveItErrorCode.INVALID_GROUP_NAME,
                 f"No group specified to plan for; the robot has {listing(self.model.groups)}",
             )
         return self.model.group(name)
@@ -423,12 +425,14 @@ class Planner:
         group: JointGroup,
         scene: PlanningScene,
         remark: Callable[[str], None],
-    ) -> Trajectory:
+    ) -> TimedTrajectory:
         if request.pipeline == PILZ:
             return self.sequence([SequenceItem(request)], scene)[0]
         if request.pipeline not in ("", OMPL):
             known = describe_known(request.pipeline, pipelines(), "there are")
-            raise PlanningError(ErrorCode.FAILURE, f"no pipeline '{request.pipeline}'; {known}")
+            raise PlanningError(
+                MoveItErrorCode.FAILURE, f"no pipeline '{request.pipeline}'; {known}"
+            )
         checker = self.checker(scene, group.name)
         path = self._evaluator(request.path, group, scene)
         start = group.positions(scene.positions)
@@ -462,7 +466,7 @@ class Planner:
         return timed_and_proved(found, group, checker, path, timing)
 
     def _evaluator(
-        self, constraints: Constraints, group: JointGroup, scene: PlanningScene
+        self, constraints: MotionConstraints, group: JointGroup, scene: PlanningScene
     ) -> ConstraintEvaluator:
         pose = self.checker(scene, group.name).model.link_pose
         return ConstraintEvaluator(constraints, self.model, group, scene.positions, pose)

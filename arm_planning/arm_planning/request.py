@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from arm_planning.constraints.constraints import Constraints
-from arm_planning.errors import ErrorCode
+from arm_planning.constraints.constraints import MotionConstraints
+from arm_planning.errors import MoveItErrorCode
 from arm_planning.robot.model import JointPositions
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +27,8 @@ class PlanRequest:
     """
 
     group: str
-    goals: tuple[Constraints, ...]
-    path: Constraints = Constraints()
+    goals: tuple[MotionConstraints, ...]
+    path: MotionConstraints = MotionConstraints()
     start: JointPositions | None = None
     pipeline: str = ""
     planner: str = ""
@@ -51,8 +51,8 @@ class PlanResponse:
         planning_time_s: wall time that it took.
     """
 
-    code: ErrorCode
+    code: MoveItErrorCode
     message: str
     start: JointPositions
-    trajectory: Trajectory | None
+    trajectory: TimedTrajectory | None
     planning_time_s: float

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trajectory:
+class TimedTrajectory:
     """Way points of a group's joints over time, as a controller gets them.
 
     Attributes:

@@ -38,6 +38,14 @@ def ended(code: str, log_folder: Path, *arguments: str) -> subprocess.CompletedP
 
 
 NODE = 'make = lambda: Node("made")\n'
+# As where rclpy converts a message while the signal comes.
+LOST = """
+def work(node):
+    try:
+        os.kill(os.getpid(), signal.{name})
+    except KeyboardInterrupt:
+        raise RuntimeError("Unable to convert call argument") from None
+"""
 STOPPED = "def make():\n    rclpy.shutdown()\n    return Node('late')\nwork = None"
 
 
@@ -49,6 +57,8 @@ STOPPED = "def make():\n    rclpy.shutdown()\n    return Node('late')\nwork = No
         (NODE + "work = lambda node: os.kill(os.getpid(), signal.SIGTERM)", 0),
         (NODE + "work = lambda node: os.kill(os.getpid(), signal.SIGHUP)", 0),
         (NODE + "work = lambda node: sys.exit(4)", 4),
+        (NODE + LOST.format(name="SIGINT"), 0),
+        (NODE + LOST.format(name="SIGTERM"), 0),
         (STOPPED, 0),
     ],
 )

@@ -12,7 +12,7 @@ from arm_description import expand_xacro
 from arm_description.resources import ResourceFinder
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import joint_goal, pose_goal
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.request import PlanRequest
 from arm_planning.scene.objects import CollisionObject, PlacedShape
@@ -59,13 +59,13 @@ def test_a_plan_from_a_start_in_collision_names_what_touches(planner):
     put_floor(planner, 0.08)
     with pytest.raises(PlanningError, match="floor") as caught:
         planner.move("arm", {TURN: 0.5})
-    assert caught.value.code is ErrorCode.START_STATE_IN_COLLISION
+    assert caught.value.code is MoveItErrorCode.START_STATE_IN_COLLISION
 
 
 def test_a_start_slightly_outside_is_moved_inside_and_said(planner):
     limit = planner.model.group("arm").limits[0].upper
     goal = planner.plan(PlanRequest("arm", (), start={TURN: limit + 0.02}))
-    assert goal.code is ErrorCode.START_STATE_INVALID
+    assert goal.code is MoveItErrorCode.START_STATE_INVALID
     planner.scene = replace(
         planner.scene, positions={**planner.scene.positions, TURN: limit + 0.005}
     )

@@ -18,7 +18,7 @@ class BodyKind(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Contact:
+class CollisionContact:
     """The deepest contact between two bodies.
 
     Attributes:

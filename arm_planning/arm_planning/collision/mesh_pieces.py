@@ -18,7 +18,7 @@ from arm_description.errors import MeshFileError, ResourceNotFoundError
 from arm_description.mesh.file import check_mesh_file, read_mesh_file
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Mesh
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.shapes import TriangleMesh
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ class MeshPieces:
             parts = read_mesh_file(path)
         except (ResourceNotFoundError, MeshFileError, OSError) as error:
             message = f"cannot use the mesh {mesh.uri}: {error}"
-            raise PlanningError(ErrorCode.COLLISION_CHECKING_UNAVAILABLE, message) from error
+            raise PlanningError(MoveItErrorCode.COLLISION_CHECKING_UNAVAILABLE, message) from error
         return tuple(
             hull(part.vertices * np.asarray(mesh.scale)) for part in parts if len(part.vertices)
         )
@@ -122,7 +122,7 @@ def convex_pieces(mesh: TriangleMesh) -> Pieces:
             plates.extend(thickened(corner) for corner in corners[part])
     if len(plates) > MAX_PLATES:
         raise PlanningError(
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             f"the mesh has {len(plates)} triangles in parts that are not convex; at most "
             f"{MAX_PLATES} are checked; simplify it or cut it into convex parts",
         )
@@ -227,4 +227,4 @@ def _is_convex(points: Array, triangles: NDArray[np.int64]) -> bool:
 
 
 def _broken(reason: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, f"the mesh cannot be used: {reason}")
+    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, f"the mesh cannot be used: {reason}")

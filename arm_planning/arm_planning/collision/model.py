@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from arm_node.names import describe_known
 from arm_planning.collision.constant_contacts import constant_contacts
-from arm_planning.collision.contact import BodyKind, Contact
+from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.posed_scene import PosedScene, deepest
-from arm_planning.collision.specification import Body, SceneCompiler
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.collision.specification import CollisionBody, SceneCompiler
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.scene import PlanningScene
 
@@ -66,7 +66,7 @@ class CollisionModel:
         self._constant = self._constant_contacts()
 
     @property
-    def constant_contacts(self) -> tuple[Contact, ...]:
+    def constant_contacts(self) -> tuple[CollisionContact, ...]:
         """What collides in every state, the deepest first."""
         return self._constant
 
@@ -100,7 +100,7 @@ class CollisionModel:
         mujoco.mj_collision(self._model, self._data)
         return self._data.ncon == 0
 
-    def contacts(self, q: Array) -> tuple[Contact, ...]:
+    def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
         """Return the deepest contact of each pair that collides, the deepest first.
 
         Args:
@@ -125,7 +125,7 @@ class CollisionModel:
         """
         if link not in self._posed.links:
             raise PlanningError(
-                ErrorCode.INVALID_LINK_NAME,
+                MoveItErrorCode.INVALID_LINK_NAME,
                 f"no link '{link}'; {describe_known(link, self._posed.links, 'the robot has')}",
             )
         self._posed.place(q)
@@ -139,13 +139,13 @@ class CollisionModel:
         scene = replace(self._scene, positions={**self._scene.positions, **positions})
         return CollisionModel(self._planning_model, scene, self._group, self._meshes)
 
-    def _constant_contacts(self) -> tuple[Contact, ...]:
+    def _constant_contacts(self) -> tuple[CollisionContact, ...]:
         self._posed.place(np.zeros(len(self._joints)))
         asked = np.array([self._is_checked(body) for body in self._posed.bodies])
         found = constant_contacts(self._model, self._data, asked)
         return deepest(map(self._posed.contact, found))
 
-    def _is_checked(self, body: Body | None) -> bool:
+    def _is_checked(self, body: CollisionBody | None) -> bool:
         """Return whether a body is checked against all others, moving or not."""
         if body is None or body.kind is BodyKind.WORLD_OBJECT:
             return False

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.collision.contact import Contact
+from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.reach import Reach, reach
 
@@ -45,7 +45,7 @@ class Obstruction:
 
     segment: int
     fraction: float
-    contact: Contact | None
+    contact: CollisionContact | None
     reason: str
 
     def __str__(self) -> str:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from arm_node.rigid_transform import Vector
 from arm_planning.collision.constant_contacts import GeomContact
-from arm_planning.collision.contact import BodyKind, Contact
-from arm_planning.collision.specification import Body, CompiledScene
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.collision.contact import BodyKind, CollisionContact
+from arm_planning.collision.specification import CollisionBody, CompiledScene
+from arm_planning.errors import MoveItErrorCode, PlanningError
 
 Array = NDArray[np.float64]
 
@@ -57,11 +57,12 @@ class PosedScene:
         # MuJoCo finds no contact at all where a number is not finite.
         if not self._qpos.dot(self._qpos) < inf:
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE, f"a state has positions that are not finite: {q}"
+                MoveItErrorCode.INVALID_ROBOT_STATE,
+                f"a state has positions that are not finite: {q}",
             )
         mujoco.mj_kinematics(self.model, self.data)
 
-    def found(self) -> Iterator[Contact]:
+    def found(self) -> Iterator[CollisionContact]:
         """Yield the contacts of the last `mujoco.mj_collision`."""
         found = self.data.contact
         for (first, second), distance, position, frame in zip(
@@ -69,7 +70,7 @@ class PosedScene:
         ):
             yield self.contact(GeomContact(first, second, distance, position, frame[:3]))
 
-    def contact(self, found: GeomContact) -> Contact:
+    def contact(self, found: GeomContact) -> CollisionContact:
         """Name the bodies: links before what is attached, that before objects, then by name."""
         first, second, normal = (
             self._body_of(found.first),
@@ -78,7 +79,7 @@ class PosedScene:
         )
         if (ORDER[first.kind], first.name) > (ORDER[second.kind], second.name):
             first, second, normal = second, first, -normal
-        return Contact(
+        return CollisionContact(
             first.name,
             second.name,
             first.kind,
@@ -88,15 +89,15 @@ class PosedScene:
             _vector(normal),
         )
 
-    def _body_of(self, geom: int) -> Body:
+    def _body_of(self, geom: int) -> CollisionBody:
         body = self.bodies[self.model.geom_bodyid[geom]]
         assert body is not None
         return body
 
 
-def deepest(contacts: Iterable[Contact]) -> tuple[Contact, ...]:
+def deepest(contacts: Iterable[CollisionContact]) -> tuple[CollisionContact, ...]:
     """Return the deepest contact of each pair, the deepest first."""
-    found: dict[tuple[str, str, BodyKind], Contact] = {}
+    found: dict[tuple[str, str, BodyKind], CollisionContact] = {}
     for contact in contacts:
         pair = (contact.first, contact.second, contact.second_kind)
         if pair not in found or found[pair].depth_m < contact.depth_m:

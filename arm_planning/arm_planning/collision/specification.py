@@ -16,7 +16,7 @@ from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.objects import AttachedBody
@@ -50,7 +50,7 @@ AFFINITY_SHIFT = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class CollisionBody:
     """What a body of the MuJoCo model is.
 
     Attributes:
@@ -76,7 +76,7 @@ class CompiledScene:
     """
 
     model: mujoco.MjModel
-    bodies: tuple[Body | None, ...]
+    bodies: tuple[CollisionBody | None, ...]
     links: dict[str, int]
     coordinates: PositionMap
 
@@ -158,9 +158,9 @@ class SceneCompiler:
         self._spec.memory = MEMORY_BYTES + PAIR_BYTES * (len(parts) + 1) ** 2
         model = self._spec.compile()
         _set_bits(model)
-        bodies: list[Body | None] = [None] * model.nbody
+        bodies: list[CollisionBody | None] = [None] * model.nbody
         for part in parts:
-            bodies[part.body.id] = Body(part.name, part.kind, part.moves)
+            bodies[part.body.id] = CollisionBody(part.name, part.kind, part.moves)
         return CompiledScene(
             model,
             tuple(bodies),
@@ -222,7 +222,7 @@ class SceneCompiler:
             for geom in object_geoms(thing, self._meshes):
                 if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
                     raise PlanningError(
-                        ErrorCode.INVALID_OBJECT_NAME,
+                        MoveItErrorCode.INVALID_OBJECT_NAME,
                         f"object '{thing.id}' has a plane, which cannot be attached to a link",
                     )
                 self._add_geom(part, geom, WHOLE)
@@ -230,7 +230,7 @@ class SceneCompiler:
     def _link_of(self, attached: AttachedBody) -> _Part:
         if attached.link not in self._links:
             raise PlanningError(
-                ErrorCode.INVALID_LINK_NAME,
+                MoveItErrorCode.INVALID_LINK_NAME,
                 f"object '{attached.object.id}' is attached to '{attached.link}': "
                 f"no such link; {describe_known(attached.link, self._links, 'the robot has')}",
             )

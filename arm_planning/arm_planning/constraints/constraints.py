@@ -71,7 +71,7 @@ class OrientationConstraint:
 
 
 @dataclass(frozen=True, slots=True)
-class Constraints:
+class MotionConstraints:
     """All of these hold at once."""
 
     joints: tuple[JointConstraint, ...] = ()
@@ -83,9 +83,9 @@ class Constraints:
         return bool(self.joints or self.positions or self.orientations)
 
 
-def joint_goal(positions: Mapping[str, float]) -> Constraints:
+def joint_goal(positions: Mapping[str, float]) -> MotionConstraints:
     """Return the goal that joints are at positions, rad or m."""
-    return Constraints(
+    return MotionConstraints(
         tuple(
             JointConstraint(joint, position, JOINT_TOLERANCE, JOINT_TOLERANCE)
             for joint, position in positions.items()
@@ -93,10 +93,10 @@ def joint_goal(positions: Mapping[str, float]) -> Constraints:
     )
 
 
-def pose_goal(link: str, pose: RigidTransform) -> Constraints:
+def pose_goal(link: str, pose: RigidTransform) -> MotionConstraints:
     """Return the goal that a link is at a pose in the planning frame."""
     place = PlacedShape(Sphere(POSITION_TOLERANCE_M), RigidTransform(pose.position))
-    return Constraints(
+    return MotionConstraints(
         positions=(PositionConstraint(link, (0.0, 0.0, 0.0), (place,)),),
         orientations=(
             OrientationConstraint(

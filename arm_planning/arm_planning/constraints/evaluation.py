@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from arm_description.transforms import rotation_from_quaternion
 from arm_description.urdf.joint_type import JointType
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
@@ -69,7 +69,7 @@ class ConstraintEvaluator:
 
     def __init__(
         self,
-        constraints: Constraints,
+        constraints: MotionConstraints,
         model: PlanningModel,
         group: JointGroup,
         positions: JointPositions,

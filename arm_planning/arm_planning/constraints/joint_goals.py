@@ -3,16 +3,16 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from arm_planning.constraints.constraints import Constraints, JointConstraint
-from arm_planning.robot.model import JointGroup, JointLimits
+from arm_planning.constraints.constraints import JointConstraint, MotionConstraints
+from arm_planning.robot.model import JointGroup, PlanningLimits
 
 SNAPPED_TOLERANCE = 1e-9
 """Tolerance of a goal that was moved to a limit, rad or m."""
 
 
 def snap_to_limits(
-    goal: Constraints, group: JointGroup, warn: Callable[[str], None]
-) -> Constraints:
+    goal: MotionConstraints, group: JointGroup, warn: Callable[[str], None]
+) -> MotionConstraints:
     """Return a goal whose joints can be reached, as MoveIt does it.
 
     A joint whose whole tolerance is beyond a limit gets the limit as its goal, and `warn` is told.
@@ -26,7 +26,7 @@ def snap_to_limits(
 
 
 def _snap(
-    goal: JointConstraint, limits: JointLimits, warn: Callable[[str], None]
+    goal: JointConstraint, limits: PlanningLimits, warn: Callable[[str], None]
 ) -> JointConstraint:
     if goal.position - goal.below > limits.upper:
         limit = limits.upper

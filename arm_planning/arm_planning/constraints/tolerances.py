@@ -4,15 +4,15 @@ from dataclasses import replace
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
 from arm_planning.scene.shapes import Cone, Shape
 
 
-def tightened(constraints: Constraints, share: float) -> Constraints:
+def tightened(constraints: MotionConstraints, share: float) -> MotionConstraints:
     """Return constraints with a share of their tolerances; meshes and half spaces stay."""
     return replace(
         constraints,

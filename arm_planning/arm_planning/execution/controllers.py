@@ -6,8 +6,8 @@ from enum import Enum
 from itertools import combinations
 
 from arm_node.names import describe_known, listing
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.trajectory import Trajectory
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.trajectory import TimedTrajectory
 
 
 class ControllerKind(Enum):
@@ -92,10 +92,10 @@ def choose_controllers(
     raise _refusal(_nobody_drives(wanted, controllers))
 
 
-def part_for(trajectory: Trajectory, controller: TrajectoryController) -> Trajectory:
+def part_for(trajectory: TimedTrajectory, controller: TrajectoryController) -> TimedTrajectory:
     """Return the columns of a trajectory that a controller drives, in the trajectory's order."""
     columns = [i for i, joint in enumerate(trajectory.joints) if joint in controller.joints]
-    return Trajectory(
+    return TimedTrajectory(
         tuple(trajectory.joints[i] for i in columns),
         trajectory.times_s,
         trajectory.positions[:, columns],
@@ -165,4 +165,4 @@ def _optional(value: object) -> float | None:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.CONTROL_FAILED, sentence)
+    return PlanningError(MoveItErrorCode.CONTROL_FAILED, sentence)

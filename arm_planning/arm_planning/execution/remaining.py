@@ -3,13 +3,13 @@
 import numpy as np
 
 from arm_planning.timing.driven_spline import DrivenSpline
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 SHORTEST_S = 1e-6
 """A point ahead that is nearer than this is left out."""
 
 
-def remaining(trajectory: Trajectory, time_s: float) -> Trajectory:
+def remaining(trajectory: TimedTrajectory, time_s: float) -> TimedTrajectory:
     """Return what a controller has yet to drive; its times start anew.
 
     A polynomial of degree five is known by its ends, so the curve to the first point ahead is the
@@ -23,10 +23,10 @@ def remaining(trajectory: Trajectory, time_s: float) -> Trajectory:
         return trajectory
     if time_s >= trajectory.duration_s - SHORTEST_S:
         ahead = [rows[-1:] for rows in _rows(trajectory)]
-        return Trajectory(trajectory.joints, np.zeros(1), *ahead)
+        return TimedTrajectory(trajectory.joints, np.zeros(1), *ahead)
     first = int(np.searchsorted(trajectory.times_s, time_s + SHORTEST_S, side="right"))
     here = DrivenSpline.of(trajectory).sample(np.array([time_s]))
-    return Trajectory(
+    return TimedTrajectory(
         trajectory.joints,
         np.concatenate(([0.0], trajectory.times_s[first:] - time_s)),
         *(
@@ -36,5 +36,5 @@ def remaining(trajectory: Trajectory, time_s: float) -> Trajectory:
     )
 
 
-def _rows(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _rows(trajectory: TimedTrajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return trajectory.positions, trajectory.velocities, trajectory.accelerations

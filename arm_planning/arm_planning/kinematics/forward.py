@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import kinematic_tree, position_map
 from arm_planning.robot.model import JointPositions, PlanningModel
 
@@ -46,7 +46,7 @@ class ForwardKinematics:
         """
         if link not in self._body:
             raise PlanningError(
-                ErrorCode.INVALID_LINK_NAME,
+                MoveItErrorCode.INVALID_LINK_NAME,
                 f"no link '{link}'; the robot has {listing(self._body)}",
             )
         self._place(q)

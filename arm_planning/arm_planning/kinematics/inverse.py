@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.chain import Chain
 from arm_planning.kinematics.descent import (
     HASTY,
@@ -31,7 +31,7 @@ from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.kinematics.search import Orientation, Search
 from arm_planning.kinematics.shortfall import shortfall
 from arm_planning.kinematics.starts import Starts
-from arm_planning.robot.model import JointGroup, JointLimits, JointPositions, PlanningModel
+from arm_planning.robot.model import JointGroup, JointPositions, PlanningLimits, PlanningModel
 
 Array = NDArray[np.float64]
 Free = Callable[[Array], bool]
@@ -106,7 +106,7 @@ class InverseKinematics:
         self._moving = np.flatnonzero(self._whole.moving)
         if not len(self._moving):
             message = f"no joint of group '{group}' moves link '{self.tip}'"
-            raise PlanningError(ErrorCode.INVALID_LINK_NAME, message)
+            raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, message)
         self._names = tuple(names[index] for index in self._moving)
         self._chain = Chain(model.robot, self.tip, self._names, fixed)
         self._others = {name: fixed.get(name, 0.0) for name in self._whole.others}
@@ -156,7 +156,7 @@ class InverseKinematics:
         names = self.group.joints
         if q.shape != (len(names),):
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
+                MoveItErrorCode.INVALID_ROBOT_STATE,
                 f"a state of group '{self.group.name}' has {len(names)} positions, for "
                 f"{listing(names)}; the given one has the shape {q.shape}",
             )
@@ -165,7 +165,7 @@ class InverseKinematics:
             index = int(usual.argmin())
             why = f"is beyond {FARTHEST:g}" if np.isfinite(q[index]) else "is not finite"
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
+                MoveItErrorCode.INVALID_ROBOT_STATE,
                 f"the position of joint '{names[index]}' {why}: {q[index]:g}",
             )
         return q
@@ -373,7 +373,7 @@ class InverseKinematics:
             search.blocked += 1
             if self._clock() > search.until_s:
                 raise PlanningError(
-                    ErrorCode.TIMED_OUT,
+                    MoveItErrorCode.TIMED_OUT,
                     f"no solution for link '{self.tip}' is free among the first {search.blocked}, "
                     f"and the collision checks took {GUARD:.0f} times the timeout",
                 )
@@ -383,7 +383,7 @@ class InverseKinematics:
         if search.best is not None:
             search.best = self._descent.run(search.target, search.best.q)
         return PlanningError(
-            ErrorCode.NO_IK_SOLUTION,
+            MoveItErrorCode.NO_IK_SOLUTION,
             shortfall(search, self.tip, self._names, self._lower, self._upper, self._chain),
         )
 
@@ -391,34 +391,34 @@ class InverseKinematics:
 def _checked_tip(model: PlanningModel, group: JointGroup, tip: str) -> str:
     if not (name := tip or group.tip):
         raise PlanningError(
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             f"group '{group.name}' is not a chain: name the link to place; it has "
             f"{listing(group.links)}",
         )
     links = [link.name for link in model.robot.links]
     if name not in links:
         raise PlanningError(
-            ErrorCode.INVALID_LINK_NAME, f"no link '{name}'; the robot has {listing(links)}"
+            MoveItErrorCode.INVALID_LINK_NAME, f"no link '{name}'; the robot has {listing(links)}"
         )
     return name
 
 
-def _urdf_limits(robot: Robot, name: str) -> JointLimits:
+def _urdf_limits(robot: Robot, name: str) -> PlanningLimits:
     joint = robot.joint(name)
     if not joint.type.is_scalar:
         raise PlanningError(
-            ErrorCode.INVALID_ROBOT_STATE,
+            MoveItErrorCode.INVALID_ROBOT_STATE,
             f"joint '{name}' is {joint.type}: its position is not a single number",
         )
     limit = joint.limit
     if limit is None:
-        return JointLimits(-math.inf, math.inf, math.inf, math.inf)
-    return JointLimits(limit.lower, limit.upper, limit.velocity, math.inf)
+        return PlanningLimits(-math.inf, math.inf, math.inf, math.inf)
+    return PlanningLimits(limit.lower, limit.upper, limit.velocity, math.inf)
 
 
 def _checked_timeout(timeout_s: float) -> float:
     if math.isnan(timeout_s):
-        raise PlanningError(ErrorCode.FAILURE, "the timeout is not a number")
+        raise PlanningError(MoveItErrorCode.FAILURE, "the timeout is not a number")
     return min(timeout_s, MAX_TIMEOUT_S) if timeout_s > 0.0 else TIMEOUT_S
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 
 Array = NDArray[np.float64]
 
@@ -76,4 +76,4 @@ def _text(numbers: Array | tuple[float, ...]) -> str:
 
 
 def _refused(message: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_GOAL_CONSTRAINTS, message)
+    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, message)

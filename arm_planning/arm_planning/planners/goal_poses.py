@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from arm_description.transforms import rotation_from_quaternion
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_planning.constraints.constraints import (
-    Constraints,
+    MotionConstraints,
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
@@ -25,7 +25,7 @@ TRIES = 100
 
 
 def poses_of(
-    goal: Constraints, pose: LinkPose, q: Array, random: np.random.Generator | None
+    goal: MotionConstraints, pose: LinkPose, q: Array, random: np.random.Generator | None
 ) -> Iterator[tuple[str, Array, bool]]:
     """Yield poses of the first link that a goal constrains.
 

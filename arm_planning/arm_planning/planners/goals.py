@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.constraints.constraints import Constraints
+from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
 from arm_planning.constraints.joint_goals import snap_to_limits
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.goal_poses import poses_of
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
@@ -72,8 +72,8 @@ class GoalSampler:
         warn: takes sentences about goals that are changed.
     """
 
-    goals: tuple[Constraints, ...]
-    path: Constraints
+    goals: tuple[MotionConstraints, ...]
+    path: MotionConstraints
     model: PlanningModel
     group: JointGroup
     positions: JointPositions
@@ -116,11 +116,11 @@ class GoalSampler:
             raise judges[0].error()
         return self._sorted(found)[:MOST]
 
-    def _alternatives(self, warn: Callable[[str], None]) -> list[Constraints]:
+    def _alternatives(self, warn: Callable[[str], None]) -> list[MotionConstraints]:
         goals = [snap_to_limits(goal, self.group, warn) for goal in self.goals if goal]
         if not goals:
             raise PlanningError(
-                ErrorCode.INVALID_GOAL_CONSTRAINTS,
+                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
                 "the request has no goal: it needs constraints on joints, positions or "
                 "orientations",
             )
@@ -129,21 +129,21 @@ class GoalSampler:
     def _sorted(self, states: list[Array]) -> tuple[Array, ...]:
         return tuple(sorted(states, key=lambda q: float(np.linalg.norm(q - self.start))))
 
-    def _first_candidates(self, goal: Constraints, judge: "_Judge") -> Iterator[Array]:
+    def _first_candidates(self, goal: MotionConstraints, judge: "_Judge") -> Iterator[Array]:
         if not goal.positions and not goal.orientations:
             yield self._joint_candidate(goal, None)
             return
         for link, pose, any_turn in poses_of(self._merged(goal), self.pose, self.start, None):
             yield from self._inverse(link, pose, any_turn, judge, most=1)
 
-    def _merged(self, goal: Constraints) -> Constraints:
+    def _merged(self, goal: MotionConstraints) -> MotionConstraints:
         """Return a goal of a pose with what the constraints on the way say of poses."""
-        return Constraints(
+        return MotionConstraints(
             positions=goal.positions + self.path.positions,
             orientations=goal.orientations + self.path.orientations,
         )
 
-    def _candidates(self, goal: Constraints, judge: "_Judge") -> Iterator[Array]:
+    def _candidates(self, goal: MotionConstraints, judge: "_Judge") -> Iterator[Array]:
         """Yield the middle of the goal, then samples if it is wide or its middle is no use."""
         random = np.random.default_rng((self.seed, 2))
         if not goal.positions and not goal.orientations:
@@ -170,7 +170,9 @@ class GoalSampler:
         upper = np.minimum(self.group.upper, self.start + math.pi)
         return random.uniform(lower, np.maximum(lower, upper))
 
-    def _joint_candidate(self, goal: Constraints, random: np.random.Generator | None) -> Array:
+    def _joint_candidate(
+        self, goal: MotionConstraints, random: np.random.Generator | None
+    ) -> Array:
         """Return the goal of each joint, or a random position in its tolerance.
 
         A joint that the goal does not name stays at the start, or is anywhere.
@@ -193,7 +195,7 @@ class GoalSampler:
     ) -> Iterator[Array]:
         if self.inverse is None:
             raise PlanningError(
-                ErrorCode.NO_IK_SOLUTION,
+                MoveItErrorCode.NO_IK_SOLUTION,
                 f"group '{self.group.name}' has no inverse kinematics; give a goal of its joints",
             )
         try:
@@ -215,14 +217,14 @@ class GoalSampler:
 class _Judge:
     """Accepts candidates of one goal, and remembers why it accepted none."""
 
-    def __init__(self, sampler: GoalSampler, goal: Constraints) -> None:
+    def __init__(self, sampler: GoalSampler, goal: MotionConstraints) -> None:
         self._sampler = sampler
         self._goal = self._evaluator(goal)
         self._path = self._evaluator(sampler.path)
         self.accepted = 0
         self._errors: dict[int, PlanningError] = {}
 
-    def _evaluator(self, constraints: Constraints) -> ConstraintEvaluator:
+    def _evaluator(self, constraints: MotionConstraints) -> ConstraintEvaluator:
         sampler = self._sampler
         return ConstraintEvaluator(
             constraints, sampler.model, sampler.group, sampler.positions, sampler.pose
@@ -245,11 +247,11 @@ class _Judge:
         """Return the reason why no state was accepted: of the candidate that came farthest."""
         if not self._errors:
             return PlanningError(
-                ErrorCode.GOAL_STATE_INVALID, "no state was found that satisfies the goal"
+                MoveItErrorCode.GOAL_STATE_INVALID, "no state was found that satisfies the goal"
             )
         return self._errors[min(self._errors)]
 
-    def _objection(self, q: Array) -> tuple[int, ErrorCode, str] | None:
+    def _objection(self, q: Array) -> tuple[int, MoveItErrorCode, str] | None:
         """Return what speaks against a state; the number is smaller the farther it came."""
         group, checker = self._sampler.group, self._sampler.checker
         outside = np.maximum(group.lower - q, q - group.upper)
@@ -258,32 +260,32 @@ class _Judge:
             limits = group.limits[worst]
             return (
                 4,
-                ErrorCode.GOAL_STATE_INVALID,
+                MoveItErrorCode.GOAL_STATE_INVALID,
                 f"goal is outside of the limits: joint '{group.joints[worst]}' at {q[worst]:.4g} "
                 f"has the limits {limits.lower:.4g} and {limits.upper:.4g}",
             )
         violation = _violation(self._goal, q)
         if violation:
-            return 2, ErrorCode.GOAL_CONSTRAINTS_VIOLATED, f"goal cannot be met: {violation}"
+            return 2, MoveItErrorCode.GOAL_CONSTRAINTS_VIOLATED, f"goal cannot be met: {violation}"
         violation = self._path.violation(q)
         if violation:
             return (
                 1,
-                ErrorCode.GOAL_VIOLATES_PATH_CONSTRAINTS,
+                MoveItErrorCode.GOAL_VIOLATES_PATH_CONSTRAINTS,
                 f"goal violates the path constraints: {violation}",
             )
         if checker.is_free(q):
             return None
         contacts = checker.contacts(q)
         what = f": {contacts[0]}" if contacts else ""
-        return 0, ErrorCode.GOAL_IN_COLLISION, f"goal is in collision{what}"
+        return 0, MoveItErrorCode.GOAL_IN_COLLISION, f"goal is in collision{what}"
 
 
 def _violation(goal: ConstraintEvaluator, q: Array) -> str:
     return next((each.sentence for each in goal.results(q) if each.excess > SLACK), "")
 
 
-def _is_wide(goal: Constraints) -> bool:
+def _is_wide(goal: MotionConstraints) -> bool:
     """Whether a goal leaves so much open that its middle is only one of many."""
     turns = [max(each.tolerances) for each in goal.orientations]
     return max(turns, default=0.0) > WIDE or not (goal.positions and goal.orientations)

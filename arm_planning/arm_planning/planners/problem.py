@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.constraints.evaluation import ConstraintEvaluator
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointGroup
 
 Array = NDArray[np.float64]
 
 
-class Obstruction(Protocol):
+class PathObstruction(Protocol):
     """Where a path could not be proved free; as text, the end of a sentence."""
 
     @property
@@ -41,7 +41,7 @@ class StateChecker(Protocol):
         """Return whether all states on the straight line between two are free, ends included."""
         ...
 
-    def prove(self, path: Array) -> Obstruction | None:
+    def prove(self, path: Array) -> PathObstruction | None:
         """Return None if every state on a polyline, (m, n), is proved free."""
         ...
 
@@ -75,7 +75,7 @@ class Deadline:
         """
         if self.clock() > self.end_s:
             raise PlanningError(
-                ErrorCode.TIMED_OUT, f"the planning time ended while {doing}; allow more time"
+                MoveItErrorCode.TIMED_OUT, f"the planning time ended while {doing}; allow more time"
             )
 
 

@@ -3,7 +3,7 @@
 import importlib.util
 
 from arm_node.names import describe_known
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import PathPlanner
 from arm_planning.planners.search import RrtConnectPlanner
 
@@ -40,7 +40,7 @@ def planner_for(planner_id: str) -> PathPlanner:
         return OmplPlanner(name)
     hint = "" if names else "; more come with OMPL: pip install 'arm-suite[ompl]'"
     raise PlanningError(
-        ErrorCode.PLANNING_FAILED,
+        MoveItErrorCode.PLANNING_FAILED,
         f"no planner '{planner_id}'; {describe_known(name, planner_ids())}{hint}",
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.mend import mend
 from arm_planning.planners.problem import PlanningProblem, path_length
 from arm_planning.planners.rrt_connect import rrt_connect
@@ -42,7 +42,7 @@ class RrtConnectPlanner:
         paths = paths or list(self._paths(problem, goals, is_proved=True))
         if not paths:
             raise PlanningError(
-                ErrorCode.PLANNING_FAILED,
+                MoveItErrorCode.PLANNING_FAILED,
                 "a path was found but not proved free; another seed may find a better one",
             )
         return min(paths, key=path_length)
@@ -59,7 +59,7 @@ class RrtConnectPlanner:
                     yield path
         except PlanningError as error:
             # The time that further attempts lack is no reason to lose the path of a finished one.
-            if error.code is not ErrorCode.TIMED_OUT or not has_path:
+            if error.code is not MoveItErrorCode.TIMED_OUT or not has_path:
                 raise
             _logger.warning(
                 "the planning time ended before all %d attempts did: the best of those that "
@@ -90,12 +90,14 @@ def check_start(problem: PlanningProblem) -> None:
     if not problem.checker.is_free(problem.start):
         contacts = problem.checker.contacts(problem.start)
         what = f": {contacts[0]}" if contacts else ""
-        raise PlanningError(ErrorCode.START_STATE_IN_COLLISION, f"the start is in collision{what}")
+        raise PlanningError(
+            MoveItErrorCode.START_STATE_IN_COLLISION, f"the start is in collision{what}"
+        )
     if problem.path is not None:
         violation = problem.path.violation(problem.start)
         if violation:
             raise PlanningError(
-                ErrorCode.START_STATE_VIOLATES_PATH_CONSTRAINTS,
+                MoveItErrorCode.START_STATE_VIOLATES_PATH_CONSTRAINTS,
                 f"the start violates the path constraints: {violation}",
             )
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 from arm_description.urdf.robot import Joint, Robot
 from arm_node.names import listing
 from arm_planning.robot.limits import JointLimitSettings, Warn, limits_of
-from arm_planning.robot.model import JointGroup, JointLimits, JointPositions, PlanningModel
+from arm_planning.robot.model import JointGroup, JointPositions, PlanningLimits, PlanningModel
 from arm_planning.robot.srdf import Srdf
 
 _logger = logging.getLogger(__name__)
@@ -65,7 +65,7 @@ def group_joints(robot: Robot, srdf: Srdf, group: str) -> tuple[Joint, ...]:
     return tuple(joint for joint in robot.joints_in_tree_order if joint.name in names)
 
 
-def _group(robot: Robot, srdf: Srdf, name: str, bounds: Mapping[str, JointLimits]) -> JointGroup:
+def _group(robot: Robot, srdf: Srdf, name: str, bounds: Mapping[str, PlanningLimits]) -> JointGroup:
     joints = group_joints(robot, srdf, name)
     active = [joint for joint in joints if joint.name in bounds]
     limits = tuple(bounds[joint.name] for joint in active)
@@ -84,7 +84,7 @@ def _group(robot: Robot, srdf: Srdf, name: str, bounds: Mapping[str, JointLimits
     )
 
 
-def _is_endless(limit: JointLimits) -> bool:
+def _is_endless(limit: PlanningLimits) -> bool:
     return limit.lower == -math.inf and limit.upper == math.inf
 
 

@@ -8,8 +8,8 @@ from arm_description.urdf.robot import Joint
 from arm_node.limited_yaml import YamlError, load_yaml
 from arm_node.names import describe_known, listing
 from arm_node.parameter_file import flat_parameters
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.robot.model import JointLimits
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.robot.model import PlanningLimits
 
 RAMP_S = 0.5
 """Time to full speed, for joints without an acceleration limit: a URDF cannot give one."""
@@ -105,7 +105,7 @@ def joint_limit_settings(values: Mapping[str, object], warn: Warn) -> JointLimit
 
 def limits_of(
     joints: Iterable[Joint], settings: JointLimitSettings, warn: Warn
-) -> dict[str, JointLimits]:
+) -> dict[str, PlanningLimits]:
     """Return the limits of scalar joints by name.
 
     A joint without a velocity limit gets its type's usual speed, one without an acceleration limit
@@ -114,7 +114,7 @@ def limits_of(
     Raises:
         PlanningError: the limits of a joint contradict each other.
     """
-    result: dict[str, JointLimits] = {}
+    result: dict[str, PlanningLimits] = {}
     no_velocity: list[str] = []
     no_acceleration: list[str] = []
     for joint in joints:
@@ -129,7 +129,7 @@ def limits_of(
             no_acceleration.append(f"{joint.name} ({acceleration:.3g} {joint.type.unit}/s^2)")
         lower, upper = _range(joint, given, warn)
         jerk = _maximum(given.has_jerk_limits, given.max_jerk)
-        result[joint.name] = JointLimits(lower, upper, velocity, acceleration, jerk)
+        result[joint.name] = PlanningLimits(lower, upper, velocity, acceleration, jerk)
     assumed = [
         f"without {kind} limit: {listing(names)}"
         for kind, names in (("a velocity", no_velocity), ("an acceleration", no_acceleration))
@@ -208,4 +208,4 @@ def _number(name: str, value: object) -> float:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.FAILURE, sentence)
+    return PlanningError(MoveItErrorCode.FAILURE, sentence)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 
 Array = NDArray[np.float64]
 JointPositions = Mapping[str, float]
@@ -16,7 +16,7 @@ JointPositions = Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
-class JointLimits:
+class PlanningLimits:
     """The bounds of one joint, in rad or m, per s, s^2 and s^3; infinite where there is none."""
 
     lower: float
@@ -43,7 +43,7 @@ class JointGroup:
     name: str
     joints: tuple[str, ...]
     continuous: tuple[bool, ...]
-    limits: tuple[JointLimits, ...]
+    limits: tuple[PlanningLimits, ...]
     links: tuple[str, ...]
     base: str = ""
     tip: str = ""
@@ -89,7 +89,7 @@ class PlanningModel:
         """
         if name not in self.groups:
             raise PlanningError(
-                ErrorCode.INVALID_GROUP_NAME,
+                MoveItErrorCode.INVALID_GROUP_NAME,
                 f"no group '{name}'; the robot has {listing(self.groups)}",
             )
         return self.groups[name]
@@ -105,7 +105,7 @@ class PlanningModel:
         if name not in known:
             owner = self.group(group).name
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
+                MoveItErrorCode.INVALID_ROBOT_STATE,
                 f"group '{owner}' has no state '{name}'; it has {listing(known)}",
             )
         return known[name]

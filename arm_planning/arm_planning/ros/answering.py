@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
-from arm_planning.errors import ErrorCode
+from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.convert import error_code
 
 LOGGER = logging.getLogger("move_group")
@@ -30,7 +30,7 @@ def answering(name: str, serve: Callable[[Any, Any], Any]) -> Callable[[Any, Any
                 holder = getattr(failed, "motion_plan_response", None)
             if holder is not None:
                 holder.error_code = error_code(
-                    ErrorCode.FAILURE,
+                    MoveItErrorCode.FAILURE,
                     f"{name} has a fault, please report it: {type(error).__name__}: {error}",
                 )
             return failed

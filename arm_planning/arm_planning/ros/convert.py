@@ -12,9 +12,9 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 NANOSECONDS = 1_000_000_000
 UNIT = 1e-3
@@ -24,7 +24,7 @@ Warn = Callable[[str], None]
 """Takes a sentence for the user about something that is passed over."""
 
 
-def error_code(code: ErrorCode, message: str = "") -> MoveItErrorCodes:
+def error_code(code: MoveItErrorCode, message: str = "") -> MoveItErrorCodes:
     """Return an error code with its reason."""
     return MoveItErrorCodes(val=int(code), message=message, source="move_group" if message else "")
 
@@ -37,7 +37,9 @@ def vector_of(message: Point | Vector3, what: str) -> Vector:
     """
     vector = (message.x, message.y, message.z)
     if not all(map(math.isfinite, vector)):
-        raise PlanningError(ErrorCode.FAILURE, f"{what} is not finite: {listing(map(str, vector))}")
+        raise PlanningError(
+            MoveItErrorCode.FAILURE, f"{what} is not finite: {listing(map(str, vector))}"
+        )
     return vector
 
 
@@ -67,7 +69,7 @@ def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, 
     norm = math.hypot(*numbers)
     if not abs(norm - 1.0) <= UNIT:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
             "is (0, 0, 0, 1)",
         )
@@ -122,7 +124,7 @@ def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> di
             warn(f"a state names the joint '{name}', which the robot does not have; {unknown}")
         elif not math.isfinite(value):
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE, f"the position of joint '{name}' is {value}"
+                MoveItErrorCode.INVALID_ROBOT_STATE, f"the position of joint '{name}' is {value}"
             )
         elif name in model.joints:
             result[name] = value
@@ -145,7 +147,7 @@ def robot_state_message(model: PlanningModel, positions: JointPositions) -> Robo
     return state
 
 
-def trajectory_message(frame: str, trajectory: Trajectory | None) -> RobotTrajectory:
+def trajectory_message(frame: str, trajectory: TimedTrajectory | None) -> RobotTrajectory:
     """Return a trajectory as a message; without one, an empty message."""
     message = RobotTrajectory()
     if trajectory is None:
@@ -171,7 +173,7 @@ def trajectory_message(frame: str, trajectory: Trajectory | None) -> RobotTrajec
     return message
 
 
-def trajectory_of(message: RobotTrajectory) -> Trajectory:
+def trajectory_of(message: RobotTrajectory) -> TimedTrajectory:
     """Return a trajectory; velocities and accelerations that a point lacks are NaN.
 
     Raises:
@@ -185,7 +187,7 @@ def trajectory_of(message: RobotTrajectory) -> Trajectory:
         sizes = {len(point.velocities), len(point.accelerations)} - {0}
         if len(point.positions) != count or not sizes <= {count}:
             raise PlanningError(
-                ErrorCode.INVALID_MOTION_PLAN,
+                MoveItErrorCode.INVALID_MOTION_PLAN,
                 f"point {number} of the trajectory has {len(point.positions)} positions for "
                 f"{count} joints",
             )
@@ -193,15 +195,15 @@ def trajectory_of(message: RobotTrajectory) -> Trajectory:
     positions = np.array([point.positions for point in points]).reshape(len(points), count)
     if not np.isfinite(positions).all():
         raise PlanningError(
-            ErrorCode.INVALID_MOTION_PLAN, "the trajectory has a position that is not finite"
+            MoveItErrorCode.INVALID_MOTION_PLAN, "the trajectory has a position that is not finite"
         )
     if (np.diff(times) <= 0.0).any():
         number = int(np.argmax(np.diff(times) <= 0.0)) + 1
         raise PlanningError(
-            ErrorCode.INVALID_MOTION_PLAN,
+            MoveItErrorCode.INVALID_MOTION_PLAN,
             f"point {number} of the trajectory is not later than the point before it",
         )
-    return Trajectory(
+    return TimedTrajectory(
         tuple(given.joint_names),
         times,
         positions,

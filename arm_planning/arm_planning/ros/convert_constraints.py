@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from moveit_msgs.msg import Constraints as ConstraintsMessage
 from moveit_msgs.msg import JointConstraint as JointMessage
+from moveit_msgs.msg import MotionConstraints as ConstraintsMessage
 from moveit_msgs.msg import MotionPlanRequest
 from moveit_msgs.msg import OrientationConstraint as OrientationMessage
 from moveit_msgs.msg import PositionConstraint as PositionMessage
@@ -13,13 +13,13 @@ from moveit_msgs.msg import PositionConstraint as PositionMessage
 from arm_node.names import describe_known
 from arm_node.rigid_transform import RigidTransform, quaternion_product
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
 )
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, quaternion_of, vector_of
@@ -32,7 +32,7 @@ DEFAULT_TIME_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Frames:
+class ConstraintFrames:
     """Finds the frames that constraints name.
 
     Attributes:
@@ -63,7 +63,7 @@ class Frames:
                 return body.link, body.object.pose.then(body.object.subframes[subframe])
         links = [link.name for link in self.model.robot.links]
         known = describe_known(name, [*links, *self.scene.attached], "the robot has")
-        raise PlanningError(ErrorCode.INVALID_LINK_NAME, f"no link '{name}'; {known}")
+        raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, f"no link '{name}'; {known}")
 
     def reference(self, name: str) -> tuple[str, RigidTransform]:
         """Return the link that a frame moves with ("": the planning frame) and its pose there.
@@ -80,7 +80,9 @@ class Frames:
             return "", self.pose(name)
 
 
-def constraints_of(message: ConstraintsMessage, frames: Frames, warn: Warn) -> Constraints:
+def constraints_of(
+    message: ConstraintsMessage, frames: ConstraintFrames, warn: Warn
+) -> MotionConstraints:
     """Return constraints with frames that planning knows.
 
     Raises:
@@ -88,11 +90,11 @@ def constraints_of(message: ConstraintsMessage, frames: Frames, warn: Warn) -> C
     """
     if message.visibility_constraints:
         raise PlanningError(
-            ErrorCode.INVALID_GOAL_CONSTRAINTS,
+            MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
             "visibility constraints are not supported; joint, position and orientation "
             "constraints are",
         )
-    return Constraints(
+    return MotionConstraints(
         tuple(_joint(each, frames.model, warn) for each in message.joint_constraints),
         tuple(
             _position(each, frames, warn)
@@ -104,7 +106,9 @@ def constraints_of(message: ConstraintsMessage, frames: Frames, warn: Warn) -> C
     )
 
 
-def plan_request(message: MotionPlanRequest, seed: int, frames: Frames, warn: Warn) -> PlanRequest:
+def plan_request(
+    message: MotionPlanRequest, seed: int, frames: ConstraintFrames, warn: Warn
+) -> PlanRequest:
     """Return a planning request that starts from the scene's state.
 
     Args:
@@ -160,7 +164,7 @@ def _has_region(message: PositionMessage, warn: Warn) -> bool:
     return False
 
 
-def _position(message: PositionMessage, frames: Frames, warn: Warn) -> PositionConstraint:
+def _position(message: PositionMessage, frames: ConstraintFrames, warn: Warn) -> PositionConstraint:
     owner = f"the region of the position constraint on '{message.link_name}'"
     region = message.constraint_region
     try:
@@ -182,7 +186,9 @@ def _position(message: PositionMessage, frames: Frames, warn: Warn) -> PositionC
     )
 
 
-def _orientation(message: OrientationMessage, frames: Frames, warn: Warn) -> OrientationConstraint:
+def _orientation(
+    message: OrientationMessage, frames: ConstraintFrames, warn: Warn
+) -> OrientationConstraint:
     link, offset = frames.link_and_offset(message.link_name)
     frame, origin = frames.reference(message.header.frame_id)
     what = f"the orientation constraint on '{message.link_name}'"
@@ -229,4 +235,4 @@ def _weight(weight: float, what: str, warn: Warn) -> float:
 
 
 def _invalid(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)

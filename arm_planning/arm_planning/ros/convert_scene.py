@@ -9,7 +9,7 @@ from moveit_msgs.msg import CollisionObject as ObjectMessage
 from moveit_msgs.msg import PlanningScene as SceneMessage
 
 from arm_node.names import listing
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, joint_positions, pose_of, transform_of
 from arm_planning.ros.convert_shapes import placed_shapes
@@ -77,14 +77,14 @@ def object_change_of(message: ObjectMessage) -> ObjectChange:
     operation = OPERATIONS.get(message.operation)
     if operation is None:
         raise PlanningError(
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             f"{owner} has the operation {message.operation!r}; there are ADD, REMOVE, APPEND and "
             "MOVE",
         )
     names, poses = list(message.subframe_names), list(message.subframe_poses)
     if len(names) != len(poses):
         raise PlanningError(
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             f"{owner} has {len(names)} names and {len(poses)} poses of subframes",
         )
     moves = operation is Operation.MOVE
@@ -147,13 +147,13 @@ def _allowed(message: AllowedCollisionMatrix) -> AllowedCollisions | None:
     rows = [list(row.enabled) for row in message.entry_values]
     if len(rows) != len(names) or any(len(row) != len(names) for row in rows):
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"the allowed collision matrix has {len(names)} names ({listing(names)}) but its "
             "rows are not as many and as long",
         )
     if len(defaults[0]) != len(defaults[1]):
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"the allowed collision matrix has {len(defaults[0])} names and {len(defaults[1])} "
             "values of defaults",
         )

@@ -10,7 +10,7 @@ from shape_msgs.msg import Plane as PlaneMessage
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.ros.convert import pose_of
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
@@ -139,4 +139,4 @@ def _plane(owner: str, message: PlaneMessage) -> Plane:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)

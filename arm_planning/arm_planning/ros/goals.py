@@ -10,14 +10,14 @@ from rclpy.action.server import ActionServer, CancelResponse, GoalResponse, Serv
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import ErrorCode
-from arm_planning.ros.trajectory_executor import Outcome, TrajectoryExecutor, Watch
+from arm_planning.errors import MoveItErrorCode
+from arm_planning.ros.trajectory_executor import ExecutionManager, ExecutionOutcome, Watch
 
 RESULT_TIMEOUT_S = 60
 """How long a result is kept for its client; rclpy's 15 minutes would fill the memory."""
 DEFAULT_REPLANS = 5
 """Attempts of a goal that asks to replan and gives no number."""
-CANCELLED = Outcome(ErrorCode.PREEMPTED, "the request was cancelled")
+CANCELLED = ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the request was cancelled")
 LOGGER = logging.getLogger("move_group")
 
 
@@ -82,7 +82,7 @@ class Turns:
         goal.execute()
 
 
-class Feedback:
+class GoalFeedback:
     """Publishes the states of a goal: PLANNING, MONITOR, IDLE."""
 
     def __init__(self, goal: ServerGoalHandle, message: type[Any]) -> None:
@@ -94,7 +94,7 @@ class Feedback:
         self._goal.publish_feedback(self._message(state=state))
 
 
-def cancellable(goal: ServerGoalHandle, executor: TrajectoryExecutor, watch: Watch) -> Watch:
+def cancellable(goal: ServerGoalHandle, executor: ExecutionManager, watch: Watch) -> Watch:
     """Return a watch that also stops the robot once the goal is to be cancelled."""
 
     def watching(elapsed_s: float) -> str:
@@ -105,15 +105,15 @@ def cancellable(goal: ServerGoalHandle, executor: TrajectoryExecutor, watch: Wat
     return watching
 
 
-def finish(goal: ServerGoalHandle, outcome: Outcome) -> None:
+def finish(goal: ServerGoalHandle, outcome: ExecutionOutcome) -> None:
     """Give a goal its status: succeeded, canceled or aborted; log the reason of a failure."""
-    if outcome.code is ErrorCode.SUCCESS:
+    if outcome.code is MoveItErrorCode.SUCCESS:
         if outcome.message:
             LOGGER.info("%s", outcome.message)
         goal.succeed()
         return
     LOGGER.error("%s: %s", outcome.code.name, outcome.message)
-    if outcome.code is ErrorCode.PREEMPTED and goal.is_cancel_requested:
+    if outcome.code is MoveItErrorCode.PREEMPTED and goal.is_cancel_requested:
         goal.canceled()
     else:
         goal.abort()

@@ -8,7 +8,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.request import PlanResponse
 from arm_planning.ros.convert import (
     error_code,
@@ -19,7 +19,7 @@ from arm_planning.ros.convert import (
 from arm_planning.ros.goals import (
     CANCELLED,
     DEFAULT_REPLANS,
-    Feedback,
+    GoalFeedback,
     Turns,
     action_server,
     cancellable,
@@ -27,11 +27,11 @@ from arm_planning.ros.goals import (
 )
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.trajectory_executor import Outcome, TrajectoryExecutor
+from arm_planning.ros.trajectory_executor import ExecutionManager, ExecutionOutcome
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
-RETRIED = (ErrorCode.PLANNING_FAILED, ErrorCode.INVALID_MOTION_PLAN)
+RETRIED = (MoveItErrorCode.PLANNING_FAILED, MoveItErrorCode.INVALID_MOTION_PLAN)
 """Failures of planning after which another attempt may succeed."""
 LOGGER = logging.getLogger("move_group")
 
@@ -43,7 +43,7 @@ class MoveActions:
         self,
         node: Node,
         session: PlanningSession,
-        executor: TrajectoryExecutor,
+        executor: ExecutionManager,
         display: PlanDisplay,
         turns: Turns,
         *,
@@ -70,7 +70,7 @@ class MoveActions:
         )
 
     def _serve_move(self, goal: ServerGoalHandle) -> MoveGroup.Result:
-        feedback = Feedback(goal, MoveGroup.Feedback)
+        feedback = GoalFeedback(goal, MoveGroup.Feedback)
         result = MoveGroup.Result()
         started_s = time.monotonic()
         feedback.say("PLANNING")
@@ -88,18 +88,18 @@ class MoveActions:
         feedback.say("IDLE")
         return result
 
-    def _plan_only(self, goal: ServerGoalHandle, result: MoveGroup.Result) -> Outcome:
+    def _plan_only(self, goal: ServerGoalHandle, result: MoveGroup.Result) -> ExecutionOutcome:
         request = goal.request
         response = self._session.plan(request.request, request.planning_options.planning_scene_diff)
         self._fill(result, response)
-        return Outcome(response.code, response.message)
+        return ExecutionOutcome(response.code, response.message)
 
     def _plan_and_execute(
-        self, goal: ServerGoalHandle, result: MoveGroup.Result, feedback: Feedback
-    ) -> Outcome:
+        self, goal: ServerGoalHandle, result: MoveGroup.Result, feedback: GoalFeedback
+    ) -> ExecutionOutcome:
         options = goal.request.planning_options
         attempts = (options.replan_attempts or DEFAULT_REPLANS) if options.replan else 1
-        outcome = Outcome(ErrorCode.PLANNING_FAILED)
+        outcome = ExecutionOutcome(MoveItErrorCode.PLANNING_FAILED)
         for attempt in range(attempts):
             if attempt:
                 feedback.say("PLANNING")
@@ -108,22 +108,22 @@ class MoveActions:
                 goal.request.request, options.planning_scene_diff
             )
             self._fill(result, response)
-            outcome = Outcome(response.code, response.message)
+            outcome = ExecutionOutcome(response.code, response.message)
             if response.trajectory is not None:
                 feedback.say("MONITOR")
                 outcome = self._run(goal, response.trajectory, planned_in)
                 result.executed_trajectory = result.planned_trajectory
             if goal.is_cancel_requested:
                 return CANCELLED
-            if outcome.code is ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
+            if outcome.code is MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
                 time.sleep(max(options.replan_delay, 0.0))
             elif outcome.code not in RETRIED:
                 break
         return outcome
 
     def _run(
-        self, goal: ServerGoalHandle, trajectory: Trajectory, planned_in: PlanningScene
-    ) -> Outcome:
+        self, goal: ServerGoalHandle, trajectory: TimedTrajectory, planned_in: PlanningScene
+    ) -> ExecutionOutcome:
         blocked = self._session.watch(trajectory, planned_in)
         watch = cancellable(goal, self._executor, blocked)
         return self._executor.execute(trajectory, (), watch)
@@ -136,22 +136,22 @@ class MoveActions:
         self._display.show(response.start, [response.trajectory])
 
     def _serve_execute(self, goal: ServerGoalHandle) -> ExecuteTrajectory.Result:
-        feedback = Feedback(goal, ExecuteTrajectory.Feedback)
+        feedback = GoalFeedback(goal, ExecuteTrajectory.Feedback)
         feedback.say("MONITOR")
         outcome = self._execute_given(goal)
         finish(goal, outcome)
         feedback.say("IDLE")
         return ExecuteTrajectory.Result(error_code=error_code(outcome.code, outcome.message))
 
-    def _execute_given(self, goal: ServerGoalHandle) -> Outcome:
+    def _execute_given(self, goal: ServerGoalHandle) -> ExecutionOutcome:
         if not self._allows_execution:
-            return Outcome(
-                ErrorCode.CONTROL_FAILED,
+            return ExecutionOutcome(
+                MoveItErrorCode.CONTROL_FAILED,
                 "allow_trajectory_execution is false: this node only plans",
             )
         try:
             trajectory = trajectory_of(goal.request.trajectory)
         except PlanningError as error:
-            return Outcome(error.code, str(error))
+            return ExecutionOutcome(error.code, str(error))
         watch = cancellable(goal, self._executor, lambda _: "")
         return self._executor.execute(trajectory, tuple(goal.request.controller_names), watch)

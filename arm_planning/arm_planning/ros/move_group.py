@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from arm_node.executor_thread import ExecutorThread
-from arm_planning.errors import ErrorCode
+from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
 from arm_planning.execution.settings import ExecutionSettings
 from arm_planning.ros.controller_list import ControllerList
@@ -24,12 +24,12 @@ from arm_planning.ros.move_action import MoveActions
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.robot_setup import RobotSetup, values_below
+from arm_planning.ros.robot_setup import PlanningSetup, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer
 from arm_planning.ros.sequence_session import SequenceSession
 from arm_planning.ros.state_services import StateServices
-from arm_planning.ros.trajectory_executor import TrajectoryExecutor
+from arm_planning.ros.trajectory_executor import ExecutionManager
 
 THREADS = 6
 """Callbacks that may wait at the same time: goals that run, their cancelling, and services."""
@@ -43,7 +43,7 @@ class MoveGroup:
     `node` serves what may take long, on threads of its own; `scene_node` has the scene's topics.
     """
 
-    def __init__(self, node: Node, scene_node: Node, setup: RobotSetup) -> None:
+    def __init__(self, node: Node, scene_node: Node, setup: PlanningSetup) -> None:
         self._model = setup.model
         self._node = node
         self.monitor = SceneMonitor(scene_node, setup.model, setup.scene, node)
@@ -54,7 +54,7 @@ class MoveGroup:
         controllers = ControllerList(
             node, controllers_of_settings(values_below(node, "moveit_simple_controller_manager"))
         )
-        executor = TrajectoryExecutor(node, self.monitor.states, controllers.available, settings)
+        executor = ExecutionManager(node, self.monitor.states, controllers.available, settings)
         display = PlanDisplay(node, setup.model)
         turns = Turns()
         allows = node.get_parameter_or("allow_trajectory_execution", None)
@@ -109,12 +109,12 @@ class MoveGroup:
         if request.group_name not in self._model.groups:
             groups = ", ".join(self._model.groups)
             answer.error_code = error_code(
-                ErrorCode.INVALID_GROUP_NAME,
+                MoveItErrorCode.INVALID_GROUP_NAME,
                 f"no group '{request.group_name}'; the robot has {groups}",
             )
             return answer
         answer.urdf_string = str(self._node.get_parameter("robot_description").value)
-        answer.error_code = error_code(ErrorCode.SUCCESS)
+        answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         return answer
 
 

@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.convert import robot_state_message, trajectory_message
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 DEPTH = 10
 
@@ -19,7 +19,7 @@ class PlanDisplay:
         self._model = model
         self._publisher = node.create_publisher(DisplayTrajectory, "display_planned_path", DEPTH)
 
-    def show(self, start: JointPositions, trajectories: Sequence[Trajectory | None]) -> None:
+    def show(self, start: JointPositions, trajectories: Sequence[TimedTrajectory | None]) -> None:
         """Publish motions that follow one another; None for a plan that failed shows nothing."""
         found = [each for each in trajectories if each is not None]
         if not found or not self._publisher.get_subscription_count():

@@ -13,7 +13,7 @@ from moveit_msgs.srv import (
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
@@ -82,7 +82,7 @@ class PlanningServices:
         answer.start_state = robot_state_message(session.model, scene.positions)
         answer.solution = trajectory_message(session.model.frame, result.trajectory)
         answer.fraction = result.fraction
-        answer.error_code = error_code(ErrorCode.SUCCESS, result.stopped)
+        answer.error_code = error_code(MoveItErrorCode.SUCCESS, result.stopped)
         if result.stopped:
             LOGGER.warning("%s", result.stopped)
         self._display.show(scene.positions, [result.trajectory])

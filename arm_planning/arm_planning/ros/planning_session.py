@@ -13,14 +13,14 @@ from arm_planning.errors import PlanningError
 from arm_planning.planner import Planner
 from arm_planning.request import PlanRequest, PlanResponse
 from arm_planning.robot.model import PlanningModel
-from arm_planning.ros.convert_constraints import Frames, plan_request
+from arm_planning.ros.convert_constraints import ConstraintFrames, plan_request
 from arm_planning.ros.convert_scene import state_change_of
-from arm_planning.ros.robot_setup import RobotSetup
+from arm_planning.ros.robot_setup import PlanningSetup
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 STATE_TIMEOUT_S = 1.0
 LOGGER = logging.getLogger("move_group")
@@ -34,7 +34,7 @@ class PlanningSession:
         monitor: the present scene.
     """
 
-    def __init__(self, setup: RobotSetup, monitor: SceneMonitor) -> None:
+    def __init__(self, setup: PlanningSetup, monitor: SceneMonitor) -> None:
         self.model: PlanningModel = setup.model
         self.monitor = monitor
         self._setup = setup
@@ -108,7 +108,9 @@ class PlanningSession:
         """
         return plan_request(message, self._setup.seed, self.frames(scene), LOGGER.warning)
 
-    def watch(self, trajectory: Trajectory, planned_in: PlanningScene) -> Callable[[float], str]:
+    def watch(
+        self, trajectory: TimedTrajectory, planned_in: PlanningScene
+    ) -> Callable[[float], str]:
         """Return a function of the time since the start, which says what blocks the rest.
 
         It looks only when the scene has changed since it last looked.
@@ -130,9 +132,9 @@ class PlanningSession:
 
         return blocked
 
-    def frames(self, scene: PlanningScene) -> Frames:
+    def frames(self, scene: PlanningScene) -> ConstraintFrames:
         """Return the frames that a request in this scene may name."""
-        return Frames(self.model, scene, partial(self._frame, scene))
+        return ConstraintFrames(self.model, scene, partial(self._frame, scene))
 
     def state(self, message: RobotState) -> PlanningScene:
         """Return the present scene with the robot in a state; an empty one is the present state."""

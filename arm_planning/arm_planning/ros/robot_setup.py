@@ -14,7 +14,7 @@ from std_msgs.msg import String
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.parser import parse_urdf
 from arm_planning.collision.mesh_pieces import MeshPieces
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planner import resting_positions
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits, cartesian_limits
 from arm_planning.robot.build import planning_model
@@ -34,7 +34,7 @@ LOGGER = logging.getLogger("move_group")
 
 
 @dataclass(frozen=True, slots=True)
-class RobotSetup:
+class PlanningSetup:
     """What move_group plans for.
 
     Attributes:
@@ -70,7 +70,7 @@ def scene_node() -> Node:
     return Node(f"move_group_private_{time.time_ns()}", enable_rosout=False)
 
 
-def read_setup(node: Node) -> RobotSetup:
+def read_setup(node: Node) -> PlanningSetup:
     """Return the robot that the node's parameters describe, or the topic robot_description.
 
     Raises:
@@ -91,7 +91,9 @@ def read_setup(node: Node) -> RobotSetup:
     model = planning_model(robot, semantic, limits, LOGGER.warning)
     scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
     follows = node.has_parameter(FOLLOW) and node.get_parameter(FOLLOW).value is True
-    return RobotSetup(model, scene, srdf, resources, cartesian_limits(given), _seed(node), follows)
+    return PlanningSetup(
+        model, scene, srdf, resources, cartesian_limits(given), _seed(node), follows
+    )
 
 
 def values_below(node: Node, prefix: str) -> dict[str, Any]:
@@ -103,14 +105,16 @@ def values_below(node: Node, prefix: str) -> dict[str, Any]:
 def _text(node: Node, name: str) -> str:
     value = node.get_parameter(name).value if node.has_parameter(name) else ""
     if not isinstance(value, str):
-        raise PlanningError(ErrorCode.FAILURE, f"the parameter {name} is not a text")
+        raise PlanningError(MoveItErrorCode.FAILURE, f"the parameter {name} is not a text")
     return value
 
 
 def _seed(node: Node) -> int:
     value = node.get_parameter("seed").value if node.has_parameter("seed") else 0
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise PlanningError(ErrorCode.FAILURE, f"seed is {value}; it is a whole number from 0")
+        raise PlanningError(
+            MoveItErrorCode.FAILURE, f"seed is {value}; it is a whole number from 0"
+        )
     return value
 
 
@@ -132,7 +136,7 @@ def _from_topic(node: Node, topic: str) -> str:
     node.destroy_subscription(subscription)
     if not received:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"there is no robot: the parameter {topic} is empty, and nobody published the topic "
             f"{topic} within {TOPIC_TIMEOUT_S:g} s",
         )

@@ -11,12 +11,12 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import ErrorCode
+from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.convert import error_code
 from arm_planning.ros.goals import (
     CANCELLED,
     DEFAULT_REPLANS,
-    Feedback,
+    GoalFeedback,
     Turns,
     action_server,
     cancellable,
@@ -24,9 +24,9 @@ from arm_planning.ros.goals import (
 )
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.sequence_session import SequenceSession
-from arm_planning.ros.trajectory_executor import Outcome, TrajectoryExecutor
+from arm_planning.ros.trajectory_executor import ExecutionManager, ExecutionOutcome
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 LOGGER = logging.getLogger("move_group")
 
@@ -38,7 +38,7 @@ class SequenceServer:
         self,
         node: Node,
         sequences: SequenceSession,
-        executor: TrajectoryExecutor,
+        executor: ExecutionManager,
         display: PlanDisplay,
         turns: Turns,
         *,
@@ -68,14 +68,14 @@ class SequenceServer:
 
     def _serve_plan(self, request: Any, answer: GetMotionSequence.Response) -> Any:
         plan = self._sequences.plan(request.request)
-        if plan.code is not ErrorCode.SUCCESS:
+        if plan.code is not MoveItErrorCode.SUCCESS:
             LOGGER.error("%s: %s", plan.code.name, plan.message)
         self._display.show(plan.start, plan.trajectories)
         answer.response = plan.message_of(self._sequences.session.model)
         return answer
 
     def _serve(self, goal: ServerGoalHandle) -> MoveGroupSequence.Result:
-        feedback = Feedback(goal, MoveGroupSequence.Feedback)
+        feedback = GoalFeedback(goal, MoveGroupSequence.Feedback)
         result = MoveGroupSequence.Result()
         options = goal.request.planning_options
         executes = self._allows_execution and not options.plan_only
@@ -86,7 +86,7 @@ class SequenceServer:
                 outcome = CANCELLED
                 break
             outcome = self._attempt(goal, result, feedback, executes=executes)
-            if outcome.code is not ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
+            if outcome.code is not MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE:
                 break
             time.sleep(max(options.replan_delay, 0.0))
         result.response.error_code = error_code(outcome.code, outcome.message)
@@ -98,10 +98,10 @@ class SequenceServer:
         self,
         goal: ServerGoalHandle,
         result: MoveGroupSequence.Result,
-        feedback: Feedback,
+        feedback: GoalFeedback,
         *,
         executes: bool,
-    ) -> Outcome:
+    ) -> ExecutionOutcome:
         feedback.say("PLANNING")
         request = goal.request
         planned_in = self._sequences.session.monitor.scene
@@ -110,20 +110,23 @@ class SequenceServer:
         )
         result.response = plan.message_of(self._sequences.session.model)
         self._display.show(plan.start, plan.trajectories)
-        if plan.code is not ErrorCode.SUCCESS or not executes:
-            return Outcome(plan.code, plan.message)
+        if plan.code is not MoveItErrorCode.SUCCESS or not executes:
+            return ExecutionOutcome(plan.code, plan.message)
         feedback.say("MONITOR")
         return self._run(goal, plan.trajectories, planned_in)
 
     def _run(
-        self, goal: ServerGoalHandle, trajectories: Sequence[Trajectory], planned_in: PlanningScene
-    ) -> Outcome:
+        self,
+        goal: ServerGoalHandle,
+        trajectories: Sequence[TimedTrajectory],
+        planned_in: PlanningScene,
+    ) -> ExecutionOutcome:
         for trajectory in trajectories:
             if goal.is_cancel_requested:
                 return CANCELLED
             blocked = self._sequences.session.watch(trajectory, planned_in)
             watch = cancellable(goal, self._executor, blocked)
             outcome = self._executor.execute(trajectory, (), watch)
-            if outcome.code is not ErrorCode.SUCCESS:
+            if outcome.code is not MoveItErrorCode.SUCCESS:
                 return CANCELLED if goal.is_cancel_requested else outcome
-        return Outcome(ErrorCode.SUCCESS)
+        return ExecutionOutcome(MoveItErrorCode.SUCCESS)

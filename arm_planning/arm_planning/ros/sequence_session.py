@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from moveit_msgs.msg import MotionSequenceItem, MotionSequenceRequest, MotionSequenceResponse
 from moveit_msgs.msg import PlanningScene as SceneMessage
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.pipeline import start_state
 from arm_planning.planner import PILZ
 from arm_planning.planners.pilz.sequence import SequenceItem
@@ -21,7 +21,7 @@ from arm_planning.ros.convert import (
 )
 from arm_planning.ros.planning_session import PlanningSession, is_given
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 LOGGER = logging.getLogger("move_group")
 
@@ -38,10 +38,10 @@ class SequencePlan:
         planning_time_s: wall time that it took.
     """
 
-    code: ErrorCode
+    code: MoveItErrorCode
     message: str
     start: JointPositions
-    trajectories: tuple[Trajectory, ...]
+    trajectories: tuple[TimedTrajectory, ...]
     planning_time_s: float
 
     def message_of(self, model: PlanningModel) -> MotionSequenceResponse:
@@ -78,8 +78,8 @@ class SequenceSession:
         """
         started_s = time.monotonic()
         start: JointPositions = {}
-        found: tuple[Trajectory, ...] = ()
-        code, message = ErrorCode.SUCCESS, ""
+        found: tuple[TimedTrajectory, ...] = ()
+        code, message = MoveItErrorCode.SUCCESS, ""
         items: Sequence[MotionSequenceItem] = list(request.items)
         if not items:
             LOGGER.warning("Received empty request. That's ok but maybe not what you intended.")
@@ -123,7 +123,7 @@ class SequenceSession:
         for number, item in enumerate(items):
             if item.req.pipeline_id not in ("", PILZ):
                 raise PlanningError(
-                    ErrorCode.FAILURE,
+                    MoveItErrorCode.FAILURE,
                     f"motion {number} of the sequence is for the pipeline "
                     f"'{item.req.pipeline_id}'; a sequence is planned by '{PILZ}'",
                 )

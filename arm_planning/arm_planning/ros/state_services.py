@@ -11,8 +11,8 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.collision.contact import Contact
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.collision.contact import CollisionContact
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.ros.answering import answering
 from arm_planning.ros.convert import (
     error_code,
@@ -52,7 +52,7 @@ class StateServices:
             answer.error_code = error_code(error.code, str(error))
             return answer
         answer.solution = robot_state_message(self._session.model, positions)
-        answer.error_code = error_code(ErrorCode.SUCCESS)
+        answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         return answer
 
     def _solve(self, request: Any) -> dict[str, float]:
@@ -65,7 +65,7 @@ class StateServices:
             link = request.ik_link_names[0] if request.ik_link_names else link
         elif request.pose_stamped_vector:
             raise PlanningError(
-                ErrorCode.INVALID_LINK_NAME,
+                MoveItErrorCode.INVALID_LINK_NAME,
                 f"{len(request.pose_stamped_vector)} poses at once; one link has one pose",
             )
         mover, origin = frames.reference(stamped.header.frame_id)
@@ -86,7 +86,7 @@ class StateServices:
         try:
             if not request.fk_link_names:
                 raise PlanningError(
-                    ErrorCode.INVALID_LINK_NAME, "compute_fk names no links in fk_link_names"
+                    MoveItErrorCode.INVALID_LINK_NAME, "compute_fk names no links in fk_link_names"
                 )
             scene = session.state(request.robot_state)
             frames = session.frames(scene)
@@ -94,7 +94,7 @@ class StateServices:
         except PlanningError as error:
             answer.error_code = error_code(error.code, str(error))
             return answer
-        answer.error_code = error_code(ErrorCode.SUCCESS)
+        answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         for name in request.fk_link_names:
             try:
                 pose = self._pose(scene, *frames.link_and_offset(name))
@@ -132,7 +132,7 @@ class StateServices:
         ]
         return answer
 
-    def _contact(self, contact: Contact) -> ContactInformation:
+    def _contact(self, contact: CollisionContact) -> ContactInformation:
         message = ContactInformation(
             depth=contact.depth_m,
             contact_body_1=contact.first,

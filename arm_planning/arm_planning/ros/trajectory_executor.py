@@ -13,7 +13,7 @@ from rclpy.action.client import ActionClient
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.controllers import (
     ControllerKind,
     TrajectoryController,
@@ -23,7 +23,7 @@ from arm_planning.execution.controllers import (
 from arm_planning.execution.settings import ExecutionSettings
 from arm_planning.ros.convert import trajectory_message
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 ACTIONS: dict[ControllerKind, type[Any]] = {
     ControllerKind.FOLLOW_JOINT_TRAJECTORY: FollowJointTrajectory,
@@ -43,14 +43,14 @@ Watch = Callable[[float], str]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ExecutionOutcome:
     """How an execution ended: MoveIt's code, and the reason unless it succeeded."""
 
-    code: ErrorCode
+    code: MoveItErrorCode
     message: str = ""
 
 
-class TrajectoryExecutor:
+class ExecutionManager:
     """Runs one trajectory at a time; a thread that calls `execute` waits for its end."""
 
     def __init__(
@@ -82,8 +82,8 @@ class TrajectoryExecutor:
         self._stop.set()
 
     def execute(
-        self, trajectory: Trajectory, names: Sequence[str] = (), watch: Watch | None = None
-    ) -> Outcome:
+        self, trajectory: TimedTrajectory, names: Sequence[str] = (), watch: Watch | None = None
+    ) -> ExecutionOutcome:
         """Run a trajectory to its end.
 
         Args:
@@ -97,21 +97,21 @@ class TrajectoryExecutor:
         """
         if not self._busy.acquire(blocking=False):
             busy = "Cannot push a new trajectory while another is being executed"
-            return Outcome(ErrorCode.CONTROL_FAILED, busy)
+            return ExecutionOutcome(MoveItErrorCode.CONTROL_FAILED, busy)
         try:
             self._stop.clear()
             if not len(trajectory.times_s):
-                return Outcome(ErrorCode.SUCCESS)
+                return ExecutionOutcome(MoveItErrorCode.SUCCESS)
             chosen = choose_controllers(list(self._controllers()), trajectory.joints, names)
             self._check_start(trajectory)
             run = _Run([self._goal(trajectory, each) for each in chosen])
             return self._follow(run, trajectory, watch)
         except PlanningError as error:
-            return Outcome(error.code, str(error))
+            return ExecutionOutcome(error.code, str(error))
         finally:
             self._busy.release()
 
-    def _check_start(self, trajectory: Trajectory) -> None:
+    def _check_start(self, trajectory: TimedTrajectory) -> None:
         tolerance = self._settings.start_tolerance
         if tolerance <= 0.0:
             return
@@ -127,7 +127,7 @@ class TrajectoryExecutor:
                     f"trajectory starts at {wanted:.4f}; plan again from where the robot is"
                 )
 
-    def _goal(self, trajectory: Trajectory, controller: TrajectoryController) -> "_Goal":
+    def _goal(self, trajectory: TimedTrajectory, controller: TrajectoryController) -> "_Goal":
         key = (controller.action_name, controller.kind)
         if key not in self._clients:
             self._clients[key] = ActionClient(
@@ -146,32 +146,34 @@ class TrajectoryExecutor:
         longest_s = self._settings.longest_s(trajectory.duration_s, controller)
         return _Goal(controller, client, _goal_message(part, controller), longest_s)
 
-    def _follow(self, run: "_Run", trajectory: Trajectory, watch: Watch | None) -> Outcome:
+    def _follow(
+        self, run: "_Run", trajectory: TimedTrajectory, watch: Watch | None
+    ) -> ExecutionOutcome:
         start_s = self._states.stamp_s
         run.send()
         while True:
             if outcome := run.outcome():
-                if outcome.code is ErrorCode.SUCCESS:
+                if outcome.code is MoveItErrorCode.SUCCESS:
                     self._wait_until_still()
                 else:
                     run.cancel()
                 return outcome
             if self._stop.wait(POLL_S):
                 run.cancel()
-                return Outcome(ErrorCode.PREEMPTED, "the motion was stopped")
+                return ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the motion was stopped")
             elapsed_s = self._states.stamp_s - start_s
             if self._settings.monitors_duration and elapsed_s > run.longest_s:
                 run.cancel()
-                return Outcome(
-                    ErrorCode.TIMED_OUT,
+                return ExecutionOutcome(
+                    MoveItErrorCode.TIMED_OUT,
                     "Controller is taking too long to execute trajectory (the expected upper bound "
                     f"for the trajectory execution was {run.longest_s:.2f} seconds). Stopping "
                     "trajectory.",
                 )
             if watch is not None and (blocked := watch(elapsed_s)):
                 run.cancel()
-                return Outcome(
-                    ErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE,
+                return ExecutionOutcome(
+                    MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE,
                     f"the way ahead is no longer free: {blocked}",
                 )
 
@@ -192,13 +194,13 @@ class _Run:
         for goal in self._goals:
             goal.send()
 
-    def outcome(self) -> Outcome | None:
+    def outcome(self) -> ExecutionOutcome | None:
         """Return how it ended: the first failure, or success once all have ended."""
         outcomes = [goal.outcome() for goal in self._goals]
         for outcome in outcomes:
-            if outcome is not None and outcome.code is not ErrorCode.SUCCESS:
+            if outcome is not None and outcome.code is not MoveItErrorCode.SUCCESS:
                 return outcome
-        return None if None in outcomes else Outcome(ErrorCode.SUCCESS)
+        return None if None in outcomes else ExecutionOutcome(MoveItErrorCode.SUCCESS)
 
     def cancel(self) -> None:
         """Cancel what still runs, and wait until the controllers have said that it ended."""
@@ -237,11 +239,12 @@ class _Goal:
         if self._handle is not None and self._result is None:
             self._handle.cancel_goal_async()
 
-    def outcome(self) -> Outcome | None:
+    def outcome(self) -> ExecutionOutcome | None:
         name = self._controller.name
         if self._refused:
-            return Outcome(
-                ErrorCode.CONTROL_FAILED, f"controller '{name}' refused the trajectory; see its log"
+            return ExecutionOutcome(
+                MoveItErrorCode.CONTROL_FAILED,
+                f"controller '{name}' refused the trajectory; see its log",
             )
         if self._result is not None:
             return self._ended(self._result)
@@ -250,8 +253,9 @@ class _Goal:
         elif not self._lost_since_s:
             self._lost_since_s = time.monotonic()
         elif time.monotonic() - self._lost_since_s > SERVER_TIMEOUT_S:
-            return Outcome(
-                ErrorCode.CONTROL_FAILED, f"controller '{name}' ended while it moved the robot"
+            return ExecutionOutcome(
+                MoveItErrorCode.CONTROL_FAILED,
+                f"controller '{name}' ended while it moved the robot",
             )
         return None
 
@@ -268,21 +272,25 @@ class _Goal:
     def _has_result(self, future: Any) -> None:
         self._result = future.result()
 
-    def _ended(self, result: Any) -> Outcome:
+    def _ended(self, result: Any) -> ExecutionOutcome:
         succeeded = result.status == GoalStatus.STATUS_SUCCEEDED
         stalled = getattr(result.result, "stalled", False)
         if succeeded or (stalled and self._controller.stall_is_success):
-            return Outcome(ErrorCode.SUCCESS)
+            return ExecutionOutcome(MoveItErrorCode.SUCCESS)
         name = self._controller.name
         if result.status == GoalStatus.STATUS_CANCELED:
-            return Outcome(ErrorCode.PREEMPTED, f"controller '{name}' was told to stop")
+            return ExecutionOutcome(
+                MoveItErrorCode.PREEMPTED, f"controller '{name}' was told to stop"
+            )
         reason = getattr(result.result, "error_string", "") or (
             "a thing stops the gripper" if stalled else "see its log"
         )
-        return Outcome(ErrorCode.CONTROL_FAILED, f"controller '{name}' gave up: {reason}")
+        return ExecutionOutcome(
+            MoveItErrorCode.CONTROL_FAILED, f"controller '{name}' gave up: {reason}"
+        )
 
 
-def _goal_message(part: Trajectory, controller: TrajectoryController) -> Any:
+def _goal_message(part: TimedTrajectory, controller: TrajectoryController) -> Any:
     if controller.kind is ControllerKind.FOLLOW_JOINT_TRAJECTORY:
         trajectory = trajectory_message("", part).joint_trajectory
         for point in trajectory.points:
@@ -304,4 +312,4 @@ def _goal_message(part: Trajectory, controller: TrajectoryController) -> Any:
 
 
 def _failure(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.CONTROL_FAILED, sentence)
+    return PlanningError(MoveItErrorCode.CONTROL_FAILED, sentence)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from arm_node.names import describe_known
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.object_changes import (
     ObjectChange,
@@ -119,4 +119,4 @@ def _detached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
 def _check_link(link: str, links: LinkPoses) -> None:
     if link not in links.links:
         known = describe_known(link, links.links, "the robot has")
-        raise PlanningError(ErrorCode.INVALID_LINK_NAME, f"no link '{link}'; {known}")
+        raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, f"no link '{link}'; {known}")

@@ -7,7 +7,7 @@ from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.robot import Joint
 from arm_node.names import describe_known
 from arm_node.rigid_transform import Quaternion, RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.scene import PlanningScene
@@ -92,7 +92,7 @@ def frame_pose(scene: PlanningScene, links: LinkPoses, name: str) -> RigidTransf
     if name in scene.transforms:
         return scene.transforms[name]
     known = describe_known(name, frame_names(scene, links), "the frames are")
-    raise PlanningError(ErrorCode.FRAME_TRANSFORM_FAILURE, f"Unknown frame: {name}; {known}")
+    raise PlanningError(MoveItErrorCode.FRAME_TRANSFORM_FAILURE, f"Unknown frame: {name}; {known}")
 
 
 def frame_names(scene: PlanningScene, links: LinkPoses) -> list[str]:

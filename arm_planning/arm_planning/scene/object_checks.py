@@ -7,7 +7,7 @@ import numpy as np
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
@@ -65,7 +65,7 @@ def shape_problem(shape: Shape) -> str:
 
 def refusal(sentence: str) -> PlanningError:
     """Return the error for an object that cannot be used."""
-    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)
 
 
 def _size_problem(name: str, sizes: Sequence[float]) -> str:

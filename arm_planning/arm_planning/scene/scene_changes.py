@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from arm_node.names import describe_known
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange, change_attached
@@ -138,7 +138,7 @@ class _Parts:
             elif not math.isfinite(position):
                 sentences.append(f"the position of joint '{joint}' is {position}")
         for sentence in sentences:
-            self._refuse(ErrorCode.INVALID_ROBOT_STATE, sentence)
+            self._refuse(MoveItErrorCode.INVALID_ROBOT_STATE, sentence)
         if not change.positions or sentences:
             return
         self.scene = replace(self.scene, positions={**self.scene.positions, **change.positions})
@@ -150,7 +150,7 @@ class _Parts:
         for each in change.attached:
             if not change.is_state_diff and each.object.operation is not Operation.ADD:
                 self._refuse(
-                    ErrorCode.INVALID_OBJECT_NAME,
+                    MoveItErrorCode.INVALID_OBJECT_NAME,
                     f"object '{each.object.id}' is to be changed by a robot state that is not a "
                     "diff, which can only add; set is_diff of the state",
                 )
@@ -170,11 +170,13 @@ class _Parts:
         for link, value in values.items():
             if link not in self.links.links:
                 known = describe_known(link, self.links.links, "the robot has")
-                self._refuse(ErrorCode.INVALID_LINK_NAME, f"{what} of no link '{link}'; {known}")
+                self._refuse(
+                    MoveItErrorCode.INVALID_LINK_NAME, f"{what} of no link '{link}'; {known}"
+                )
             elif not least <= value < math.inf:
                 bound = "not negative" if least == 0.0 else "above 0"
                 sentence = f"the {what} of link '{link}' is {value}; it is finite and {bound}"
-                self._refuse(ErrorCode.INVALID_LINK_NAME, sentence)
+                self._refuse(MoveItErrorCode.INVALID_LINK_NAME, sentence)
             else:
                 before = self.scene.padding if what == "padding" else self.scene.scale
                 after = {**before, link: float(value)}
@@ -183,7 +185,7 @@ class _Parts:
                 else:
                     self.scene = replace(self.scene, scale=after)
 
-    def _refuse(self, code: ErrorCode, sentence: str) -> None:
+    def _refuse(self, code: MoveItErrorCode, sentence: str) -> None:
         self.problems.append(PlanningError(code, sentence))
 
 

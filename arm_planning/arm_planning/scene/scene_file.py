@@ -14,7 +14,7 @@ import numpy as np
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.object_changes import ObjectChange, Operation, change_object, explicit_pose
 from arm_planning.scene.objects import CollisionObject, PlacedShape
@@ -236,4 +236,4 @@ def _shape(words: _Words) -> Shape:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_OBJECT_NAME, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)

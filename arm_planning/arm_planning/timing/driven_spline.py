@@ -14,8 +14,8 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.robot.model import JointLimits
-from arm_planning.trajectory import Trajectory
+from arm_planning.robot.model import PlanningLimits
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ class DrivenSpline:
         return cls(durations_s, np.stack((p0, first, second, third, last, p1)))
 
     @classmethod
-    def of(cls, trajectory: Trajectory) -> "DrivenSpline":
+    def of(cls, trajectory: TimedTrajectory) -> "DrivenSpline":
         """Return the curve that a controller drives."""
         rows = (trajectory.positions, trajectory.velocities, trajectory.accelerations)
         p, v, a = rows
@@ -132,7 +132,7 @@ def _halving(degree: int) -> Array:
     return np.concatenate(parts)
 
 
-def chord_deviation(trajectory: Trajectory) -> Array:
+def chord_deviation(trajectory: TimedTrajectory) -> Array:
     """Return how far the driven curve leaves the chords between the points.
 
     Each state of the curve is compared with the nearest state of its chord, so a segment that is
@@ -155,8 +155,8 @@ def chord_deviation(trajectory: Trajectory) -> Array:
 
 
 def limit_violation(
-    trajectory: Trajectory,
-    limits: Sequence[JointLimits],
+    trajectory: TimedTrajectory,
+    limits: Sequence[PlanningLimits],
     *,
     velocity_scaling: float = 1.0,
     acceleration_scaling: float = 1.0,

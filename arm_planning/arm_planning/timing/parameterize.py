@@ -6,14 +6,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.robot.model import JointLimits
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing import stepped_motion
 from arm_planning.timing.driven_spline import limit_violation
 from arm_planning.timing.fastest_profile import fastest
 from arm_planning.timing.rounded_path import rounded_paths
 from arm_planning.timing.stepped_motion import MotionLimits
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ _log = logging.getLogger(__name__)
 
 def parameterize(
     path: ArrayLike,
-    limits: Sequence[JointLimits],
+    limits: Sequence[PlanningLimits],
     *,
     joints: Sequence[str],
     velocity_scaling: float = 1.0,
@@ -47,7 +47,7 @@ def parameterize(
     min_angle_change: float = MIN_ANGLE_CHANGE,
     max_deviation: ArrayLike | None = None,
     limit_jerk: bool = False,
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return the fastest trajectory along a path, from rest to rest.
 
     Velocity and acceleration limits hold at every instant of the curve that a joint trajectory
@@ -84,14 +84,14 @@ def parameterize(
     points, tolerances = points[kept], tolerances[kept]
     if len(points) == 1:
         rest = np.zeros_like(points)
-        return Trajectory(tuple(joints), np.zeros(1), points, rest, rest.copy())
+        return TimedTrajectory(tuple(joints), np.zeros(1), points, rest, rest.copy())
     speed = scaling_factor(velocity_scaling, "velocity")
     haste = scaling_factor(acceleration_scaling, "acceleration")
     bounds = _bounds(points, limits, joints, speed, haste, limit_jerk)
     trajectory = _timed(points, tolerances, joints, bounds, resample_dt)
     fault = limit_violation(trajectory, bounds.limits(), with_jerk=limit_jerk)
     if fault:
-        raise PlanningError(ErrorCode.FAILURE, f"the timing broke a limit: {fault}")
+        raise PlanningError(MoveItErrorCode.FAILURE, f"the timing broke a limit: {fault}")
     return trajectory
 
 
@@ -113,14 +113,14 @@ def scaling_factor(value: float, name: str) -> float:
 def _checked(path: ArrayLike, joints: Sequence[str]) -> Array:
     points = np.array(path, dtype=np.float64)
     if points.size == 0:
-        raise PlanningError(ErrorCode.INVALID_MOTION_PLAN, "the path has no way points")
+        raise PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, "the path has no way points")
     if points.ndim != 2 or points.shape[1] != len(joints):
         raise ValueError(f"a path of {len(joints)} joints has shape (m, {len(joints)})")
     usable = np.abs(points) <= _LARGEST_POSITION
     if not usable.all():
         row, column = np.argwhere(~usable)[0].tolist()
         raise PlanningError(
-            ErrorCode.INVALID_MOTION_PLAN,
+            MoveItErrorCode.INVALID_MOTION_PLAN,
             f"way point {row} of the path has {points[row, column]:g} for joint "
             f"'{joints[column]}'; a position must be a number of at most {_LARGEST_POSITION:g}",
         )
@@ -133,7 +133,7 @@ def _tolerances(max_deviation: ArrayLike | None, path_tolerance: float, count: i
         tolerances = np.minimum(tolerances, np.asarray(max_deviation, dtype=np.float64))
     if not (tolerances >= 0.0).all():
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"the path tolerance is {tolerances.min():g}; it must not be negative",
         )
     return tolerances
@@ -142,7 +142,7 @@ def _tolerances(max_deviation: ArrayLike | None, path_tolerance: float, count: i
 def _require_step(resample_dt: float) -> None:
     if not stepped_motion.SMALLEST_STEP_S <= resample_dt < np.inf:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"resample_dt is {resample_dt:g} s; it must be at least "
             f"{stepped_motion.SMALLEST_STEP_S:g} s",
         )
@@ -172,7 +172,7 @@ def _changes(points: Array, others: Array) -> Array:
 
 def _bounds(
     points: Array,
-    limits: Sequence[JointLimits],
+    limits: Sequence[PlanningLimits],
     joints: Sequence[str],
     velocity_scaling: float,
     acceleration_scaling: float,
@@ -201,13 +201,13 @@ def _bounds(
 def _require(limit: float, name: str, joint: str) -> None:
     if limit == np.inf:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"No {name} limit was defined for joint {joint}! "
             f"Set has_{name}_limits and max_{name} in joint_limits.yaml",
         )
     if not limit > 0.0:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"Invalid max_{name} {limit:g} specified for joint {joint}; it must be greater than 0",
         )
 
@@ -218,7 +218,7 @@ def _timed(
     joints: Sequence[str],
     bounds: MotionLimits,
     resample_dt: float,
-) -> Trajectory:
+) -> TimedTrajectory:
     moving = np.isfinite(bounds.acceleration)
     runs = [
         fastest(path, bounds.velocity, bounds.acceleration)

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.robot.model import JointLimits
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import ROUNDING, DrivenSpline, bernstein
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -49,10 +49,10 @@ class MotionLimits:
     jerk: Array
     closeness: float = 1e-4
 
-    def limits(self) -> list[JointLimits]:
+    def limits(self) -> list[PlanningLimits]:
         """Return them as the limits of joints that may be anywhere."""
         return [
-            JointLimits(-np.inf, np.inf, *map(float, each))
+            PlanningLimits(-np.inf, np.inf, *map(float, each))
             for each in zip(self.velocity, self.acceleration, self.jerk, strict=True)
         ]
 
@@ -80,7 +80,7 @@ def step_for(
     step = min(max(step, SMALLEST_STEP_S), resample_dt)
     if not duration_s <= MAX_STEPS * step:
         raise PlanningError(
-            ErrorCode.FAILURE,
+            MoveItErrorCode.FAILURE,
             f"the motion would take {duration_s:.3g} s, but at most {MAX_STEPS * step:.3g} s can "
             "be timed; raise the limits or the scaling factors, or split the path",
         )
@@ -134,7 +134,7 @@ def stretch(control: Array, step_s: float, bounds: MotionLimits) -> float:
 
 def trajectory(
     joints: Sequence[str], control: Array, step_s: float, bounds: MotionLimits, resample_dt: float
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return the trajectory along a spline, slowed down where its limits ask for it.
 
     Args:
@@ -152,7 +152,7 @@ def trajectory(
     accelerations = (before - 2.0 * here + after) / step**2
     knots = (positions, velocities, accelerations)
     kept = _kept(knots, step, bounds, max(1, int(resample_dt / step + 1e-9)))
-    return Trajectory(
+    return TimedTrajectory(
         tuple(joints),
         # Not a product: whole nanoseconds as they are parsed from text.
         np.round(np.flatnonzero(kept).astype(np.float64) * step, 9),

@@ -10,7 +10,7 @@ from arm_description import forward_kinematics
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.model import CollisionModel
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
@@ -301,7 +301,7 @@ def test_unknown_links_are_named():
 def test_shapes_without_a_size_are_refused(shape, message):
     with pytest.raises(PlanningError, match=message) as caught:
         slider(thing("it", shape, 0.0, 0.0, 5.0))
-    assert caught.value.code is ErrorCode.INVALID_OBJECT_NAME
+    assert caught.value.code is MoveItErrorCode.INVALID_OBJECT_NAME
 
 
 def test_poses_that_are_none_are_refused():

@@ -11,15 +11,15 @@ from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Box, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator, euler_error, rotation_vector
 from arm_planning.constraints.joint_goals import snap_to_limits
-from arm_planning.robot.model import JointGroup, JointLimits, PlanningModel
+from arm_planning.robot.model import JointGroup, PlanningLimits, PlanningModel
 from arm_planning.scene.objects import PlacedShape
 
 URDF = robot(
@@ -31,9 +31,13 @@ URDF = robot(
         "right_finger", "b", "right", "<mimic joint='left_finger' multiplier='-2' offset='0.1'/>"
     ),
 )
-ENDLESS = JointLimits(-math.inf, math.inf, 1.0, 1.0)
+ENDLESS = PlanningLimits(-math.inf, math.inf, 1.0, 1.0)
 GROUP = JointGroup(
-    "arm", ("turn", "bend"), (True, False), (ENDLESS, JointLimits(-1.0, 1.0, 1.0, 1.0)), ("a", "b")
+    "arm",
+    ("turn", "bend"),
+    (True, False),
+    (ENDLESS, PlanningLimits(-1.0, 1.0, 1.0, 1.0)),
+    ("a", "b"),
 )
 MODEL = PlanningModel(parse_urdf(URDF), "base", ("turn", "bend", "left_finger"), {"arm": GROUP})
 
@@ -49,7 +53,7 @@ def pose(q: np.ndarray, link: str) -> np.ndarray:
 
 
 def evaluator(*parts) -> ConstraintEvaluator:
-    constraints = Constraints(
+    constraints = MotionConstraints(
         tuple(each for each in parts if isinstance(each, JointConstraint)),
         tuple(each for each in parts if isinstance(each, PositionConstraint)),
         tuple(each for each in parts if isinstance(each, OrientationConstraint)),
@@ -180,12 +184,14 @@ def test_in_gimbal_lock_the_tolerances_decide_how_the_angle_is_shared(sign):
 
 def test_a_goal_beyond_a_limit_becomes_the_limit_and_is_said():
     said = []
-    goal = Constraints((JointConstraint("bend", 1.2, 0.1, 0.1), JointConstraint("turn", 9.0, 0, 0)))
+    goal = MotionConstraints(
+        (JointConstraint("bend", 1.2, 0.1, 0.1), JointConstraint("turn", 9.0, 0, 0))
+    )
     snapped = snap_to_limits(goal, GROUP, said.append).joints
     assert [each.position for each in snapped] == [1.0, 9.0]
     assert said == ["the goal of joint 'bend', 1.2, is beyond its limit; 1 is used"]
 
 
 def test_a_goal_whose_tolerance_reaches_inside_stays():
-    goal = Constraints((JointConstraint("bend", 1.05, 0.1, 0.1),))
+    goal = MotionConstraints((JointConstraint("bend", 1.05, 0.1, 0.1),))
     assert snap_to_limits(goal, GROUP, pytest.fail) == goal

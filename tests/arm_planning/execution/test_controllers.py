@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.controllers import (
     ControllerKind,
     TrajectoryController,
@@ -11,7 +11,7 @@ from arm_planning.execution.controllers import (
     controllers_of_settings,
     part_for,
 )
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 SETTINGS = {
     "controller_names": ["arm", "hand"],
@@ -80,14 +80,14 @@ def test_a_named_controller_is_used_and_an_unknown_one_is_refused():
 def test_what_nobody_drives_is_named():
     with pytest.raises(PlanningError, match="no active controller drives j9") as error:
         choose_controllers([controller("arm", "j1")], ["j1", "j9"])
-    assert error.value.code is ErrorCode.CONTROL_FAILED
+    assert error.value.code is MoveItErrorCode.CONTROL_FAILED
     assert "arm (j1)" in str(error.value)
 
 
 def test_each_controller_gets_its_columns():
     times = np.array([0.0, 1.0])
     values = np.arange(6.0).reshape(2, 3)
-    whole = Trajectory(("j1", "finger", "j2"), times, values, values, values)
+    whole = TimedTrajectory(("j1", "finger", "j2"), times, values, values, values)
     part = part_for(whole, controller("arm", "j2", "j1"))
     assert part.joints == ("j1", "j2")
     assert part.positions.tolist() == [[0.0, 2.0], [3.0, 5.0]]

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 from arm_planning.execution.remaining import remaining
-from arm_planning.robot.model import JointLimits
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import DrivenSpline
 from arm_planning.timing.parameterize import parameterize
 
 WHOLE = parameterize(
     [[0.0, 0.0], [1.0, 0.2], [0.5, 1.0]],
-    [JointLimits(-3.0, 3.0, 1.0, 2.0)] * 2,
+    [PlanningLimits(-3.0, 3.0, 1.0, 2.0)] * 2,
     joints=("a", "b"),
 )
 

@@ -4,7 +4,7 @@ from planning_models import model_of
 from robots import joint, link, robot
 
 from arm_description import forward_kinematics
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.forward import ForwardKinematics
 
 ARM = robot(
@@ -49,4 +49,4 @@ def test_poses_are_copies(model):
 def test_an_unknown_link_is_refused_with_those_that_exist(model):
     with pytest.raises(PlanningError, match="no link 'foot'; the robot has base, upper") as refused:
         ForwardKinematics(model).pose(np.zeros(3), "foot")
-    assert refused.value.code is ErrorCode.INVALID_LINK_NAME
+    assert refused.value.code is MoveItErrorCode.INVALID_LINK_NAME

@@ -10,7 +10,7 @@ from robots import joint, link, robot
 from arm_description import UrdfError, parse_urdf
 from arm_description.transforms import rotation_about, transform
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.search import Orientation
 
@@ -191,7 +191,7 @@ def test_a_collision_check_that_takes_forever_ends_the_search():
         PlanningError, match="collision checks took 20 times the timeout"
     ) as refused:
         kinematics.solve(target, np.zeros(6), free=lambda q: False, timeout_s=1.0)
-    assert refused.value.code is ErrorCode.TIMED_OUT
+    assert refused.value.code is MoveItErrorCode.TIMED_OUT
 
 
 def test_several_solutions_come_in_the_order_of_their_distance():
@@ -233,7 +233,7 @@ def test_with_few_joints_the_message_says_what_to_ask_for():
     target = transform(rotation_about((1.0, 0.0, 0.0), 1.0), (0.3, 0.2, 0.4))
     with pytest.raises(PlanningError, match="with 5 joints most orientations cannot be had") as no:
         kinematics.solve(target, np.zeros(5))
-    assert no.value.code is ErrorCode.NO_IK_SOLUTION
+    assert no.value.code is MoveItErrorCode.NO_IK_SOLUTION
 
 
 def test_a_place_beyond_the_arms_length_is_refused_with_the_distances():
@@ -273,7 +273,7 @@ NAN = float("nan")
 def test_a_target_that_is_no_pose_is_refused(target, message):
     with pytest.raises(PlanningError, match=message) as refused:
         arm(6).solve(target, np.zeros(6))
-    assert refused.value.code is ErrorCode.INVALID_GOAL_CONSTRAINTS
+    assert refused.value.code is MoveItErrorCode.INVALID_GOAL_CONSTRAINTS
 
 
 @pytest.mark.parametrize(
@@ -290,7 +290,7 @@ def test_a_seed_that_is_no_state_is_refused(seed, message):
     kinematics = arm(6)
     with pytest.raises(PlanningError, match=message) as refused:
         kinematics.solve(np.eye(4), seed)
-    assert refused.value.code is ErrorCode.INVALID_ROBOT_STATE
+    assert refused.value.code is MoveItErrorCode.INVALID_ROBOT_STATE
 
 
 def test_a_continuous_joint_that_has_turned_too_often_is_refused():

@@ -9,7 +9,7 @@ from planning_models import model_of
 from robots import joint, link, robot
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.search import Orientation
 from arm_planning.planners.cartesian import CartesianPath, JumpLimits, cartesian_path
@@ -223,7 +223,7 @@ def test_steps_that_make_no_path_are_refused(arm, max_step, message):
     line = (moved(arm.tip_pose(START), y=0.1),)
     with pytest.raises(PlanningError, match=message) as refused:
         cartesian_path(arm, START, line, max_step)
-    assert refused.value.code is ErrorCode.FAILURE
+    assert refused.value.code is MoveItErrorCode.FAILURE
 
 
 def test_a_way_point_that_is_no_pose_is_refused_by_its_number(arm):

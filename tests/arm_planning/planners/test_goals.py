@@ -9,12 +9,12 @@ from planar_arm import PlanarArm, planar_model
 from arm_description.urdf.robot import Box, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import (
-    Constraints,
     JointConstraint,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.goals import GoalSampler
 from arm_planning.scene.objects import PlacedShape
 
@@ -32,7 +32,7 @@ def inverse(
     x, y = pose[:2, 3] - [math.cos(turn), math.sin(turn)]
     cosine = (x * x + y * y - 2.0) / 2.0
     if abs(cosine) > 1.0:
-        raise PlanningError(ErrorCode.NO_IK_SOLUTION, "the nearest pose is 12 mm away")
+        raise PlanningError(MoveItErrorCode.NO_IK_SOLUTION, "the nearest pose is 12 mm away")
     found = []
     for elbow in (math.acos(cosine), -math.acos(cosine)):
         first = math.atan2(y, x) - math.atan2(math.sin(elbow), 1.0 + math.cos(elbow))
@@ -41,10 +41,10 @@ def inverse(
     return sorted(found, key=lambda q: float(np.linalg.norm(q - seed)))[:most]
 
 
-def sampler(*goals: Constraints, arm: PlanarArm | None = None, **options) -> GoalSampler:
+def sampler(*goals: MotionConstraints, arm: PlanarArm | None = None, **options) -> GoalSampler:
     arm = arm or PlanarArm()
     settings = {
-        "path": Constraints(),
+        "path": MotionConstraints(),
         "positions": {},
         "inverse": inverse,
         "start": START,
@@ -53,8 +53,8 @@ def sampler(*goals: Constraints, arm: PlanarArm | None = None, **options) -> Goa
     return GoalSampler(goals, model=MODEL, group=GROUP, pose=arm.pose, checker=arm, **settings)
 
 
-def joints(*positions: float, tolerance: float = 1e-4) -> Constraints:
-    return Constraints(
+def joints(*positions: float, tolerance: float = 1e-4) -> MotionConstraints:
+    return MotionConstraints(
         tuple(
             JointConstraint(name, position, tolerance, tolerance)
             for name, position in zip(GROUP.joints, positions, strict=False)
@@ -62,11 +62,11 @@ def joints(*positions: float, tolerance: float = 1e-4) -> Constraints:
     )
 
 
-def pose_goal(q: list[float], *, turn: float = 1e-3, radius: float = 1e-4) -> Constraints:
+def pose_goal(q: list[float], *, turn: float = 1e-3, radius: float = 1e-4) -> MotionConstraints:
     pose = PlanarArm().pose(np.array(q), "l3")
     half = math.atan2(pose[1, 0], pose[0, 0]) / 2.0
     region = PlacedShape(Sphere(radius), RigidTransform(tuple(pose[:3, 3].tolist())))
-    return Constraints(
+    return MotionConstraints(
         positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),),
         orientations=(
             OrientationConstraint("l3", (0.0, 0.0, math.sin(half), math.cos(half)), (turn,) * 3),
@@ -74,7 +74,7 @@ def pose_goal(q: list[float], *, turn: float = 1e-3, radius: float = 1e-4) -> Co
     )
 
 
-def code_of(goals: GoalSampler) -> tuple[ErrorCode, str]:
+def code_of(goals: GoalSampler) -> tuple[MoveItErrorCode, str]:
     with pytest.raises(PlanningError) as raised:
         goals.all()
     return raised.value.code, str(raised.value)
@@ -124,7 +124,7 @@ def test_a_wide_orientation_gives_further_poses():
 def test_constraints_on_a_pose_and_on_joints_hold_together():
     below = JointConstraint("j1", -1.5, 1.5, 1.5)
     goal = pose_goal([0.5, 0.8, 0.3])
-    both = Constraints((below,), goal.positions, goal.orientations)
+    both = MotionConstraints((below,), goal.positions, goal.orientations)
     assert [float(q[1]) for q in sampler(both).all()] == [pytest.approx(-0.8)]
 
 
@@ -149,48 +149,50 @@ def test_a_goal_beyond_a_limit_is_moved_and_said_once():
 @pytest.mark.parametrize("goal", [joints(1.57, 0.0, 0.0), pose_goal([1.57, 0.0, 0.0])])
 def test_a_goal_in_collision_names_what_touches(goal):
     code, sentence = code_of(sampler(goal, arm=PlanarArm(((0.0, 1.0, 0.2),))))
-    assert code == ErrorCode.GOAL_IN_COLLISION
+    assert code == MoveItErrorCode.GOAL_IN_COLLISION
     assert sentence.startswith("goal is in collision: the arm with a disc, 0.")
 
 
 def test_a_goal_out_of_reach_says_so():
     region = PlacedShape(Sphere(1e-3), RigidTransform((5.0, 0.0, 0.0)))
-    goal = Constraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),))
+    goal = MotionConstraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),))
     code, sentence = code_of(sampler(goal))
-    assert code == ErrorCode.NO_IK_SOLUTION
+    assert code == MoveItErrorCode.NO_IK_SOLUTION
     assert sentence == "goal is out of reach: the nearest pose is 12 mm away"
 
 
 def test_a_goal_that_violates_the_constraints_on_the_way_says_so():
     region = PlacedShape(Box((1.0, 1.0, 1.0)), RigidTransform((2.5, 0.0, 0.0)))
-    inside = Constraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),))
+    inside = MotionConstraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),))
     code, sentence = code_of(sampler(joints(2.0, 0.0, 0.0), path=inside))
-    assert code == ErrorCode.GOAL_VIOLATES_PATH_CONSTRAINTS
+    assert code == MoveItErrorCode.GOAL_VIOLATES_PATH_CONSTRAINTS
     assert sentence.startswith("goal violates the path constraints: link 'l3' is")
 
 
 def test_solutions_beyond_a_limit_are_left_out_and_named():
     code, sentence = code_of(sampler(pose_goal([0.0, 3.05, 0.0])))
-    assert code == ErrorCode.GOAL_STATE_INVALID
+    assert code == MoveItErrorCode.GOAL_STATE_INVALID
     assert sentence == ("goal is outside of the limits: joint 'j1' at 3.05 has the limits -3 and 3")
 
 
 def test_contradictory_constraints_name_the_one_that_fails():
     goal = pose_goal([0.5, 0.8, 0.3])
-    both = Constraints((JointConstraint("j0", 2.0, 0.1, 0.1),), goal.positions, goal.orientations)
+    both = MotionConstraints(
+        (JointConstraint("j0", 2.0, 0.1, 0.1),), goal.positions, goal.orientations
+    )
     code, sentence = code_of(sampler(both))
-    assert code == ErrorCode.GOAL_CONSTRAINTS_VIOLATED
+    assert code == MoveItErrorCode.GOAL_CONSTRAINTS_VIOLATED
     assert sentence.startswith("goal cannot be met: joint 'j0' is at")
 
 
 def test_a_request_without_a_goal_says_what_it_needs():
-    for goals in (sampler(), sampler(Constraints())):
+    for goals in (sampler(), sampler(MotionConstraints())):
         code, sentence = code_of(goals)
-        assert code == ErrorCode.INVALID_GOAL_CONSTRAINTS
+        assert code == MoveItErrorCode.INVALID_GOAL_CONSTRAINTS
         assert "it needs constraints on joints, positions or orientations" in sentence
 
 
 def test_a_group_without_inverse_kinematics_says_so():
     code, sentence = code_of(sampler(pose_goal([0.5, 0.8, 0.3]), inverse=None))
-    assert code == ErrorCode.NO_IK_SOLUTION
+    assert code == MoveItErrorCode.NO_IK_SOLUTION
     assert sentence == "group 'arm' has no inverse kinematics; give a goal of its joints"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from planar_arm import PlanarArm, dense, planar_problem
 
-from arm_planning.constraints.constraints import Constraints, JointConstraint
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.constraints.constraints import JointConstraint, MotionConstraints
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import Deadline
 from arm_planning.planners.registry import planner_for, planner_ids
 
@@ -50,7 +50,7 @@ def test_an_error_of_the_checker_comes_through():
     class Broken(PlanarArm):
         def is_free_edge(self, a, b):
             if self.checks > 20:
-                raise PlanningError(ErrorCode.CRASH, "the checker broke")
+                raise PlanningError(MoveItErrorCode.CRASH, "the checker broke")
             return super().is_free_edge(a, b)
 
     with pytest.raises(PlanningError, match="the checker broke"):
@@ -58,6 +58,6 @@ def test_an_error_of_the_checker_comes_through():
 
 
 def test_constraints_on_the_way_are_refused_with_the_planner_that_takes_them():
-    path = Constraints((JointConstraint("j0", 0.0, 3.0, 3.0),))
+    path = MotionConstraints((JointConstraint("j0", 0.0, 3.0, 3.0),))
     with pytest.raises(PlanningError, match="takes no path constraints; the planner RRTConnect"):
         planner_for("RRT").plan(planar_problem(PlanarArm(), START, GOAL, path=path))

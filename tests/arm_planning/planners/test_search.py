@@ -11,11 +11,11 @@ from planar_arm import PlanarArm, dense, planar_problem
 from arm_description.urdf.robot import Box
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import (
-    Constraints,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import Deadline, path_length
 from arm_planning.planners.search import RrtConnectPlanner
 from arm_planning.scene.objects import PlacedShape
@@ -94,7 +94,7 @@ def test_a_search_ends_at_the_deadline():
     problem = planar_problem(blocked, [0.0], [2.0], deadline=Deadline(200.0, clock))
     with pytest.raises(PlanningError, match="searching for a path; allow more time") as raised:
         PLANNER.plan(problem)
-    assert raised.value.code == ErrorCode.TIMED_OUT
+    assert raised.value.code == MoveItErrorCode.TIMED_OUT
     assert clock.readings == 201
 
 
@@ -131,10 +131,10 @@ def test_a_start_in_collision_is_named():
         PlanningError, match=r"the start is in collision: the arm with a disc, 0.20 m"
     ) as raised:
         PLANNER.plan(problem)
-    assert raised.value.code == ErrorCode.START_STATE_IN_COLLISION
+    assert raised.value.code == MoveItErrorCode.START_STATE_IN_COLLISION
 
 
-LEVEL = Constraints(
+LEVEL = MotionConstraints(
     orientations=(OrientationConstraint("l4", (0.0, 0.0, 0.0, 1.0), (0.1, 0.1, 0.1)),)
 )
 LEVEL_START, LEVEL_GOAL = [-1.0, 0.5, 0.5, 0.0], [1.0, -0.5, -0.5, 0.0]
@@ -156,7 +156,9 @@ def test_a_position_holds_on_the_whole_way():
     x, y = arm.points(np.array(start))[-1]
     slot = PlacedShape(Box((0.2, 10.0, 1.0)), RigidTransform((x, 0.0, 0.0)))
     goal = [-0.5, -0.3, 1.0]
-    path_constraints = Constraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (slot,)),))
+    path_constraints = MotionConstraints(
+        positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (slot,)),)
+    )
     problem = planar_problem(arm, start, goal, path=path_constraints)
     path = PLANNER.plan(problem)
     assert y > 0.1

@@ -14,12 +14,12 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof
 from arm_planning.constraints.constraints import (
-    Constraints,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.group_kinematics import GroupKinematics
 from arm_planning.planners.goals import GoalSampler
 from arm_planning.planners.problem import PlanningProblem
@@ -72,7 +72,9 @@ class Cell:
         self.is_free, self.contacts = self.collisions.is_free, self.collisions.contacts
         self.is_free_edge, self.prove = proof.is_free_edge, proof.prove
 
-    def problem(self, goal: Constraints, path: Constraints = Constraints()) -> PlanningProblem:
+    def problem(
+        self, goal: MotionConstraints, path: MotionConstraints = MotionConstraints()
+    ) -> PlanningProblem:
         pose = self.collisions.link_pose
         goals = GoalSampler(
             (goal,),
@@ -107,7 +109,7 @@ def mirrored(cell: Cell) -> tuple[float, float, float]:
 
 def test_a_pose_beyond_a_post_is_reached_on_a_way_that_is_proved(cell):
     target = mirrored(cell)
-    path = RrtConnectPlanner().plan(cell.problem(Constraints(positions=(position(*target),))))
+    path = RrtConnectPlanner().plan(cell.problem(MotionConstraints(positions=(position(*target),))))
     assert cell.prove(path) is None
     assert cell.collisions.link_pose(path[-1], "l6")[:3, 3] == pytest.approx(target, abs=2e-4)
 
@@ -115,10 +117,10 @@ def test_a_pose_beyond_a_post_is_reached_on_a_way_that_is_proved(cell):
 def test_the_tool_stays_level_on_the_way_around(cell):
     pose = cell.collisions.link_pose(START, "l6")
     axis = pose[:3, 2]
-    level = Constraints(
+    level = MotionConstraints(
         orientations=(OrientationConstraint("l6", _quaternion(pose[:3, :3]), (0.3, 0.3, math.pi)),)
     )
-    goal = Constraints(positions=(position(*mirrored(cell)),))
+    goal = MotionConstraints(positions=(position(*mirrored(cell)),))
     problem = cell.problem(goal, level)
     path = RrtConnectPlanner().plan(problem)
     assert problem.path is not None
@@ -128,19 +130,19 @@ def test_the_tool_stays_level_on_the_way_around(cell):
 
 
 def test_a_goal_inside_the_post_says_what_it_touches(cell):
-    problem = cell.problem(Constraints(positions=(position(0.45, 0.0, 0.3),)))
+    problem = cell.problem(MotionConstraints(positions=(position(0.45, 0.0, 0.3),)))
     with pytest.raises(
         PlanningError, match=r"goal is in collision: l\d with post, \d+ mm deep"
     ) as e:
         RrtConnectPlanner().plan(problem)
-    assert e.value.code == ErrorCode.GOAL_IN_COLLISION
+    assert e.value.code == MoveItErrorCode.GOAL_IN_COLLISION
 
 
 def test_a_goal_too_far_away_says_how_near_it_gets(cell):
-    problem = cell.problem(Constraints(positions=(position(3.0, 0.0, 0.3),)))
+    problem = cell.problem(MotionConstraints(positions=(position(3.0, 0.0, 0.3),)))
     with pytest.raises(PlanningError, match="goal is out of reach: ") as raised:
         RrtConnectPlanner().plan(problem)
-    assert raised.value.code == ErrorCode.NO_IK_SOLUTION
+    assert raised.value.code == MoveItErrorCode.NO_IK_SOLUTION
 
 
 def _quaternion(rotation: np.ndarray) -> tuple[float, float, float, float]:

@@ -11,7 +11,7 @@ from arm_planning.robot.limits import (
     limits_of,
     read_joint_limits,
 )
-from arm_planning.robot.model import JointLimits
+from arm_planning.robot.model import PlanningLimits
 
 SAFETY = "<safety_controller soft_lower_limit='-1' soft_upper_limit='9' k_velocity='1'/>"
 
@@ -21,16 +21,16 @@ def part(*inside: str, kind: str = "revolute", velocity: float = 3.0):
     return parse_urdf(text).joints[0]
 
 
-def limits(moving: object, warnings: list[str] | None = None, **given: object) -> JointLimits:
+def limits(moving: object, warnings: list[str] | None = None, **given: object) -> PlanningLimits:
     found = [] if warnings is None else warnings
     settings = joint_limit_settings({"joint_limits": {"j": given}}, found.append)
     return limits_of([moving], settings, found.append)["j"]
 
 
 def test_each_given_key_replaces_the_urdfs_value_even_by_a_wider_one():
-    assert limits(part(), max_position=4.0, max_velocity=9.0, max_acceleration=2.0) == JointLimits(
-        -3.0, 4.0, 9.0, 2.0
-    )
+    assert limits(
+        part(), max_position=4.0, max_velocity=9.0, max_acceleration=2.0
+    ) == PlanningLimits(-3.0, 4.0, 9.0, 2.0)
 
 
 def test_dotted_names_are_those_of_a_nested_mapping():
@@ -58,7 +58,7 @@ def test_soft_limits_narrow_the_range():
 
 def test_missing_limits_are_assumed_with_one_warning():
     warnings: list[str] = []
-    assert limits(part(velocity=0.0), warnings) == JointLimits(-3.0, 3.0, 3.0, 6.0)
+    assert limits(part(velocity=0.0), warnings) == PlanningLimits(-3.0, 3.0, 3.0, 6.0)
     assert warnings == [
         "joints without a velocity limit: j (3 rad/s); without an acceleration limit: "
         "j (6 rad/s^2): these values are assumed, set them in joint_limits.yaml"

@@ -2,7 +2,7 @@ import pytest
 from robots import joint, link, robot
 
 from arm_description import parse_urdf
-from arm_planning.errors import ErrorCode, SrdfError
+from arm_planning.errors import MoveItErrorCode, SrdfError
 from arm_planning.robot.srdf import EndEffector, Srdf, SrdfGroup, VirtualJoint, parse_srdf
 from arm_planning.scene.allowed_collisions import allowed_collisions
 
@@ -26,7 +26,7 @@ def read(*lines: str, name: str = "arm") -> tuple[Srdf, list[str]]:
 def refusal(*lines: str) -> str:
     with pytest.raises(SrdfError) as caught:
         read(*lines)
-    assert caught.value.code is ErrorCode.FAILURE
+    assert caught.value.code is MoveItErrorCode.FAILURE
     return str(caught.value)
 
 

@@ -11,7 +11,7 @@ from planar_robot import planar_model
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.ros.convert import (
     duration_message,
     error_code,
@@ -23,7 +23,7 @@ from arm_planning.ros.convert import (
     trajectory_message,
     trajectory_of,
 )
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 
 def state(**positions: float) -> RobotState:
@@ -57,8 +57,8 @@ def test_a_duration_comes_back_within_a_nanosecond():
 
 
 def test_a_success_has_no_source_and_a_failure_says_who():
-    assert error_code(ErrorCode.SUCCESS).source == ""
-    failed = error_code(ErrorCode.NO_IK_SOLUTION, "out of reach")
+    assert error_code(MoveItErrorCode.SUCCESS).source == ""
+    failed = error_code(MoveItErrorCode.NO_IK_SOLUTION, "out of reach")
     assert (failed.val, failed.message, failed.source) == (-31, "out of reach", "move_group")
 
 
@@ -82,7 +82,7 @@ def test_a_state_with_fewer_positions_than_names_is_ignored_as_upstream():
 def test_a_position_that_is_not_finite_is_an_invalid_state():
     with pytest.raises(PlanningError, match="the position of joint 'elbow' is nan") as error:
         joint_positions(planar_model(), state(elbow=math.nan), print)
-    assert error.value.code is ErrorCode.INVALID_ROBOT_STATE
+    assert error.value.code is MoveItErrorCode.INVALID_ROBOT_STATE
 
 
 def test_a_state_message_has_all_joints_mimic_joints_included():
@@ -95,7 +95,7 @@ def test_a_state_message_has_all_joints_mimic_joints_included():
 def test_a_trajectory_comes_back_as_it_was():
     times = np.array([0.0, 0.1, 0.25])
     values = np.arange(6.0).reshape(3, 2)
-    given = Trajectory(("shoulder", "elbow"), times, values, 2.0 * values, -values)
+    given = TimedTrajectory(("shoulder", "elbow"), times, values, 2.0 * values, -values)
     message = trajectory_message("base", given)
     assert message.joint_trajectory.header.frame_id == "base"
     back = trajectory_of(message)
@@ -132,7 +132,7 @@ def test_velocities_that_are_not_given_are_nan():
 def test_a_trajectory_that_cannot_be_driven_is_refused(message, problem):
     with pytest.raises(PlanningError, match=problem) as error:
         trajectory_of(message)
-    assert error.value.code is ErrorCode.INVALID_MOTION_PLAN
+    assert error.value.code is MoveItErrorCode.INVALID_MOTION_PLAN
 
 
 def test_no_trajectory_is_an_empty_message():

@@ -16,8 +16,8 @@ from planar_robot import planar_model
 from shape_msgs.msg import SolidPrimitive
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.ros.convert_constraints import Frames, constraints_of, plan_request
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.ros.convert_constraints import ConstraintFrames, constraints_of, plan_request
 from arm_planning.ros.goal_messages import joint_goal, plan_message, pose_goal
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.scene import PlanningScene
@@ -28,15 +28,15 @@ CAN = CollisionObject(
 )
 
 
-def frames(**poses: RigidTransform) -> Frames:
+def frames(**poses: RigidTransform) -> ConstraintFrames:
     scene = PlanningScene({}, attached={"can": AttachedBody(CAN, "tip")})
 
     def pose(name: str) -> RigidTransform:
         if name not in poses:
-            raise PlanningError(ErrorCode.FRAME_TRANSFORM_FAILURE, f"Unknown frame: {name}")
+            raise PlanningError(MoveItErrorCode.FRAME_TRANSFORM_FAILURE, f"Unknown frame: {name}")
         return poses[name]
 
-    return Frames(planar_model(), scene, pose)
+    return ConstraintFrames(planar_model(), scene, pose)
 
 
 def converted(message: Constraints, warnings: list[str] | None = None, **poses: RigidTransform):
@@ -87,7 +87,10 @@ def test_what_does_not_exist_is_named_with_what_does():
     unknown = refused(joint_goal({"elbwo": 0.0}))
     assert str(unknown) == "a constraint names the joint 'elbwo'; did you mean 'elbow'?"
     lost = refused(pose_goal("tip", (0.0, 0.0, 0.0), frame="nowhere"))
-    assert (lost.code, str(lost)) == (ErrorCode.FRAME_TRANSFORM_FAILURE, "Unknown frame: nowhere")
+    assert (lost.code, str(lost)) == (
+        MoveItErrorCode.FRAME_TRANSFORM_FAILURE,
+        "Unknown frame: nowhere",
+    )
 
 
 def oriented(**fields: float | int) -> Constraints:
@@ -113,7 +116,7 @@ def oriented(**fields: float | int) -> Constraints:
 def test_constraints_that_mean_nothing_are_refused(message, problem):
     with pytest.raises(PlanningError, match=problem) as error:
         converted(message)
-    assert error.value.code is ErrorCode.INVALID_GOAL_CONSTRAINTS
+    assert error.value.code is MoveItErrorCode.INVALID_GOAL_CONSTRAINTS
 
 
 def test_a_region_without_size_is_refused():

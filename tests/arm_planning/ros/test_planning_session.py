@@ -11,7 +11,7 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning import CollisionObject, PlacedShape, PlanningScene
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.robot_setup import RobotSetup
+from arm_planning.ros.robot_setup import PlanningSetup
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 
 EMPTY = PlanningScene(
@@ -38,7 +38,7 @@ def monitor() -> Monitor:
 
 @pytest.fixture
 def session(monitor: Monitor) -> PlanningSession:
-    setup = RobotSetup(
+    setup = PlanningSetup(
         planar_model(), EMPTY, "", ResourceFinder(), CartesianLimits(), 0, follows_world=False
     )
     return PlanningSession(setup, monitor)

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 from planning_scenes import CUBE, LINKS, SCENE, add, at
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.attached_changes import AttachedChange, change_attached
 from arm_planning.scene.object_changes import ObjectChange, Operation
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
@@ -78,56 +78,56 @@ def test_detaching_without_names_detaches_all():
         (
             WORLD,
             replace(GRASP, link="hnad"),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "no link 'hnad'; did you mean 'hand'?",
         ),
         (
             WORLD,
             replace(GRASP, link="odom"),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "no link 'odom'; the robot has arm, base, finger, hand",
         ),
         (
             SCENE,
             GRASP,
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "Attempting to attach object 'box' to link 'hand' but no geometry specified and such "
             "an object does not exist in the collision world; the world has none",
         ),
         (
             WORLD,
             let_go("box"),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "object 'box' is not attached; the robot holds none",
         ),
         (
             HELD,
             let_go("box", "arm"),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "object 'box' is attached to link 'hand', not to 'arm'",
         ),
         (
             HELD,
             let_go(link="x"),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "no link 'x'; the robot has arm, base, finger, hand",
         ),
         (
             HELD,
             AttachedChange(ObjectChange(Operation.MOVE, "box"), "hand"),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "object 'box' is attached and cannot be moved; attach it again at its new pose",
         ),
         (
             SCENE,
             AttachedChange(add("arm"), "hand"),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "the robot has a link 'arm'; give the object another id",
         ),
     ],
 )
 def test_what_is_not_possible_is_refused(
-    scene: PlanningScene, change: AttachedChange, code: ErrorCode, sentence: str
+    scene: PlanningScene, change: AttachedChange, code: MoveItErrorCode, sentence: str
 ):
     with pytest.raises(PlanningError) as caught:
         changed(scene, change)

@@ -7,7 +7,7 @@ from planning_scenes import CUBE, LINKS, MODEL, SCENE, at
 
 from arm_description import forward_kinematics
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 
@@ -65,5 +65,5 @@ def test_a_subframe_turns_with_its_object():
 def test_an_unknown_frame_is_refused_with_near_ones(name: str, hint: str):
     with pytest.raises(PlanningError) as caught:
         frame_pose(FULL, LINKS, name)
-    assert caught.value.code is ErrorCode.FRAME_TRANSFORM_FAILURE
+    assert caught.value.code is MoveItErrorCode.FRAME_TRANSFORM_FAILURE
     assert str(caught.value).startswith(f"Unknown frame: {name}; {hint}")

@@ -7,7 +7,7 @@ from planning_scenes import CUBE, LINKS, SCENE, add, at
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.object_changes import ObjectChange, Operation, change_object
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
@@ -32,7 +32,7 @@ def changed(scene: PlanningScene, change: ObjectChange) -> PlanningScene:
 def refusal(scene: PlanningScene, change: ObjectChange) -> str:
     with pytest.raises(PlanningError) as caught:
         changed(scene, change)
-    assert caught.value.code is ErrorCode.INVALID_OBJECT_NAME
+    assert caught.value.code is MoveItErrorCode.INVALID_OBJECT_NAME
     return str(caught.value)
 
 
@@ -176,7 +176,7 @@ def test_a_broken_shape_is_refused(shape: Shape, problem: str):
 def test_an_unknown_frame_is_refused():
     with pytest.raises(PlanningError, match="Unknown frame: nowhere") as caught:
         changed(SCENE, add("x", frame="nowhere"))
-    assert caught.value.code is ErrorCode.FRAME_TRANSFORM_FAILURE
+    assert caught.value.code is MoveItErrorCode.FRAME_TRANSFORM_FAILURE
 
 
 def test_what_is_attached_is_detached_first():

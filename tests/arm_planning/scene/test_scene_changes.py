@@ -5,7 +5,7 @@ import pytest
 from planning_scenes import CUBE, MODEL, SCENE, add, at
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode
+from arm_planning.errors import MoveItErrorCode
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange
 from arm_planning.scene.object_changes import ObjectChange, Operation
@@ -36,7 +36,7 @@ def changed(scene: PlanningScene, change: SceneChange) -> PlanningScene:
     return outcome.scene
 
 
-def problems(change: SceneChange, scene: PlanningScene = FULL) -> list[tuple[ErrorCode, str]]:
+def problems(change: SceneChange, scene: PlanningScene = FULL) -> list[tuple[MoveItErrorCode, str]]:
     outcome = change_scene(MODEL, scene, change, pytest.fail)
     assert outcome.scene == scene
     return [(problem.code, str(problem)) for problem in outcome.problems]
@@ -126,40 +126,40 @@ def test_a_part_that_fails_leaves_the_others_in_force():
     [
         (
             SceneChange(positions={"turn": 1.0, "follow": 1.0}),
-            ErrorCode.INVALID_ROBOT_STATE,
+            MoveItErrorCode.INVALID_ROBOT_STATE,
             "no active joint 'follow'; the robot has slide, turn",
         ),
         (
             SceneChange(positions={"turn": math.nan}, is_state_diff=False),
-            ErrorCode.INVALID_ROBOT_STATE,
+            MoveItErrorCode.INVALID_ROBOT_STATE,
             "the position of joint 'turn' is nan",
         ),
         (
             SceneChange(padding={"amr": 0.1}),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "padding of no link 'amr'; did you mean 'arm'?",
         ),
         (
             SceneChange(padding={"arm": -0.1}),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "the padding of link 'arm' is -0.1; it is finite and not negative",
         ),
         (
             SceneChange(scale={"arm": 0.0}),
-            ErrorCode.INVALID_LINK_NAME,
+            MoveItErrorCode.INVALID_LINK_NAME,
             "the scale of link 'arm' is 0.0; it is finite and above 0",
         ),
         (
             SceneChange(
                 transforms={"f": FixedTransform("", RigidTransform(rotation=(1, 1, 0, 0)))}
             ),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "the orientation of frame 'f' is no unit quaternion: its norm is 1.414; no rotation is "
             "(0, 0, 0, 1)",
         ),
         (
             SceneChange(transforms={"f": FixedTransform("qqq", at())}),
-            ErrorCode.FRAME_TRANSFORM_FAILURE,
+            MoveItErrorCode.FRAME_TRANSFORM_FAILURE,
             "Unknown frame: qqq; the frames are arm, base, box, camera, cup, finger, hand",
         ),
         (
@@ -167,14 +167,14 @@ def test_a_part_that_fails_leaves_the_others_in_force():
                 is_state_diff=False,
                 attached=(AttachedChange(ObjectChange(Operation.REMOVE, "cup")),),
             ),
-            ErrorCode.INVALID_OBJECT_NAME,
+            MoveItErrorCode.INVALID_OBJECT_NAME,
             "object 'cup' is to be changed by a robot state that is not a diff, which can only "
             "add; set is_diff of the state",
         ),
     ],
 )
 def test_what_is_not_possible_leaves_the_scene_as_it_was(
-    change: SceneChange, code: ErrorCode, sentence: str
+    change: SceneChange, code: MoveItErrorCode, sentence: str
 ):
     assert problems(change) == [(code, sentence)]
 

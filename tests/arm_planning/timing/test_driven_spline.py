@@ -6,17 +6,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arm_control.controllers.joint_trajectory.plans import Spline
-from arm_planning.robot.model import JointLimits
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import DrivenSpline, chord_deviation, limit_violation
 from arm_planning.timing.parameterize import parameterize
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 
 def random_trajectory(seed, points=5, joints=3):
     rng = np.random.default_rng(seed)
     rows = rng.uniform(-1.0, 1.0, (3, points, joints)) * np.array([1.0, 2.0, 9.0])[:, None, None]
     times = np.concatenate(([0.0], np.cumsum(rng.uniform(0.05, 1.0, points - 1))))
-    return Trajectory(tuple(f"j{n}" for n in range(joints)), times, *rows)
+    return TimedTrajectory(tuple(f"j{n}" for n in range(joints)), times, *rows)
 
 
 def controlled(trajectory, times):
@@ -61,14 +61,14 @@ def test_no_state_is_farther_from_its_chord_than_the_deviation(seed):
 
 
 def test_a_straight_motion_has_no_deviation_however_its_speed_changes():
-    limits = [JointLimits(-3.0, 3.0, 1.0, 1.0)] * 2
+    limits = [PlanningLimits(-3.0, 3.0, 1.0, 1.0)] * 2
     trajectory = parameterize([[0.0, 0.0], [1.0, -2.0]], limits, joints=("a", "b"))
     assert chord_deviation(trajectory).max() < 1e-12
 
 
 def test_a_curve_that_leaves_the_ends_of_its_chord_deviates_by_as_much():
     rest = np.zeros((2, 1))
-    swing = Trajectory(
+    swing = TimedTrajectory(
         ("a",), np.array([0.0, 1.0]), np.array([[0.0], [0.1]]), np.array([[-1.0], [0.0]]), rest
     )
     low = DrivenSpline.of(swing).sample(np.linspace(0.0, 1.0, 1000))[0].min()
@@ -78,20 +78,22 @@ def test_a_curve_that_leaves_the_ends_of_its_chord_deviates_by_as_much():
 @pytest.mark.parametrize(
     ("limit", "sentence"),
     [
-        (JointLimits(-9.0, 9.0, 1.0, 9.0), r"joint 'a' has a velocity of 1\.\d+ rad or m/s"),
-        (JointLimits(-9.0, 9.0, 9.0, 5.0), r"joint 'a' has an acceleration of"),
-        (JointLimits(-9.0, 0.5, 9.0, 9.0), r"joint 'a' has a position of 1 rad or m about"),
-        (JointLimits(-9.0, 9.0, 9.0, 9.0), ""),
+        (PlanningLimits(-9.0, 9.0, 1.0, 9.0), r"joint 'a' has a velocity of 1\.\d+ rad or m/s"),
+        (PlanningLimits(-9.0, 9.0, 9.0, 5.0), r"joint 'a' has an acceleration of"),
+        (PlanningLimits(-9.0, 0.5, 9.0, 9.0), r"joint 'a' has a position of 1 rad or m about"),
+        (PlanningLimits(-9.0, 9.0, 9.0, 9.0), ""),
     ],
 )
 def test_a_broken_limit_is_named(limit, sentence):
     rest = np.zeros((2, 1))
-    motion = Trajectory(("a",), np.array([0.0, 1.0]), np.array([[0.0], [1.0]]), rest, rest)
+    motion = TimedTrajectory(("a",), np.array([0.0, 1.0]), np.array([[0.0], [1.0]]), rest, rest)
     found = limit_violation(motion, [limit])
     assert re.match(sentence, found)
     assert bool(found) is bool(sentence)
 
 
 def test_one_point_breaks_no_limit_of_motion():
-    still = Trajectory(("a",), np.zeros(1), np.ones((1, 1)), np.zeros((1, 1)), np.zeros((1, 1)))
-    assert limit_violation(still, [JointLimits(-2.0, 2.0, 1.0, 1.0)]) == ""
+    still = TimedTrajectory(
+        ("a",), np.zeros(1), np.ones((1, 1)), np.zeros((1, 1)), np.zeros((1, 1))
+    )
+    assert limit_violation(still, [PlanningLimits(-2.0, 2.0, 1.0, 1.0)]) == ""

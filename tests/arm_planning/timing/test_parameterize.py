@@ -6,15 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arm_control.controllers.joint_trajectory.plans import Spline
-from arm_planning.errors import ErrorCode, PlanningError
-from arm_planning.robot.model import JointLimits
+from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.parameterize import parameterize, scaling_factor
 
 CORNER = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]
 
 
 def limits(velocity=1.0, acceleration=1.0, *, joints=2, jerk=np.inf):
-    return [JointLimits(-3.0, 3.0, velocity, acceleration, jerk)] * joints
+    return [PlanningLimits(-3.0, 3.0, velocity, acceleration, jerk)] * joints
 
 
 def timed(path, bounds, **options):
@@ -68,7 +68,7 @@ def test_limits_hold_every_millisecond(seed, joints, count, tolerance):
     rng = np.random.default_rng(seed)
     path = rng.uniform(-1.0, 1.0, (count, joints)) * 10.0 ** rng.uniform(-2.0, 0.3, joints)
     bounds = [
-        JointLimits(-9.0, 9.0, 10.0 ** rng.uniform(-0.5, 1.0), 10.0 ** rng.uniform(-0.3, 1.5))
+        PlanningLimits(-9.0, 9.0, 10.0 ** rng.uniform(-0.5, 1.0), 10.0 ** rng.uniform(-0.3, 1.5))
         for _ in range(joints)
     ]
     found = timed(path, bounds, path_tolerance=tolerance)
@@ -167,7 +167,7 @@ def test_way_points_near_the_one_before_are_dropped_and_the_ends_kept():
 
 
 def test_a_joint_that_stays_needs_no_limits():
-    bounds = [*limits(joints=1), JointLimits(-1.0, 1.0, np.inf, np.inf)]
+    bounds = [*limits(joints=1), PlanningLimits(-1.0, 1.0, np.inf, np.inf)]
     assert timed([[0.0, 0.5], [1.0, 0.5]], bounds).duration_s == pytest.approx(2.0, rel=0.006)
 
 
@@ -184,7 +184,7 @@ def test_a_joint_that_stays_needs_no_limits():
 def test_limits_that_cannot_be_used(bounds, sentence):
     with pytest.raises(PlanningError, match=sentence) as error:
         timed(CORNER, bounds, path_tolerance=0.0)
-    assert error.value.code is ErrorCode.FAILURE
+    assert error.value.code is MoveItErrorCode.FAILURE
 
 
 @pytest.mark.parametrize(
@@ -198,7 +198,7 @@ def test_limits_that_cannot_be_used(bounds, sentence):
 def test_paths_that_cannot_be_driven(path, sentence):
     with pytest.raises(PlanningError, match=sentence) as error:
         timed(path, limits())
-    assert error.value.code is ErrorCode.INVALID_MOTION_PLAN
+    assert error.value.code is MoveItErrorCode.INVALID_MOTION_PLAN
 
 
 @pytest.mark.parametrize(

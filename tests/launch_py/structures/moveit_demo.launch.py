@@ -1,6 +1,5 @@
-# A move_group that nothing replaces, with its static transform; the rest starts.
-# starts: static_transform_publisher robot_state_publisher ros2_control_node spawner
-# warns: move_group is skipped
+# MoveIt's move_group, which the suite's own replaces, with its static transform.
+# starts: static_transform_publisher robot_state_publisher move_group ros2_control_node spawner
 import os
 
 import yaml

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import ErrorCode, MissingOmplError, PlanningError
+from arm_planning.errors import MissingOmplError, MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
 from arm_planning.planners.search import check_start, shortened_and_proved
 from arm_planning.planners.space import space_of
@@ -70,7 +70,7 @@ class OmplPlanner:
         """
         if problem.path is not None and problem.path.constraints:
             raise PlanningError(
-                ErrorCode.PLANNING_FAILED,
+                MoveItErrorCode.PLANNING_FAILED,
                 f"OMPL's {self.name} takes no path constraints; the planner RRTConnect does",
             )
         check_start(problem)
@@ -89,7 +89,8 @@ class OmplPlanner:
         proved = [path for path in paths if path is not None]
         if not proved:
             raise PlanningError(
-                ErrorCode.PLANNING_FAILED, f"OMPL's {self.name} found no path that is proved free"
+                MoveItErrorCode.PLANNING_FAILED,
+                f"OMPL's {self.name} found no path that is proved free",
             )
         return min(proved, key=path_length)
 
@@ -116,7 +117,7 @@ class OmplPlanner:
         guard.raise_error()
         if not setup.haveExactSolutionPath():
             raise PlanningError(
-                ErrorCode.PLANNING_FAILED, f"OMPL's {self.name} found no path to the goal"
+                MoveItErrorCode.PLANNING_FAILED, f"OMPL's {self.name} found no path to the goal"
             )
         solution = setup.getSolutionPath()
         states: list[State] = [

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.pose_line import PoseLine
 
 Array = NDArray[np.float64]
@@ -120,4 +120,4 @@ def _points(
 
 
 def _no_circle(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_MOTION_PLAN, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.even_cubics import even_cubics
 from arm_planning.planners.pose_line import PoseLine
 from arm_planning.timing.driven_spline import DrivenSpline
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ POSES = 40
 class DrivenMotion:
     """A trajectory as a function of time; it rests before and after."""
 
-    def __init__(self, trajectory: Trajectory) -> None:
+    def __init__(self, trajectory: TimedTrajectory) -> None:
         self.duration_s = trajectory.duration_s
         self._spline = DrivenSpline.of(trajectory)
         self._still = trajectory.positions[:1] if self.duration_s == 0.0 else None
@@ -131,7 +131,7 @@ def _until_outside(
         before = time_s
     side = "before" if backward else "after"
     raise PlanningError(
-        ErrorCode.INVALID_MOTION_PLAN,
+        MoveItErrorCode.INVALID_MOTION_PLAN,
         f"{name}: the motion {side} the blend stays within its radius of {radius_m:g} m; "
         "make the radius smaller",
     )

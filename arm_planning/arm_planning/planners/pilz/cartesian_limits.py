@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 from arm_node.names import describe_known
 from arm_node.parameter_file import flat_parameters
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 
 _PREFIX = "cartesian_limits."
 
@@ -60,4 +60,4 @@ def cartesian_limits(values: Mapping[str, object]) -> CartesianLimits:
 
 
 def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.FAILURE, sentence)
+    return PlanningError(MoveItErrorCode.FAILURE, sentence)

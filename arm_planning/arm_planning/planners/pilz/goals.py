@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform, Vector, rotated
 from arm_planning.constraints.constraints import (
-    Constraints,
+    MotionConstraints,
     OrientationConstraint,
     PositionConstraint,
 )
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.forward import ForwardKinematics
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.request import PlanRequest
@@ -63,7 +63,7 @@ def checked_goal(model: PlanningModel, request: PlanRequest, state: JointPositio
     ):
         if not SMALLEST_SCALING <= value <= 1.0:
             raise PlanningError(
-                ErrorCode.INVALID_MOTION_PLAN,
+                MoveItErrorCode.INVALID_MOTION_PLAN,
                 f"{name} scaling not in range [{SMALLEST_SCALING}, 1], actual value is: {value:g}",
             )
     group = model.group(request.group)
@@ -128,20 +128,20 @@ def _checked_start(group: JointGroup, state: JointPositions) -> Array:
     missing = [joint for joint in group.joints if joint not in state]
     if missing:
         raise PlanningError(
-            ErrorCode.INVALID_ROBOT_STATE, f"the start state lacks joints {listing(missing)}"
+            MoveItErrorCode.INVALID_ROBOT_STATE, f"the start state lacks joints {listing(missing)}"
         )
     start = group.positions(state)
     outside = ~((start >= group.lower - _OUTSIDE) & (start <= group.upper + _OUTSIDE))
     if outside.any():
         names = [joint for joint, is_out in zip(group.joints, outside, strict=True) if is_out]
         raise PlanningError(
-            ErrorCode.INVALID_ROBOT_STATE,
+            MoveItErrorCode.INVALID_ROBOT_STATE,
             f"start state joints outside their position limits: {listing(names)}",
         )
     return start
 
 
-def _joint_goal(group: JointGroup, goal: Constraints, start: Array) -> Array:
+def _joint_goal(group: JointGroup, goal: MotionConstraints, start: Array) -> Array:
     q = start.copy()
     for constraint in goal.joints:
         if constraint.joint not in group.joints:
@@ -160,7 +160,7 @@ def _joint_goal(group: JointGroup, goal: Constraints, start: Array) -> Array:
     return q
 
 
-def _pose_constraints(goal: Constraints) -> tuple[PositionConstraint, OrientationConstraint]:
+def _pose_constraints(goal: MotionConstraints) -> tuple[PositionConstraint, OrientationConstraint]:
     if len(goal.positions) != 1 or len(goal.orientations) != 1:
         raise _bad_goal(
             "a pose goal has exactly one position and one orientation constraint; this one has "
@@ -178,4 +178,4 @@ def _pose_constraints(goal: Constraints) -> tuple[PositionConstraint, Orientatio
 
 
 def _bad_goal(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)

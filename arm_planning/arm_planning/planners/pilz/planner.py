@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from arm_node.names import listing
 from arm_node.rigid_transform import Vector
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.arc import PoseArc, arc_about, arc_through
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
@@ -22,7 +22,7 @@ from arm_planning.planners.pose_line import PoseLine
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.timing.parameterize import parameterize
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 Free = Callable[[Array], bool]
@@ -45,7 +45,7 @@ class PilzPlanner:
 
     def plan(
         self, request: PlanRequest, state: JointPositions, free: Free | None = None
-    ) -> Trajectory:
+    ) -> TimedTrajectory:
         """Return the motion that a request asks for, from rest to rest.
 
         Args:
@@ -60,7 +60,7 @@ class PilzPlanner:
         name = request.planner or DEFAULT
         if name not in PLANNERS:
             raise PlanningError(
-                ErrorCode.PLANNING_FAILED,
+                MoveItErrorCode.PLANNING_FAILED,
                 f"no planner '{name}' in pilz_industrial_motion_planner; "
                 f"there are {listing(PLANNERS)}",
             )
@@ -92,12 +92,13 @@ class PilzPlanner:
             return InverseKinematics(self.model, group, link, state)
         except PlanningError as error:
             raise PlanningError(
-                ErrorCode.NO_IK_SOLUTION, f'No IK solver available for link: "{link}": {error}'
+                MoveItErrorCode.NO_IK_SOLUTION,
+                f'No IK solver available for link: "{link}": {error}',
             ) from error
 
     def _point_to_point(
         self, goal: PilzGoal, request: PlanRequest, free: Free | None
-    ) -> Trajectory:
+    ) -> TimedTrajectory:
         joints = goal.joints
         if goal.pose is not None:
             kinematics = self.kinematics(goal.group.name, goal.link, goal.state)
@@ -131,7 +132,7 @@ class PilzPlanner:
         given = len({constraint.joint for constraint in request.goals[0].joints})
         if given != len(goal.group.joints):
             raise PlanningError(
-                ErrorCode.INVALID_GOAL_CONSTRAINTS,
+                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
                 f"{name}: the goal has {given} joints, and group '{goal.group.name}' has "
                 f"{len(goal.group.joints)}: {listing(goal.group.joints)}",
             )
@@ -169,7 +170,7 @@ class PilzPlanner:
         links = [link.name for link in self.model.robot.links]
         if constraint.link and constraint.link not in links:
             raise PlanningError(
-                ErrorCode.INVALID_LINK_NAME,
+                MoveItErrorCode.INVALID_LINK_NAME,
                 f"no link '{constraint.link}' for the {path.name} point of CIRC; the robot has "
                 f"{listing(links)}",
             )
@@ -177,4 +178,4 @@ class PilzPlanner:
 
 
 def _no_arc(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_MOTION_PLAN, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

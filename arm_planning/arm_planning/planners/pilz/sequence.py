@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
 from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked, within_limits
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions
 from arm_planning.timing.stepped_motion import MotionLimits
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def plan_sequence(
     items: Sequence[SequenceItem],
     state: JointPositions,
     free: Free | None = None,
-) -> tuple[Trajectory, ...]:
+) -> tuple[TimedTrajectory, ...]:
     """Return the trajectories of a sequence, one for each run of motions of the same group.
 
     Each motion starts where the one of its group before it ended. Blended motions use a velocity
@@ -62,7 +62,7 @@ def plan_sequence(
     _check_starts(items)
     radii = _usable_radii(planner, items)
     current = dict(state)
-    motions: list[Trajectory] = []
+    motions: list[TimedTrajectory] = []
     for number, item in enumerate(items):
         try:
             found = planner.plan(item.request, current, free)
@@ -100,7 +100,7 @@ def _check_starts(items: Sequence[SequenceItem]) -> None:
     for number, item in enumerate(items):
         if item.request.start and item.request.group in seen:
             raise PlanningError(
-                ErrorCode.INVALID_ROBOT_STATE,
+                MoveItErrorCode.INVALID_ROBOT_STATE,
                 f"Only the first request of group '{item.request.group}' may have a start state; "
                 f"motion {number} has one, too",
             )
@@ -134,7 +134,7 @@ def _check_overlaps(
     planner: PilzPlanner,
     items: Sequence[SequenceItem],
     radii: Sequence[float],
-    motions: Sequence[Trajectory],
+    motions: Sequence[TimedTrajectory],
     state: JointPositions,
 ) -> None:
     for number in range(len(items) - 1):
@@ -157,13 +157,13 @@ def _run(
     planner: PilzPlanner,
     items: Sequence[SequenceItem],
     radii: Sequence[float],
-    motions: Sequence[Trajectory],
+    motions: Sequence[TimedTrajectory],
     state: JointPositions,
     offset: int,
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return the motions of one group, one after another."""
     group = planner.model.group(items[0].request.group)
-    parts: list[Trajectory] = []
+    parts: list[TimedTrajectory] = []
     first = 0
     for number in range(len(items)):
         if radii[number]:
@@ -183,10 +183,10 @@ def _blended(
     planner: PilzPlanner,
     items: Sequence[SequenceItem],
     radii: Sequence[float],
-    motions: Sequence[Trajectory],
+    motions: Sequence[TimedTrajectory],
     state: JointPositions,
     offset: int,
-) -> Trajectory:
+) -> TimedTrajectory:
     group = planner.model.group(items[0].request.group)
     kinematics = planner.kinematics(group.name, "", state)
     functions = [DrivenMotion(trajectory) for trajectory in motions]
@@ -225,7 +225,7 @@ def _states(functions: Sequence[DrivenMotion], windows: Sequence[Window], times_
     return states
 
 
-def _appended(group: JointGroup, parts: Sequence[Trajectory]) -> Trajectory:
+def _appended(group: JointGroup, parts: Sequence[TimedTrajectory]) -> TimedTrajectory:
     """Return trajectories that rest at their ends, one after another."""
     whole = parts[0]
     for part in parts[1:]:
@@ -242,4 +242,4 @@ def _appended(group: JointGroup, parts: Sequence[Trajectory]) -> Trajectory:
 
 
 def _invalid(sentence: str) -> PlanningError:
-    return PlanningError(ErrorCode.INVALID_MOTION_PLAN, sentence)
+    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

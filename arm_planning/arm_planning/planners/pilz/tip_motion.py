@@ -8,19 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pilz.even_cubics import even_cubics
 from arm_planning.planners.pilz.trapezoid import Trapezoid
 from arm_planning.planners.pose_line import PoseLine
-from arm_planning.robot.model import JointGroup, JointLimits
+from arm_planning.robot.model import JointGroup, PlanningLimits
 from arm_planning.timing import stepped_motion
 from arm_planning.timing.driven_spline import limit_violation
 from arm_planning.timing.parameterize import RESAMPLE_DT_S
 from arm_planning.timing.slowed_motion import slowed
 from arm_planning.timing.stepped_motion import MotionLimits
-from arm_planning.trajectory import Trajectory
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def tip_motion(
     limits: CartesianLimits,
     velocity_scaling: float,
     acceleration_scaling: float,
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return the trajectory along a curve.
 
     The tip keeps to its Cartesian limits. Where a joint could not follow within its own limits, the
@@ -87,7 +87,7 @@ def tip_motion(
     group = kinematics.group
     if length < SHORTEST_M:
         rest = np.zeros((1, len(start)))
-        return Trajectory(group.joints, np.zeros(1), np.array([start]), rest, rest.copy())
+        return TimedTrajectory(group.joints, np.zeros(1), np.array([start]), rest, rest.copy())
     followed = _Followed(name, curve, kinematics, start)
     speed = Trapezoid(
         length,
@@ -112,7 +112,7 @@ def tip_motion(
 
 def within_limits(
     motion: Callable[[Array], Array], duration_s: float, group: JointGroup, bounds: MotionLimits
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return the trajectory of a motion, slowed down where its joints could not follow.
 
     Args:
@@ -133,11 +133,11 @@ def within_limits(
 
 def checked(
     name: str,
-    trajectory: Trajectory,
-    limits: tuple[JointLimits, ...],
+    trajectory: TimedTrajectory,
+    limits: tuple[PlanningLimits, ...],
     velocity_scaling: float,
     acceleration_scaling: float,
-) -> Trajectory:
+) -> TimedTrajectory:
     """Return a trajectory that holds the limits of its joints.
 
     Raises:
@@ -150,7 +150,7 @@ def checked(
         acceleration_scaling=acceleration_scaling,
     )
     if fault:
-        raise PlanningError(ErrorCode.PLANNING_FAILED, f"{name}: {fault}")
+        raise PlanningError(MoveItErrorCode.PLANNING_FAILED, f"{name}: {fault}")
     return trajectory
 
 
@@ -172,7 +172,7 @@ class _Followed:
         changes = np.abs(np.diff(self._points, axis=0))
         step, joint = (int(each) for each in np.unravel_index(changes.argmax(), changes.shape))
         raise PlanningError(
-            ErrorCode.PLANNING_FAILED,
+            MoveItErrorCode.PLANNING_FAILED,
             f"{name}: joint '{kinematics.group.joints[joint]}' would have to jump by "
             f"{changes[step, joint]:.3g} {self._where(step / len(changes))}, near a singularity",
         )

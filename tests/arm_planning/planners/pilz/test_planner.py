@@ -17,8 +17,8 @@ from pilz_arm import (
 )
 
 from arm_node.rigid_transform import RigidTransform, quaternion_product
-from arm_planning.constraints.constraints import Constraints
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.constraints.constraints import MotionConstraints
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pilz.planner import PilzPlanner
 from arm_planning.planners.pose_line import PoseLine
@@ -109,7 +109,7 @@ def test_lin_slows_down_where_a_joint_could_not_follow():
 
 
 def test_lin_says_where_it_stops():
-    sentence = refused(ErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((0.0, 2.0, 0.0))))
+    sentence = refused(MoveItErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((0.0, 2.0, 0.0))))
     assert "LIN stops" in sentence
     assert "of 2.000 m along its path" in sentence
 
@@ -147,21 +147,21 @@ CIRC = {"goal": pose_goal((0.0, 0.1, 0.0))}
 @pytest.mark.parametrize(
     ("path", "sentence"),
     [
-        (Constraints(), 'No path constraint named "interim" or "center" found'),
+        (MotionConstraints(), 'No path constraint named "interim" or "center" found'),
         (auxiliary("interim", (0.0, 0.05, 0.0)), "are on a line"),
         (auxiliary("center", (0.0, 0.05, 0.0)), "give an interim point instead"),
         (auxiliary("center", (0.0, 0.02, 0.0)), "0.0200 m from the start and 0.0800 m from"),
-        (Constraints(name="center"), "exactly one position constraint"),
+        (MotionConstraints(name="center"), "exactly one position constraint"),
     ],
 )
 def test_circles_that_do_not_exist(path, sentence):
     request = asked("CIRC", CIRC["goal"], path=path)
-    assert sentence in refused(ErrorCode.INVALID_MOTION_PLAN, request)
+    assert sentence in refused(MoveItErrorCode.INVALID_MOTION_PLAN, request)
 
 
 def test_circ_refuses_a_point_of_an_unknown_link():
     request = asked("CIRC", CIRC["goal"], path=auxiliary("center", (0.0, 0.05, 0.0), link="l9"))
-    assert "no link 'l9'" in refused(ErrorCode.INVALID_LINK_NAME, request)
+    assert "no link 'l9'" in refused(MoveItErrorCode.INVALID_LINK_NAME, request)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_circ_refuses_a_point_of_an_unknown_link():
             "INVALID_GOAL_CONSTRAINTS",
             "Exactly one goal constraint required, but 0 goal constraints given",
         ),
-        (asked("PTP", Constraints()), "INVALID_GOAL_CONSTRAINTS", "cartesian XOR joint"),
+        (asked("PTP", MotionConstraints()), "INVALID_GOAL_CONSTRAINTS", "cartesian XOR joint"),
         (
             asked("PTP", joint_goal(9.0, names=("j1",))),
             "INVALID_GOAL_CONSTRAINTS",
@@ -218,37 +218,37 @@ def test_circ_refuses_a_point_of_an_unknown_link():
     ],
 )
 def test_requests_that_cannot_be_met(request_, code, sentence):
-    assert sentence in refused(ErrorCode[code], request_)
+    assert sentence in refused(MoveItErrorCode[code], request_)
 
 
 @pytest.mark.parametrize("planner", ["PTP", "LIN"])
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
 def test_numbers_of_a_pose_are_finite(planner, bad):
     sentence = refused(
-        ErrorCode.INVALID_GOAL_CONSTRAINTS, asked(planner, pose_goal((bad, 0.0, 0.0)))
+        MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked(planner, pose_goal((bad, 0.0, 0.0)))
     )
     assert "finite" in sentence
 
 
 def test_a_goal_at_the_end_of_the_world_is_out_of_reach():
-    refused(ErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((1e5, 0.0, 0.0))))
+    refused(MoveItErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((1e5, 0.0, 0.0))))
 
 
 def test_a_rotation_that_is_none_is_refused():
     goal = pose_goal((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
-    refused(ErrorCode.INVALID_GOAL_CONSTRAINTS, asked("LIN", goal))
+    refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked("LIN", goal))
 
 
 def test_the_point_of_an_arc_is_finite():
     path = auxiliary("interim", (float("nan"), 0.0, 0.0))
-    refused(ErrorCode.INVALID_GOAL_CONSTRAINTS, asked("CIRC", CIRC["goal"], path=path))
+    refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked("CIRC", CIRC["goal"], path=path))
 
 
 def test_position_and_orientation_are_for_the_same_link():
     goal = pose_goal((0.0, 0.0, 0.0))
     other = dataclasses.replace(goal.orientations[0], link="l5")
     request = asked("PTP", dataclasses.replace(goal, orientations=(other,)))
-    assert '"l6" | ' in refused(ErrorCode.INVALID_GOAL_CONSTRAINTS, request)
+    assert '"l6" | ' in refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, request)
 
 
 def test_the_start_of_a_request_goes_before_the_state():

@@ -4,7 +4,7 @@ from pilz_arm import MODEL, READY, START, asked, joint_goal, pose_goal, tip_offs
 from planning_models import model_of
 from robots import joint, link, robot
 
-from arm_planning.errors import ErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pilz.planner import PilzPlanner
 from arm_planning.planners.pilz.sequence import SequenceItem, plan_sequence
@@ -124,14 +124,14 @@ def test_no_motions_make_no_trajectory():
 )
 def test_sequences_that_cannot_be_driven(items, code, sentence):
     found, message = refused(*items)
-    assert found is ErrorCode[code]
+    assert found is MoveItErrorCode[code]
     assert sentence in message
 
 
 def test_a_radius_as_long_as_the_motion_before_is_refused():
     long = asked("LIN", pose_goal(LOW + DROP))
     code, message = refused((SIDE, 0.11), (long, 0.0))
-    assert code is ErrorCode.INVALID_MOTION_PLAN
+    assert code is MoveItErrorCode.INVALID_MOTION_PLAN
     assert "stays within its radius of 0.11 m" in message
 
 
