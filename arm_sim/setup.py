@@ -5,7 +5,13 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_sim"
-NEIGHBOURS = ["../arm_control", "../arm_description", "../arm_gazebo", "../arm_node"]
+NEIGHBOURS = [
+    "../arm_control",
+    "../arm_description",
+    "../arm_gazebo",
+    "../arm_node",
+    "../arm_planning",
+]
 REQUIREMENTS = [
     "numpy>=2",
     "opencv-python-headless>=4.9",

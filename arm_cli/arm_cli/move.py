@@ -11,6 +11,7 @@ from arm_cli.output import say
 from arm_cli.ros.connection import connect
 
 if TYPE_CHECKING:
+    from arm_cli.ros.move_group import MoveGroupClient
     from arm_planning.robot.model import JointGroup, PlanningModel
 
 EXTRA_TIME_S = 5.0
@@ -76,7 +77,8 @@ def move(options: argparse.Namespace) -> None:
         model = client.model()
         group = _group(model, options.group)
         timeout_s = options.time + EXTRA_TIME_S if options.plan_only else None
-        result = client.move(_request(model, group, options), timeout_s)
+        goal = _goal(model, group, options, client)
+        result = client.move(_request(group, goal, options), timeout_s)
     if options.json:
         say(json.dumps(_document(result)))
     elif result.planned_trajectory.joint_trajectory.points:
@@ -98,14 +100,21 @@ def _group(model: "PlanningModel", name: str) -> "JointGroup":
         raise NoSuchNameError(str(error)) from error
 
 
-def _goal(model: "PlanningModel", group: "JointGroup", options: argparse.Namespace) -> Any:
+def _goal(
+    model: "PlanningModel",
+    group: "JointGroup",
+    options: argparse.Namespace,
+    client: "MoveGroupClient",
+) -> Any:
     from arm_description.transforms import quaternion_from_rpy
     from arm_planning.ros.goal_messages import joint_goal, pose_goal
 
     if options.state is not None:
         return joint_goal(_state(model, group.name, options.state))
     if options.joints is not None:
-        return joint_goal(_joints(group, options.joints))
+        given = _joints(group, options.joints)
+        others = [joint for joint in group.joints if joint not in given]
+        return joint_goal({**given, **client.positions(others)})
     x, y, z, *rpy = options.pose
     link = options.link or group.tip
     if not link:
@@ -138,7 +147,7 @@ def _joints(group: "JointGroup", words: list[str]) -> dict[str, float]:
     return positions
 
 
-def _request(model: "PlanningModel", group: "JointGroup", options: argparse.Namespace) -> Any:
+def _request(group: "JointGroup", goal_constraints: Any, options: argparse.Namespace) -> Any:
     """Return the action's goal."""
     from moveit_msgs.action import MoveGroup
 
@@ -147,7 +156,7 @@ def _request(model: "PlanningModel", group: "JointGroup", options: argparse.Name
     goal = MoveGroup.Goal()
     goal.request = plan_message(
         group.name,
-        _goal(model, group, options),
+        goal_constraints,
         planner_id=options.planner,
         pipeline_id=options.pipeline,
         num_planning_attempts=1,

@@ -168,8 +168,8 @@ class Planner:
 
         Args:
             group: the group that moves.
-            goal: positions of joints, rad or m; the name of a state of the group; or the pose of
-                the link in the planning frame.
+            goal: positions of joints, rad or m, where others stay; the name of a state of the
+                group; or the pose of the link in the planning frame.
             link: the link of a pose; "" for the group's tip.
             allowed_time_s: when planning gives up.
             timing: speed; by default as fast as the limits allow.
@@ -181,7 +181,7 @@ class Planner:
         """
         request = PlanRequest(
             group,
-            (self._goal(self._group(group), goal, link),),
+            (self._goal(self._group(group), goal, link, scene or self.scene),),
             allowed_time_s=allowed_time_s,
             velocity_scaling=timing.velocity_scaling,
             acceleration_scaling=timing.acceleration_scaling,
@@ -388,13 +388,18 @@ class Planner:
         return checker
 
     def _goal(
-        self, group: JointGroup, goal: JointPositions | str | RigidTransform, link: str
+        self,
+        group: JointGroup,
+        goal: JointPositions | str | RigidTransform,
+        link: str,
+        scene: PlanningScene,
     ) -> MotionConstraints:
         if isinstance(goal, RigidTransform):
             return pose_goal(link or group.tip, goal)
         if isinstance(goal, str):
             goal = self.model.state(group.name, goal)
-        return joint_goal(goal)
+        others = {joint: scene.positions[joint] for joint in group.joints if joint not in goal}
+        return joint_goal({**goal, **others})
 
     def _group_of(self, trajectory: TimedTrajectory) -> str:
         """Return the group with the joints of a trajectory; "" for the whole robot.

@@ -41,6 +41,7 @@ def move_group(context: LaunchContext) -> list[Action]:
         "package_path": words.get("package_path", ""),
         "seed": seed(words["planning_seed"]),
         "scene_from_world": words["scene_from_world"] == "true",
+        "pose_in_world": numbers(words.get("pose", "")),
     }
     return [
         Node(
@@ -56,6 +57,17 @@ def move_group(context: LaunchContext) -> list[Action]:
             commands=[("move", "arm move --help")],
         ),
     ]
+
+
+def numbers(text: str) -> list[float]:
+    """Return the numbers of a pose as the launch files write it: "x y z ..." or "[x, y, z, ...]".
+
+    The simulation itself says what is wrong with a pose.
+    """
+    try:
+        return [float(word) for word in text.replace(",", " ").strip("[] ").split()]
+    except ValueError:
+        return []
 
 
 def seed(text: str) -> int:
@@ -89,7 +101,7 @@ def generate_launch_description() -> LaunchDescription:
                 default_value="false",
                 choices=["true", "false"],
                 description="the simulation's things are objects of the planning scene, as they "
-                "move",
+                "move; for a robot whose base is fixed",
             ),
             DeclareLaunchArgument(
                 "use_sim_time",

@@ -151,6 +151,30 @@ class Controllers(Mapping[str, ControllerHandle]):
         self._starter.activate(name)
         return handle
 
+    def following(self, trajectory: object) -> str:
+        """Return the active controller that follows trajectories of a trajectory's joints.
+
+        Raises:
+            CallError: there is none, or the trajectory names no joints.
+        """
+        from arm_control.controllers.joint_trajectory import JointTrajectoryController
+
+        is_mapping = isinstance(trajectory, Mapping)
+        names = trajectory.get("joints") if is_mapping else getattr(trajectory, "joints", ())
+        if not names:
+            raise CallError("follow(TRAJECTORY) needs a trajectory that names its joints")
+        wanted = set(names)
+        for name, handle in self.items():
+            core = handle.core
+            if not isinstance(core, JointTrajectoryController) or not handle.is_active:
+                continue
+            if wanted <= set(core.state_layout.joints):
+                return name
+        raise CallError(
+            f"no active controller follows trajectories of {', '.join(names)}; there are "
+            f"{', '.join(self)}"
+        )
+
     def load(self, name: str) -> ControllerHandle:
         """Load and configure a controller of the parameter file; `switch` activates it.
 

@@ -18,6 +18,7 @@ class NamedRobot:
         world: name of a shipped world.
         arguments: xacro arguments.
         pose: x y z roll pitch yaw of its root in the world, in m and rad; () for the default.
+        moveit_config: package and folder of its MoveIt configuration; "" to make one from its URDF.
     """
 
     model: str
@@ -26,6 +27,7 @@ class NamedRobot:
     world: str = "empty"
     arguments: Mapping[str, str] = field(default_factory=dict[str, str])
     pose: tuple[float, ...] = ()
+    moveit_config: str = ""
 
 
 NAMED_ROBOTS: Mapping[str, NamedRobot] = {
@@ -41,6 +43,7 @@ NAMED_ROBOTS: Mapping[str, NamedRobot] = {
         "pick_and_place_demo",
         {"use_gazebo": "true"},
         (0.0, 0.0, 0.025, 0.0, 0.0, 0.0),
+        "package://mycobot_moveit_config/config/mycobot_280",
     ),
 }
 """By name; `arm_gazebo.launch.py` and `mycobot.gazebo.launch.py` start them over ROS."""

@@ -27,12 +27,14 @@ class SimulationSetup:
         parameters: the parameters of the controller manager and its controllers.
         remarks: one sentence for each default that was added.
         left_out: names the controllers of types that the suite does not have; empty for none.
+        moveit_config: URI of the robot's MoveIt configuration, "" if it has none.
     """
 
     settings: SimulationSettings
     parameters: ParametersByNode
     remarks: tuple[str, ...]
     left_out: str
+    moveit_config: str
 
     def build(self) -> tuple[SimulationRun, ControllerStarter]:
         """Return the run, and what starts its controllers.
@@ -71,6 +73,7 @@ def set_up(given: SimulationArguments) -> SimulationSetup:
         ParametersByNode(read_controllers(setup.controllers), _source(setup)),
         setup.remarks,
         setup.left_out,
+        robot.moveit_config,
     )
 
 

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from arm_gazebo.run.run import SimulationRun
     from arm_gazebo.world.contacts import Contact
     from arm_sim.cameras import Camera, RobotCameras
-    from arm_sim.trajectory import AnyTrajectory
+    from arm_sim.planning import MotionGoal, MotionPlanning
+    from arm_sim.trajectory import AnyTrajectory, JointTrajectory
 
 GOAL_TIMEOUT_S = 60.0
 ROUNDING = 1e-6  # of a duration, in control periods
@@ -89,6 +90,7 @@ class Simulation:
         self.parts, starter = setup.build()
         self._physics, self._tick = self.parts.physics, self.parts.tick
         self._render_backend = setup.settings.render_backend
+        self._moveit_config = setup.moveit_config
         self._ending = ExitStack()
         self._closed = False
         self.joints = Joints(self._physics)
@@ -173,20 +175,69 @@ class Simulation:
         """
         return self.controllers[controller]
 
+    def plan(
+        self,
+        goal: "MotionGoal",
+        group: str = "",
+        *,
+        link: str = "",
+        speed: float = 1.0,
+        allowed_time_s: float = 5.0,
+        seed: int = 0,
+    ) -> "JointTrajectory":
+        """Return a motion of the robot from where it is to a goal, around what is in the world.
+
+        Every state of it is proved free, see `arm_planning`. What the motion must touch, such as a
+        thing to pick up, is in the way, too. `follow` runs the motion.
+
+        Args:
+            goal: positions of joints by name, in rad or m, where others stay; the name of a
+                state, such as "home"; or a pose of the link in the world, see `AnyPose`.
+            group: the group of joints that moves; "" for the first chain.
+            link: the link of a pose; "" for the group's tip.
+            speed: fraction of the joints' velocity limits.
+            allowed_time_s: when planning gives up, in s of wall time.
+            seed: the same goal, state and seed give the same motion.
+
+        Raises:
+            PlanningError: there is no such motion; the message says why.
+            CallError: the goal is not a goal.
+        """
+        return self._planning.plan(
+            goal, group, link=link, speed=speed, allowed_time_s=allowed_time_s, seed=seed
+        )
+
+    @cached_property
+    def _planning(self) -> "MotionPlanning":
+        from arm_sim.planning import MotionPlanning
+
+        return MotionPlanning(self._open, self.joints, self.pose, self._moveit_config)
+
     def follow(
-        self, controller: str, trajectory: "AnyTrajectory", *, timeout_s: float = GOAL_TIMEOUT_S
+        self,
+        controller: "str | AnyTrajectory",
+        trajectory: "AnyTrajectory | None" = None,
+        *,
+        timeout_s: float = GOAL_TIMEOUT_S,
     ) -> "GoalResult":
         """Run until a trajectory controller has followed a trajectory; return the result.
 
         Args:
-            controller: name of the controller.
+            controller: name of the controller; a trajectory that names its joints, such as a plan,
+                may stand alone: the active controller of these joints follows it.
             trajectory: the waypoints; see `ControllerHandle.follow`, which does not run.
             timeout_s: how long to run at most, in simulated seconds; then the goal is cancelled.
 
         Raises:
             GoalError: it was rejected, aborted or cancelled, or did not end in time.
+            CallError: no active controller follows trajectories of these joints.
         """
-        return self._finished(self[controller].follow(trajectory), timeout_s)
+        if trajectory is not None:
+            return self._finished(self[str(controller)].follow(trajectory), timeout_s)
+        if isinstance(controller, str):
+            raise CallError(f"follow('{controller}') lacks the trajectory")
+        name = self.controllers.following(controller)
+        return self._finished(self[name].follow(controller), timeout_s)
 
     def grip(
         self,

@@ -1,12 +1,14 @@
 """Asks a running move_group: for its robot, and to move it."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 from moveit_msgs.action import MoveGroup
 from moveit_msgs.msg import MoveItErrorCodes
 from rclpy.action.client import ActionClient
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from arm_cli.errors import MotionFailedError, StoppedError, UnansweredError
@@ -46,6 +48,24 @@ class MoveGroupClient:
         robot = parse_urdf(texts[URDF])
         # The limits do not matter here, so neither do remarks about them.
         return planning_model(robot, parse_srdf(texts[SRDF], robot), warn=lambda _: None)
+
+    def positions(self, joints: Sequence[str]) -> dict[str, float]:
+        """Return where joints are now, rad or m.
+
+        Raises:
+            UnansweredError: nobody publishes the joint state of one.
+        """
+        known: dict[str, float] = {}
+
+        def take(message: JointState) -> None:
+            known.update(zip(message.name, message.position, strict=False))
+
+        qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._session.node.create_subscription(JointState, "/joint_states", take, qos)
+        if not self._session.wait_until(lambda: known.keys() >= set(joints), timeout_s=TIMEOUT_S):
+            missing = ", ".join(joint for joint in joints if joint not in known)
+            raise UnansweredError(f"/joint_states has no position of {missing}")
+        return {joint: known[joint] for joint in joints}
 
     def move(self, goal: MoveGroup.Goal, timeout_s: float | None) -> MoveGroup.Result:
         """Send a goal and return its result; Ctrl-C cancels it.

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from arm_description.transforms import rotation_from_quaternion
 from arm_description.urdf.joint_type import JointType
+from arm_node.names import describe_known
 from arm_planning.constraints.constraints import (
     JointConstraint,
     MotionConstraints,
@@ -22,6 +23,7 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.constraints.regions import describe_shape, distance_outside, local_point
 from arm_planning.constraints.tolerances import tightened
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 
 Array = NDArray[np.float64]
@@ -65,6 +67,9 @@ class ConstraintEvaluator:
         group: the group whose positions vary.
         positions: positions of the robot's other active joints.
         pose: poses of links.
+
+    Raises:
+        PlanningError: INVALID_GOAL_CONSTRAINTS: a joint does not exist, or a number is not finite.
     """
 
     def __init__(
@@ -78,6 +83,8 @@ class ConstraintEvaluator:
         self.constraints = constraints
         self._model, self._group, self._positions = model, group, positions
         self._joints = JointReader(model, group, positions)
+        for each in constraints.joints:
+            self._joints.check(each)
         self._pose = pose
 
     def results(self, q: Array) -> tuple[ConstraintResult, ...]:
@@ -205,6 +212,23 @@ class JointReader:
         self._index = {joint: index for index, joint in enumerate(group.joints)}
         self._positions = positions
         self._joints = {joint.name: joint for joint in model.robot.movable_joints}
+
+    def check(self, constraint: JointConstraint) -> None:
+        """Refuse a constraint on a joint that does not exist, or that is not finite.
+
+        Raises:
+            PlanningError: INVALID_GOAL_CONSTRAINTS.
+        """
+        name = constraint.joint
+        if name not in self._joints:
+            known = describe_known(name, self._joints, "the robot has")
+            sentence = f"a constraint names the joint '{name}'; {known}"
+            raise PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)
+        if not all(map(math.isfinite, (constraint.position, constraint.above, constraint.below))):
+            raise PlanningError(
+                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
+                f"the constraint on joint '{name}' is not finite",
+            )
 
     def position(self, name: str, q: Array) -> float:
         """Return a joint's position, rad or m."""

@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from moveit_msgs.msg import Constraints as ConstraintsMessage
 from moveit_msgs.msg import JointConstraint as JointMessage
-from moveit_msgs.msg import MotionConstraints as ConstraintsMessage
 from moveit_msgs.msg import MotionPlanRequest
 from moveit_msgs.msg import OrientationConstraint as OrientationMessage
 from moveit_msgs.msg import PositionConstraint as PositionMessage

@@ -47,8 +47,8 @@ class MoveGroup:
         self._model = setup.model
         self._node = node
         self.monitor = SceneMonitor(scene_node, setup.model, setup.scene, node)
-        if setup.follows_world:
-            self.monitor.follow_world(scene_node)
+        if setup.in_world is not None:
+            self.monitor.follow_world(scene_node, setup.in_world)
         session = PlanningSession(setup, self.monitor)
         settings = ExecutionSettings.read(values_below(node, "trajectory_execution"))
         controllers = ControllerList(

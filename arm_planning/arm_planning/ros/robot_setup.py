@@ -12,7 +12,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from arm_description.resources import ResourceFinder
+from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.parser import parse_urdf
+from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planner import resting_positions
@@ -28,7 +30,7 @@ from arm_planning.srdf_maker import make_srdf
 
 URDF, SRDF = "robot_description", "robot_description_semantic"
 PLANNING = "robot_description_planning"
-FOLLOW = "scene_from_world"
+FOLLOW, POSE = "scene_from_world", "pose_in_world"
 TOPIC_TIMEOUT_S = 10.0
 LOGGER = logging.getLogger("move_group")
 
@@ -44,7 +46,8 @@ class PlanningSetup:
         resources: finds the robot's meshes.
         tip_limits: speeds of a group's tip for Pilz' planners.
         seed: seed of all requests.
-        follows_world: whether the simulation's things are objects of the scene.
+        in_world: pose of the robot's root in the simulated world whose things are objects of the
+            scene; None if they are not.
     """
 
     model: PlanningModel
@@ -53,7 +56,7 @@ class PlanningSetup:
     resources: ResourceFinder
     tip_limits: CartesianLimits
     seed: int
-    follows_world: bool
+    in_world: RigidTransform | None
 
 
 def move_group_node() -> Node:
@@ -90,9 +93,8 @@ def read_setup(node: Node) -> PlanningSetup:
     limits = joint_limit_settings(given, LOGGER.warning)
     model = planning_model(robot, semantic, limits, LOGGER.warning)
     scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
-    follows = node.has_parameter(FOLLOW) and node.get_parameter(FOLLOW).value is True
     return PlanningSetup(
-        model, scene, srdf, resources, cartesian_limits(given), _seed(node), follows
+        model, scene, srdf, resources, cartesian_limits(given), _seed(node), _in_world(node)
     )
 
 
@@ -107,6 +109,19 @@ def _text(node: Node, name: str) -> str:
     if not isinstance(value, str):
         raise PlanningError(MoveItErrorCode.FAILURE, f"the parameter {name} is not a text")
     return value
+
+
+def _in_world(node: Node) -> RigidTransform | None:
+    if not (node.has_parameter(FOLLOW) and node.get_parameter(FOLLOW).value is True):
+        return None
+    given: Any = node.get_parameter(POSE).value if node.has_parameter(POSE) else ()
+    if len(given or ()) not in (0, 6):
+        raise PlanningError(
+            MoveItErrorCode.FAILURE, f"{POSE} has {len(given)} numbers; it is x y z roll pitch yaw"
+        )
+    x, y, z, *rpy = given or (0.0,) * 6
+    turned = quaternion_from_rpy(rpy).tolist()
+    return RigidTransform((x, y, z), (turned[0], turned[1], turned[2], turned[3]))
 
 
 def _seed(node: Node) -> int:

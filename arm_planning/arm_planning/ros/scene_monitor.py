@@ -86,9 +86,14 @@ class SceneMonitor:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(1.0 / PUBLISH_HZ, self._publish, clock=steady)
 
-    def follow_world(self, node: Node) -> None:
-        """Let the simulation's things be objects of the scene, from now on and as they move."""
-        self._world = WorldObjects(node, lambda name: self._frames.pose(name, self._model.frame))
+    def follow_world(self, node: Node, robot: RigidTransform) -> None:
+        """Let the simulation's things be objects of the scene, from now on and as they move.
+
+        Args:
+            node: has the subscription.
+            robot: pose of the robot's root in the simulated world.
+        """
+        self._world = WorldObjects(node, robot)
 
     @property
     def scene(self) -> PlanningScene:

@@ -1,6 +1,6 @@
 """The things of the simulated world as objects of the planning scene, moving ones too."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from rclpy.node import Node
@@ -8,16 +8,19 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.scene.objects import CollisionObject, PlacedShape
-from arm_planning.scene.shapes import Shape, TriangleMesh
+from arm_planning.scene.objects import CollisionObject
+from arm_planning.scene.world_things import WorldSolid, objects_of_solids
 
 TOPIC = "/world_markers"
 DEPTH = 10
-EXACT_M = 1e-5
-"""Corners of triangles that are nearer than this are one."""
+KINDS = {
+    Marker.CUBE: "box",
+    Marker.SPHERE: "ball",
+    Marker.CYLINDER: "cylinder",
+    Marker.TRIANGLE_LIST: "triangles",
+}
 
 
 class WorldObjects:
@@ -26,14 +29,14 @@ class WorldObjects:
     One thread at a time.
     """
 
-    def __init__(self, node: Node, frame: Callable[[str], RigidTransform | None]) -> None:
+    def __init__(self, node: Node, robot: RigidTransform) -> None:
         """Listen to the simulation.
 
         Args:
             node: has the subscription.
-            frame: returns a frame's pose in the planning frame, None as long as it is unknown.
+            robot: pose of the robot's root in the simulated world, where it is fixed.
         """
-        self._frame = frame
+        self._world = robot.inverse()
         self._polled = PolledSubscriptions(node)
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._subscription = self._polled.subscribe(MarkerArray, TOPIC, latched)
@@ -46,59 +49,24 @@ class WorldObjects:
             self._waiting = deserialize_message(raw, MarkerArray)
         if self._waiting is None:
             return None
-        world = self._frame("world")
-        if world is None:
-            return None
-        markers = [each for each in self._waiting.markers if each.action == Marker.ADD]
+        solids = solids_of(self._waiting.markers)
         self._waiting = None
-        return objects_of(markers, world)
+        return objects_of_solids(solids, self._world)
 
 
-def objects_of(markers: list[Marker], world: RigidTransform) -> dict[str, CollisionObject]:
-    """Return an object for each thing; it stands where its first shape stands.
-
-    Args:
-        markers: the shapes; the namespace of a marker is the thing's name.
-        world: the world's frame in the planning frame.
-    """
-    shapes: dict[str, list[PlacedShape]] = {}
+def solids_of(markers: Iterable[Marker]) -> Iterator[WorldSolid]:
+    """Yield the solids that markers show; the namespace of a marker is the thing's name."""
     for marker in markers:
-        shape = _shape(marker)
-        if shape is not None:
-            shapes.setdefault(marker.ns, []).append(PlacedShape(shape, world.then(_pose(marker))))
-    objects: dict[str, CollisionObject] = {}
-    for name, placed in shapes.items():
-        origin = placed[0].pose
-        inside = tuple(PlacedShape(each.shape, origin.inverse().then(each.pose)) for each in placed)
-        objects[name] = CollisionObject(name, origin, inside)
-    return objects
-
-
-def _shape(marker: Marker) -> Shape | None:
-    x, y, z = marker.scale.x, marker.scale.y, marker.scale.z
-    match marker.type:
-        case Marker.CUBE:
-            return Box((x, y, z))
-        case Marker.SPHERE:
-            # An ellipsoid is inside of the ball about it.
-            return Sphere(max(x, y, z) / 2.0)
-        case Marker.CYLINDER:
-            return Cylinder(radius=max(x, y) / 2.0, length=z)
-        case Marker.TRIANGLE_LIST:
-            corners = np.array([(point.x, point.y, point.z) for point in marker.points])
-            if not len(corners):
-                return None
-            rounded = np.round(corners / EXACT_M)
-            _, first, index = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-            triangles = index.reshape(-1, 3)
-            whole = (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all(axis=1)
-            return TriangleMesh(corners[first], triangles[whole].astype(np.int64))
-        case _:
-            return None
-
-
-def _pose(marker: Marker) -> RigidTransform:
-    position, rotation = marker.pose.position, marker.pose.orientation
-    return RigidTransform(
-        (position.x, position.y, position.z), (rotation.x, rotation.y, rotation.z, rotation.w)
-    )
+        if marker.action != Marker.ADD or marker.type not in KINDS:
+            continue
+        position, rotation = marker.pose.position, marker.pose.orientation
+        yield WorldSolid(
+            marker.ns,
+            KINDS[marker.type],
+            (marker.scale.x, marker.scale.y, marker.scale.z),
+            RigidTransform(
+                (position.x, position.y, position.z),
+                (rotation.x, rotation.y, rotation.z, rotation.w),
+            ),
+            np.array([(point.x, point.y, point.z) for point in marker.points]).reshape(-1, 3),
+        )

@@ -39,7 +39,7 @@ def monitor() -> Monitor:
 @pytest.fixture
 def session(monitor: Monitor) -> PlanningSession:
     setup = PlanningSetup(
-        planar_model(), EMPTY, "", ResourceFinder(), CartesianLimits(), 0, follows_world=False
+        planar_model(), EMPTY, "", ResourceFinder(), CartesianLimits(), 0, in_world=None
     )
     return PlanningSession(setup, monitor)
 

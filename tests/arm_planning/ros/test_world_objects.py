@@ -6,8 +6,10 @@ from visualization_msgs.msg import Marker
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.ros.world_objects import objects_of
+from arm_planning.ros.world_objects import solids_of
+from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.shapes import TriangleMesh
+from arm_planning.scene.world_things import objects_of_solids
 
 RAISED = RigidTransform((0.0, 0.0, -0.5))
 
@@ -16,6 +18,10 @@ def marker(kind: int, number: int = 0, name: str = "thing", x: float = 0.0) -> M
     message = Marker(ns=name, id=number, type=kind, scale=Vector3(x=0.2, y=0.2, z=0.6))
     message.pose.position.x = x
     return message
+
+
+def objects_of(markers: list[Marker], world: RigidTransform) -> dict[str, CollisionObject]:
+    return objects_of_solids(solids_of(markers), world)
 
 
 def test_shapes_of_one_name_are_one_object_where_its_first_shape_stands():
