@@ -38,6 +38,7 @@ SCRIPTS = (
     "sweep.py",
     "inverse_kinematics.py",
     "planning.py",
+    "move_group.py",
     "fuzzing.py",
     "page.py",
 )

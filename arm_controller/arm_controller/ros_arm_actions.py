@@ -1,5 +1,6 @@
 """Moves an arm and its gripper through actions, and waits for the result of each movement."""
 
+import math
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -19,6 +20,7 @@ ARM_ACTION = "arm_controller/follow_joint_trajectory"
 GRIPPER_ACTION = "gripper_action_controller/gripper_cmd"
 POLL_S = 0.1
 REMINDER_S = 10.0
+ANSWER_TIMEOUT_S = 3.0
 CANCEL_TIMEOUT_S = 2.0
 GONE = "its action server is gone"
 
@@ -91,7 +93,7 @@ class ArmActions:
 
     def _carry_out(self, client: ActionClient, goal: Any) -> Any:
         """Return the result of a goal, or a phrase with the reason why there is none."""
-        handle: ClientGoalHandle | None = self._answer(client, client.send_goal_async(goal))
+        handle = self._sent(client, goal)
         if handle is None:
             return GONE
         if not handle.accepted:
@@ -104,10 +106,23 @@ class ArmActions:
             raise
         return GONE if ended is None else ended.result
 
-    def _answer(self, client: ActionClient, future: Future) -> Any:
-        """Return the result of a future, None if the server disappears first."""
+    def _sent(self, client: ActionClient, goal: Any) -> ClientGoalHandle | None:
+        """Send a goal until it is answered; None if the server disappears first.
+
+        A server that has not discovered this client yet takes the goal, but its answer is lost. The
+        same goal once more does no harm: it takes the place of the first.
+        """
+        while client.server_is_ready():
+            handle = self._answer(client, client.send_goal_async(goal), ANSWER_TIMEOUT_S)
+            if handle is not None:
+                return handle
+        return None
+
+    def _answer(self, client: ActionClient, future: Future, timeout_s: float = math.inf) -> Any:
+        """Return the result of a future, None if the server disappears or the time ends first."""
+        end_s = time.monotonic() + timeout_s
         while not future.done():
-            if not client.server_is_ready():
+            if not client.server_is_ready() or time.monotonic() > end_s:
                 return None
             rclpy.spin_until_future_complete(self._node, future, timeout_sec=POLL_S)
         return future.result()

@@ -11,7 +11,7 @@ from arm_node.parameter_file import flat_parameters
 from arm_planning.execution.controllers import choose_controllers, controllers_of_settings
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.limits import read_joint_limits
-from arm_planning.robot.model import JointLimits, PlanningModel
+from arm_planning.robot.model import PlanningLimits, PlanningModel
 from arm_planning.robot.srdf import Srdf, parse_srdf
 
 FOLDER = "package://mycobot_moveit_config/config/mycobot_280"
@@ -63,7 +63,7 @@ def test_named_states_give_each_joint_a_position_within_its_limits(name: str):
 
 def test_the_limits_are_those_of_the_file():
     limits = files()[0].group("arm").limits[0]
-    assert limits == JointLimits(-2.879793, 2.879793, 2.792527, 5.0)
+    assert limits == PlanningLimits(-2.879793, 2.879793, 2.792527, 5.0)
 
 
 def test_without_the_gripper_the_arm_remains():

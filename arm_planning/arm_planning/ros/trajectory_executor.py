@@ -105,7 +105,7 @@ class ExecutionManager:
             chosen = choose_controllers(list(self._controllers()), trajectory.joints, names)
             self._check_start(trajectory)
             run = _Run([self._goal(trajectory, each) for each in chosen])
-            return self._follow(run, trajectory, watch)
+            return self._follow(run, watch)
         except PlanningError as error:
             return ExecutionOutcome(error.code, str(error))
         finally:
@@ -146,36 +146,39 @@ class ExecutionManager:
         longest_s = self._settings.longest_s(trajectory.duration_s, controller)
         return _Goal(controller, client, _goal_message(part, controller), longest_s)
 
-    def _follow(
-        self, run: "_Run", trajectory: TimedTrajectory, watch: Watch | None
-    ) -> ExecutionOutcome:
+    def _follow(self, run: "_Run", watch: Watch | None) -> ExecutionOutcome:
         start_s = self._states.stamp_s
         run.send()
-        while True:
-            if outcome := run.outcome():
-                if outcome.code is MoveItErrorCode.SUCCESS:
-                    self._wait_until_still()
-                else:
-                    run.cancel()
-                return outcome
-            if self._stop.wait(POLL_S):
-                run.cancel()
-                return ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the motion was stopped")
-            elapsed_s = self._states.stamp_s - start_s
-            if self._settings.monitors_duration and elapsed_s > run.longest_s:
-                run.cancel()
-                return ExecutionOutcome(
-                    MoveItErrorCode.TIMED_OUT,
-                    "Controller is taking too long to execute trajectory (the expected upper bound "
-                    f"for the trajectory execution was {run.longest_s:.2f} seconds). Stopping "
-                    "trajectory.",
-                )
-            if watch is not None and (blocked := watch(elapsed_s)):
-                run.cancel()
-                return ExecutionOutcome(
-                    MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE,
-                    f"the way ahead is no longer free: {blocked}",
-                )
+        try:
+            while not (outcome := run.outcome() or self._interruption(run, start_s, watch)):
+                pass
+        finally:
+            # Whatever ended it, an error of the watch included: what still runs is stopped.
+            run.cancel()
+        if outcome.code is MoveItErrorCode.SUCCESS:
+            self._wait_until_still()
+        return outcome
+
+    def _interruption(
+        self, run: "_Run", start_s: float, watch: Watch | None
+    ) -> ExecutionOutcome | None:
+        """Wait a moment; return why the run must end before the controllers are done."""
+        if self._stop.wait(POLL_S):
+            return ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the motion was stopped")
+        elapsed_s = self._states.stamp_s - start_s
+        if self._settings.monitors_duration and elapsed_s > run.longest_s:
+            return ExecutionOutcome(
+                MoveItErrorCode.TIMED_OUT,
+                "Controller is taking too long to execute trajectory (the expected upper bound "
+                f"for the trajectory execution was {run.longest_s:.2f} seconds). Stopping "
+                "trajectory.",
+            )
+        if watch is not None and (blocked := watch(elapsed_s)):
+            return ExecutionOutcome(
+                MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE,
+                f"the way ahead is no longer free: {blocked}",
+            )
+        return None
 
     def _wait_until_still(self) -> None:
         deadline_s = time.monotonic() + REST_TIMEOUT_S

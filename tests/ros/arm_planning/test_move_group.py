@@ -73,14 +73,12 @@ def test_services_and_actions_have_the_names_and_types_of_moveit(planning):
 
     node = planning.client.node
 
-    def all_known() -> bool:
-        services = dict(node.get_service_names_and_types())
-        actions = dict(get_action_names_and_types(node))
-        return all(services.get(name) == [kind] for name, kind in SERVICES.items()) and all(
-            actions.get(name) == [kind] for name, kind in ACTIONS.items()
-        )
+    def found() -> dict[str, list[str]]:
+        every = [*node.get_service_names_and_types(), *get_action_names_and_types(node)]
+        return {name: kinds for name, kinds in every if name in {**SERVICES, **ACTIONS}}
 
-    planning.client.wait_until(all_known, "all services and actions")
+    planning.client.wait_until(lambda: len(found()) == len(SERVICES) + len(ACTIONS), "all of them")
+    assert found() == {name: [kind] for name, kind in {**SERVICES, **ACTIONS}.items()}
 
 
 @pytest.mark.parametrize(("topic", "kind"), HEARD.items())

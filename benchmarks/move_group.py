@@ -1,0 +1,160 @@
+"""move_group over ROS: how soon it is ready, what it costs, how long its answers take.
+
+`arm launch mycobot` starts with and without `planning:=true`, in turns. Then a client with an
+executor thread asks for free motions to and fro, and in turn for an answer that needs no plan:
+`check_state_validity`, and `get_parameters`, which rclpy itself answers.
+
+    python benchmarks/move_group.py
+"""
+
+import argparse
+import subprocess
+import sys
+import threading
+import time
+
+import harness
+import numpy as np
+import psutil
+
+LAUNCH = ("launch", "mycobot", "planning:=true")
+SETTLED_S = 2.0
+TARGETS = {
+    "plan_kinematic_path": "8, 25 ms",
+    "move_action, plan only": "20 ms",
+    "check_state_validity": "",
+    "rclpy's get_parameters": "",
+}
+JOINTS = ("link1_to_link2", "link2_to_link3", "link3_to_link4")
+
+
+def launched(*words: str) -> tuple[subprocess.Popen[str], float]:
+    """Start a launch; return it and the seconds until it said that it is ready."""
+    start = time.monotonic()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "arm_cli", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line.startswith("ready "):
+            threading.Thread(target=process.stdout.read, daemon=True).start()
+            return process, time.monotonic() - start
+    raise SystemExit(f"arm {' '.join(words)} was never ready")
+
+
+def memory_mb(process: subprocess.Popen[str]) -> float:
+    """Return the proportional memory of a launch and all that it started, in MB."""
+    top = psutil.Process(process.pid)
+    family = [top, *top.children(recursive=True)]
+    return sum(each.memory_full_info().pss for each in family) / 2**20
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    process.terminate()
+    process.wait(30)
+
+
+def answers(count: int) -> dict[str, np.ndarray]:
+    """Return the seconds of each answer, by what was asked for."""
+    import rclpy
+    from moveit_msgs.action import MoveGroup
+    from moveit_msgs.srv import GetMotionPlan, GetStateValidity
+    from rcl_interfaces.srv import GetParameters
+    from rclpy.action.client import ActionClient
+    from rclpy.executors import SingleThreadedExecutor
+
+    from arm_planning.ros.goal_messages import joint_goal, plan_message
+
+    rclpy.init()
+    node = rclpy.create_node("measuring")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=executor.spin)
+    spinning.start()
+
+    def wait(future):
+        done = threading.Event()
+        future.add_done_callback(lambda _: done.set())
+        done.wait(30)
+        return future.result()
+
+    def client(kind, name):
+        made = node.create_client(kind, name)
+        made.wait_for_service(10)
+        return made
+
+    plan = client(GetMotionPlan, "/plan_kinematic_path")
+    validity = client(GetStateValidity, "/check_state_validity")
+    parameters = client(GetParameters, "/move_group/get_parameters")
+    action = ActionClient(node, MoveGroup, "/move_action")
+    action.wait_for_server(10)
+    random = np.random.default_rng(0)
+    times = {name: [] for name in TARGETS}
+
+    def timed(name, ask):
+        start = time.perf_counter()
+        answer = ask()
+        times[name].append(time.perf_counter() - start)
+        return answer
+
+    for _ in range(count):
+        goal = joint_goal(dict(zip(JOINTS, random.uniform(-0.4, 0.4, 3).tolist(), strict=True)))
+        message = plan_message("arm", goal, allowed_planning_time=5.0, num_planning_attempts=1)
+        message.max_velocity_scaling_factor = message.max_acceleration_scaling_factor = 1.0
+        request = GetMotionPlan.Request(motion_plan_request=message)
+        answer = timed("plan_kinematic_path", lambda r=request: wait(plan.call_async(r)))
+        assert answer.motion_plan_response.error_code.val == 1
+        only = MoveGroup.Goal(request=message)
+        only.planning_options.plan_only = True
+        only.planning_options.planning_scene_diff.is_diff = True
+
+        def act(goal=only):
+            return wait(wait(action.send_goal_async(goal)).get_result_async())
+
+        assert timed("move_action, plan only", act).result.error_code.val == 1
+        asked = GetStateValidity.Request(group_name="arm")
+        timed("check_state_validity", lambda r=asked: wait(validity.call_async(r)))
+        names = GetParameters.Request(names=["use_sim_time"])
+        timed("rclpy's get_parameters", lambda r=names: wait(parameters.call_async(r)))
+    executor.shutdown()
+    spinning.join()
+    node.destroy_node()
+    rclpy.shutdown()
+    return {name: np.array(values) for name, values in times.items()}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--runs", type=int, default=3, help="starts of each kind")
+    parser.add_argument("--count", type=int, default=200, help="requests of each kind")
+    options = parser.parse_args()
+    starts: dict[tuple[str, ...], list[tuple[float, float]]] = {LAUNCH[:2]: [], LAUNCH: []}
+    for _ in range(options.runs):
+        for words, found in starts.items():
+            process, ready_s = launched(*words)
+            time.sleep(SETTLED_S)
+            found.append((ready_s, memory_mb(process)))
+            end(process)
+    (alone_s, alone_mb), (both_s, both_mb) = (np.median(each, axis=0) for each in starts.values())
+    process, _ = launched(*LAUNCH)
+    try:
+        times = answers(options.count)
+    finally:
+        end(process)
+    rows = [
+        harness.Row(
+            "ready, without planning and with it", f"{alone_s:.2f}, {both_s:.2f} s", "1.5 s"
+        ),
+        harness.Row("memory that planning adds (Pss)", f"{both_mb - alone_mb:.0f} MB", "120 MB"),
+    ]
+    for name, values in times.items():
+        p50, p99 = harness.percentiles(values * 1e3, 50, 99)
+        rows.append(harness.Row(f"{name}: p50, p99", f"{p50:.1f}, {p99:.1f} ms", TARGETS[name]))
+    harness.print_table("move_group over ROS", rows)
+
+
+if __name__ == "__main__":
+    main()
