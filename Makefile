@@ -18,7 +18,7 @@ format:
 	$(RUN) ruff format .
 
 test:
-	$(RUN) pytest -n 4 --dist loadfile
+	$(RUN) pytest -n 3 --dist loadfile
 
 # The variable switches off a notice of mkdocs-material about its successor.
 docs:

@@ -57,6 +57,20 @@ def end(process: subprocess.Popen[str]) -> None:
     process.wait(30)
 
 
+def wait(future):
+    """Return what a future brings; another thread spins the node."""
+    done = threading.Event()
+    future.add_done_callback(lambda _: done.set())
+    done.wait(30)
+    return future.result()
+
+
+def client(node, kind, name):
+    made = node.create_client(kind, name)
+    made.wait_for_service(10)
+    return made
+
+
 def answers(count: int) -> dict[str, np.ndarray]:
     """Return the seconds of each answer, by what was asked for."""
     import rclpy
@@ -75,20 +89,9 @@ def answers(count: int) -> dict[str, np.ndarray]:
     spinning = threading.Thread(target=executor.spin)
     spinning.start()
 
-    def wait(future):
-        done = threading.Event()
-        future.add_done_callback(lambda _: done.set())
-        done.wait(30)
-        return future.result()
-
-    def client(kind, name):
-        made = node.create_client(kind, name)
-        made.wait_for_service(10)
-        return made
-
-    plan = client(GetMotionPlan, "/plan_kinematic_path")
-    validity = client(GetStateValidity, "/check_state_validity")
-    parameters = client(GetParameters, "/move_group/get_parameters")
+    plan = client(node, GetMotionPlan, "/plan_kinematic_path")
+    validity = client(node, GetStateValidity, "/check_state_validity")
+    parameters = client(node, GetParameters, "/move_group/get_parameters")
     action = ActionClient(node, MoveGroup, "/move_action")
     action.wait_for_server(10)
     random = np.random.default_rng(0)

@@ -1,6 +1,7 @@
 """Plans motions without ROS: the face of this package."""
 
 import logging
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -46,6 +47,9 @@ STRAIGHT_CORNER = 1e-3
 """How far a straight motion of a link may pass by its way points in the joints, rad or m."""
 NO_JUMP_LIMITS = JumpLimits()
 FULL_SPEED = Timing()
+STILL = 1e-6
+"""Change of a joint that does not vary, rad or m, up to which a compiled scene serves: a joint that
+holds trembles by less, and the proof allows for more."""
 MODELS_KEPT = 4
 """Compiled scenes that are kept for the next request."""
 LOGGER = logging.getLogger(__name__)
@@ -480,7 +484,8 @@ class Planner:
         own = self._group(group).joints
         outside = {joint: q for joint, q in scene.positions.items() if joint not in own}
         kept = self._inverse.get(group)
-        if kept is None or kept[0] != outside:
+        is_same = kept is not None and all(_is_near(kept[0], outside, joint) for joint in outside)
+        if kept is None or not is_same:
             kept = outside, GroupKinematics(self.model, group, outside)
             self._inverse[group] = kept
         return kept[1]
@@ -513,9 +518,10 @@ def _is_same(before: PlanningScene, scene: PlanningScene, varying: Sequence[str]
     """Return whether a compiled scene serves for another: only varying joints may differ."""
     if before is scene:
         return True
-    rest = before.positions.keys() | scene.positions.keys() - set(varying)
-    return replace(before, positions=scene.positions) == scene and all(
-        before.positions.get(joint) == scene.positions.get(joint)
-        for joint in rest
-        if joint not in varying
-    )
+    rest = (before.positions.keys() | scene.positions.keys()) - set(varying)
+    same = replace(before, positions=scene.positions) == scene
+    return same and all(_is_near(before.positions, scene.positions, joint) for joint in rest)
+
+
+def _is_near(before: JointPositions, after: JointPositions, joint: str) -> bool:
+    return abs(before.get(joint, math.inf) - after.get(joint, -math.inf)) < STILL

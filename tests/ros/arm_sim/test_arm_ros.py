@@ -17,10 +17,15 @@ pytestmark = [
 
 GOAL = [1.0, 0.5, 0.1, 0.5]
 CONTROLLER = "position_controller"
+# Ctrl-C ends it at once: rclpy's own handlers turn one that comes while a message is converted into
+# a RuntimeError, and the program would end with exit code 1.
 LISTENER = """
+import signal
 import rclpy
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
-rclpy.init()
+rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+signal.signal(signal.SIGINT, signal.SIG_DFL)
 node = rclpy.create_node("listener")
 node.create_subscription(JointState, "joint_states", lambda m: print("heard", flush=True), 10)
 rclpy.spin(node)
