@@ -30,11 +30,11 @@ from contextlib import ExitStack, contextmanager, suppress
 from launch_py.fast_dds.shared_memory import (
     PORT_PREFIX,
     SHM_FOLDER,
-    lock_files,
+    hide,
     lock_names,
-    lock_owners,
     locked_segments,
     mutex_file,
+    segments_of,
 )
 
 _SEMAPHORE_BYTES = 32
@@ -160,10 +160,12 @@ class SharedMemoryLedger:
     """Keeps a list of the segments that supervised processes own; belongs to the loop's thread.
 
     The owner of a segment is looked up when its lock file appears (inotify). After the owner's
-    death the files are removed, unless another process uses them.
+    death the files are removed, unless another process uses them. Until then other users cannot
+    read them: a process hides what it makes, but not a port of its own that a sender made anew.
 
     Args:
-        is_ours: tells whether a process id belongs to a supervised process or a descendant.
+        is_ours: tells whether a process id belongs to a supervised process, to a descendant or to
+            a probe.
         folder: where the segments are.
     """
 
@@ -173,12 +175,10 @@ class SharedMemoryLedger:
         self._owned: set[str] = set()
 
     def observe(self) -> None:
-        """Add the segments that supervised processes own now."""
-        files = lock_files(self._folder)
-        owners = lock_owners(self._folder) if files else {}
-        for stem, inode in files.items():
-            if any(self._is_ours(pid) for pid in owners.get(inode, ())):
-                self._owned.add(stem)
+        """Add the segments that supervised processes own now, and hide them from other users."""
+        owned = segments_of(self._is_ours, self._folder)
+        self._owned |= owned
+        hide(owned, self._folder)
 
     def sweep(self) -> list[str]:
         """Remove the listed segments that have no living owner; return their names.

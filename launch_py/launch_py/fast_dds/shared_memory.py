@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 
 SHM_FOLDER = "/dev/shm"
 PREFIX = "fastrtps_"
 PORT_PREFIX = "fastrtps_port"
 LOCK_SUFFIXES = ("_el", "_sl")
+OTHERS = 0o077
+OWNER_ONLY = 0o600
 _IN_CREATE = 0x100
 
 
@@ -61,18 +64,31 @@ def locked_segments(folder: str) -> set[str]:
     return {stem for stem, inode in lock_files(folder).items() if inode in locked}
 
 
-def hide_own_segments(folder: str = SHM_FOLDER) -> list[str]:
-    """Make this process's shared memory readable by this user only; return the file names.
+def segments_of(is_owner: Callable[[int], bool], folder: str = SHM_FOLDER) -> set[str]:
+    """Return the segments whose lock such a process holds.
 
-    Fast DDS makes its segments readable by every user, regardless of the umask.
+    Args:
+        is_owner: tells whether a process id is one of those asked for.
+        folder: where the segments are.
     """
-    owners = lock_owners(folder)
+    files = lock_files(folder)
+    owners = lock_owners(folder) if files else {}
+    return {stem for stem, inode in files.items() if any(map(is_owner, owners.get(inode, ())))}
+
+
+def hide(stems: Iterable[str], folder: str = SHM_FOLDER) -> list[str]:
+    """Make the files of those segments readable by this user only; return the names changed.
+
+    Fast DDS makes its segments readable by every user, regardless of the umask, and a process that
+    sends to a port may make the port anew long after its reader has hidden it.
+    """
     hidden: list[str] = []
-    for stem, inode in lock_files(folder).items():
-        if os.getpid() in owners.get(inode, ()):
-            for name in (stem, *lock_names(stem), mutex_file(stem)):
-                with suppress(OSError):
-                    os.chmod(os.path.join(folder, name), 0o600)
+    for stem in stems:
+        for name in (stem, *lock_names(stem), mutex_file(stem)):
+            path = os.path.join(folder, name)
+            with suppress(OSError):
+                if os.stat(path).st_mode & OTHERS:
+                    os.chmod(path, OWNER_ONLY)
                     hidden.append(name)
     return hidden
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from launch_py.fast_dds.participants import PID_BITS, domain_of, find_ports
-from launch_py.fast_dds.shared_memory import hide_own_segments
+from launch_py.fast_dds.shared_memory import hide, segments_of
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -59,7 +59,7 @@ class RosGraph:
             enable_rosout=False,
             start_parameter_services=False,
         )
-        hide_own_segments()
+        hide(segments_of(lambda pid: pid == os.getpid()))
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._received: set[str] = set()

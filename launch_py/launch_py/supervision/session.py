@@ -328,7 +328,7 @@ class _LaunchSession:
 
     def _is_ours(self, pid: int) -> bool:
         session = linux.session_of(pid)
-        return any(
+        return pid in self._probes.pids or any(
             m.child is not None and m.child.pid == session
             for m in self._supervisor.processes.values()
         )

@@ -76,6 +76,18 @@ def test_the_files_of_other_dead_processes_stay(shm_folder, segment):
     }
 
 
+def test_a_port_that_a_sender_makes_anew_is_hidden_from_other_users(shm_folder, segment):
+    owner = segment("fastrtps_port7411")
+    ledger = SharedMemoryLedger(lambda pid: pid == owner.pid, str(shm_folder))
+    ledger.observe()
+    port = shm_folder / "fastrtps_port7411"
+    port.unlink()
+    port.touch()
+    port.chmod(0o644)
+    ledger.observe()
+    assert port.stat().st_mode & 0o777 == 0o600
+
+
 def test_files_that_a_surviving_process_recreates_are_removed_again(shm_folder, segment):
     owner = segment("fastrtps_port7411")
     ledger = SharedMemoryLedger(lambda _: True, str(shm_folder))

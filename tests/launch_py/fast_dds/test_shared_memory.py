@@ -4,7 +4,7 @@ import fcntl
 import os
 import select
 
-from launch_py.fast_dds.shared_memory import hide_own_segments, watch_folder
+from launch_py.fast_dds.shared_memory import hide, segments_of, watch_folder
 
 
 def test_a_folder_that_does_not_exist_cannot_be_watched():
@@ -26,7 +26,8 @@ def test_only_the_segments_of_this_process_are_hidden(tmp_path):
         (tmp_path / name).chmod(0o644)
     with (tmp_path / "fastrtps_1_el").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        hidden = hide_own_segments(str(tmp_path))
+        own = segments_of(lambda pid: pid == os.getpid(), str(tmp_path))
+        hidden = hide(own, str(tmp_path))
     assert sorted(hidden) == ["fastrtps_1", "fastrtps_1_el"]
     modes = {path.name: path.stat().st_mode & 0o777 for path in tmp_path.iterdir()}
     assert modes["fastrtps_1"] == modes["fastrtps_1_el"] == 0o600
