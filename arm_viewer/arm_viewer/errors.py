@@ -2,6 +2,7 @@
 
 ViewerError
 ├── ConfigError   a file is not an RViz configuration
+├── MessageError  a browser sent something that the page cannot serve
 ├── PageError     the page cannot be served: the port is taken or invalid
 └── PictureError  an image message cannot be drawn
 """
@@ -13,6 +14,10 @@ class ViewerError(Exception):
 
 class ConfigError(ViewerError):
     """A file is not an RViz configuration, or cannot be read; the message names it."""
+
+
+class MessageError(ViewerError):
+    """A message from a browser cannot be served; the sentence is shown in that browser."""
 
 
 class PageError(ViewerError):

@@ -29,6 +29,8 @@ from arm_viewer.rviz_config import PageConfig
 from arm_viewer.scene.first_view import FirstView
 from arm_viewer.scene.frames import Frames
 from arm_viewer.snapshot import Snapshot
+from arm_viewer.typed_numbers import KIND as TYPED_NUMBER
+from arm_viewer.typed_numbers import typed_number_handler
 
 TICK_S = 1.0 / 30.0
 
@@ -69,7 +71,7 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     status = StatusPanel()
     status.build(gui)
     joints = JointPanel(send)
-    server.take_typed_number = joints.take_typed
+    server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
     robots = RobotPanel(server.scene, frames, view)
     main = {

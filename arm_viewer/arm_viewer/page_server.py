@@ -21,8 +21,8 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
+from arm_viewer.channel import PATH, Channel
 from arm_viewer.errors import PageError
-from arm_viewer.typed_numbers import PATH, Take, serve_typed_numbers
 
 HOST = "127.0.0.1"
 
@@ -56,12 +56,12 @@ class PageServer(viser.ViserServer):
             PageError: the port is taken or not permitted, or requests to the installed version of
                 viser cannot be checked.
         """
-        self.take_typed_number: Take = _no_joints
-        """Handles a number typed beside a slider; called in viser's event loop."""
+        self.channel = Channel()
+        """Exchanges messages with the scripts of the page; use it in viser's event loop."""
         # viser prints boxes about itself on rich's console, and has no option to switch them off.
         rich.reconfigure(quiet=True)
         listener = _listen(port)
-        with _viser_serves_on(listener, self._take) as guarded:
+        with _viser_serves_on(listener, self.channel) as guarded:
             super().__init__(HOST, port, label=label, verbose=False)
         if not guarded:
             self.stop()
@@ -79,13 +79,6 @@ class PageServer(viser.ViserServer):
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to open a tunnel to the outside, which any client could request by a message."""
         return None
-
-    def _take(self, slider: str, text: str) -> str:
-        return self.take_typed_number(slider, text)
-
-
-def _no_joints(slider: str, text: str) -> str:
-    return "the page has no joints yet"
 
 
 @contextmanager
@@ -129,10 +122,10 @@ def _refusal_to_bind(port: int, error: OSError) -> str:
 
 
 @contextmanager
-def _viser_serves_on(listener: socket.socket, take: Take) -> Iterator[list[socket.socket]]:
+def _viser_serves_on(listener: socket.socket, channel: Channel) -> Iterator[list[socket.socket]]:
     """Make the server that viser starts in this context use the socket and the request gate.
 
-    Connections to PATH carry typed numbers; viser handles all others.
+    Connections to PATH are the channel's; viser handles all others.
 
     viser calls `websockets.asyncio.server.serve` in a thread that its constructor waits for, and
     has no parameter for `process_request` or `sock`, so `serve` is replaced for the duration of the
@@ -154,7 +147,7 @@ def _viser_serves_on(listener: socket.socket, take: Take) -> Iterator[list[socke
         async def handle(connection: ServerConnection) -> None:
             try:
                 if connection.request is not None and connection.request.path == PATH:
-                    await serve_typed_numbers(connection, take)
+                    await channel.serve(connection)
                 else:
                     await handler(connection)
             except ConnectionClosed as error:
@@ -263,7 +256,7 @@ def _listed(values: list[str]) -> str:
 
 
 TITLE = "Arm suite"
-SCRIPTS = ("typed_numbers.js", "quiet.js")
+SCRIPTS = ("channel.js", "typed_numbers.js", "quiet.js")
 _ICON = re.compile(r'<link\s+rel="icon"\s[^>]*>', re.DOTALL)
 _TITLE = re.compile(r"<title>[^<]*</title>")
 _HEAD_END = "</head>"

@@ -14,9 +14,9 @@ import websockets
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from arm_viewer.channel import PATH
 from arm_viewer.errors import PageError
 from arm_viewer.page_server import HOST, PageServer, page_server
-from arm_viewer.typed_numbers import PATH
 
 TIMEOUT_S = 30.0
 FOREIGN = "http://evil.example"

@@ -7,12 +7,11 @@ server, which answers with the problem, or with nothing. */
 (() => {
   "use strict";
   const FIELD = "input.mantine-NumberInput-input";
-  const PATH = "/typed_numbers";
+  const KIND = "typed_number";
   const NO_CONTACT = "The page's server does not answer: the number was not taken.";
   const SHOWN_MS = 10000;
 
   let editor = null;
-  let socket = null;
   let last = 0;
   let tabbing = false;
   const waiting = new Map();
@@ -26,28 +25,26 @@ server, which answers with the problem, or with nothing. */
     return target instanceof HTMLInputElement && target.matches(FIELD) && sliderOf(target);
   }
 
-  function connect() {
-    socket = new WebSocket(`ws://${location.host}${PATH}`);
-    socket.onopen = () => waiting.forEach(({ message }) => socket.send(message));
-    socket.onmessage = (event) => {
-      const { number, problem } = JSON.parse(event.data);
-      const sent = waiting.get(number);
-      waiting.delete(number);
-      if (sent && problem) showProblem(sent.field, problem);
-    };
-    socket.onclose = () => {
-      socket = null;
-      waiting.forEach(({ field }) => showProblem(field, NO_CONTACT));
-      waiting.clear();
-    };
+  function take({ number, problem }) {
+    const field = waiting.get(number);
+    waiting.delete(number);
+    if (field && problem) showProblem(field, problem);
   }
+
+  armChannel.on(KIND, take);
+  armChannel.on("refused", (message) => {
+    if (message.of === KIND) take(message);
+  });
+  armChannel.onChange((connected) => {
+    if (connected) return;
+    waiting.forEach((field) => showProblem(field, NO_CONTACT));
+    waiting.clear();
+  });
 
   function send(field, slider, text) {
     const number = ++last;
-    const message = JSON.stringify({ number, slider, text });
-    waiting.set(number, { field, message });
-    if (!socket) connect();
-    else if (socket.readyState === WebSocket.OPEN) socket.send(message);
+    if (armChannel.send(KIND, { number, slider, text })) waiting.set(number, field);
+    else showProblem(field, NO_CONTACT);
   }
 
   function showProblem(field, problem) {

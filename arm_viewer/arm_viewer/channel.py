@@ -1,0 +1,198 @@
+"""The page's own WebSocket: messages by kind between this process and the scripts of the page.
+
+A text frame is a JSON object whose `kind` names its handler. A binary frame starts with one byte
+that does the same. The channel shares origin, port and request gate with the page.
+"""
+
+import json
+import logging
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection, broadcast
+
+from arm_viewer.errors import MessageError
+
+PATH = "/channel"
+MAX_LENGTH = 65536
+"""Longest frame that a browser may send, in characters or bytes."""
+MAX_TEXT_LENGTH = 200
+"""Longest text in a field of a message."""
+MAX_UNSENT_BYTES = 262144
+"""A browser that is this far behind misses binary frames until it has caught up."""
+REFUSED = "refused"
+"""The kind of the answer to a message that cannot be served."""
+
+logger = logging.getLogger(__name__)
+
+
+class Message:
+    """A message from a browser; each accessor checks its field.
+
+    Attributes:
+        kind: what the message is about.
+    """
+
+    def __init__(self, kind: str, fields: Mapping[str, object]) -> None:
+        self.kind = kind
+        self._fields = fields
+
+    def text(self, name: str) -> str:
+        """Return a text.
+
+        Raises:
+            MessageError: the field is missing, not a text, or too long.
+        """
+        value = self._fields.get(name)
+        if not isinstance(value, str) or len(value) > MAX_TEXT_LENGTH:
+            raise MessageError(
+                f"'{name}' of '{self.kind}' is not a text of at most {MAX_TEXT_LENGTH} characters"
+            )
+        return value
+
+    def number(self, name: str) -> float:
+        """Return a finite number.
+
+        Raises:
+            MessageError: the field is missing or not a finite number.
+        """
+        value = self._fields.get(name)
+        try:
+            number = math.nan if isinstance(value, bool) else float(value)  # pyright: ignore[reportArgumentType]
+        except (TypeError, ValueError, OverflowError):
+            number = math.nan
+        if isinstance(value, str) or not math.isfinite(number):
+            raise MessageError(f"'{name}' of '{self.kind}' is not a finite number")
+        return number
+
+    def flag(self, name: str) -> bool:
+        """Return true or false.
+
+        Raises:
+            MessageError: the field is missing or neither.
+        """
+        value = self._fields.get(name)
+        if not isinstance(value, bool):
+            raise MessageError(f"'{name}' of '{self.kind}' is neither true nor false")
+        return value
+
+
+class Browser:
+    """The page in one browser, as long as it is connected."""
+
+    def __init__(self, connection: ServerConnection) -> None:
+        self._connection = connection
+
+    def send(self, kind: str, fields: Mapping[str, object]) -> None:
+        """Send a message to this browser; nothing happens if it has left."""
+        broadcast((self._connection,), _encoded(kind, fields))
+
+
+Handler = Callable[[Message, Browser], None]
+"""Serves a message in viser's event loop. A MessageError is the sentence that the browser gets."""
+
+
+class Channel:
+    """Connects the scripts of all browsers with their handlers; use it in viser's event loop."""
+
+    def __init__(self) -> None:
+        self._handlers: dict[str, Handler] = {}
+        self._connections: set[ServerConnection] = set()
+        self._kept: dict[str, str] = {}
+
+    def on(self, kind: str, handler: Handler) -> None:
+        """Let a handler serve the messages of a kind; it replaces an earlier one."""
+        self._handlers[kind] = handler
+
+    def send(self, kind: str, fields: Mapping[str, object], *, keep: bool = False) -> None:
+        """Send a message to every browser.
+
+        Args:
+            kind: names the handler in the browser.
+            fields: its content, plain values that JSON has; numbers are finite.
+            keep: send it also to each browser that connects later, until the next message of this
+                kind replaces it.
+        """
+        text = _encoded(kind, fields)
+        if keep:
+            self._kept[kind] = text
+        broadcast(self._connections, text)
+
+    def send_bytes(self, kind: int, payload: bytes) -> None:
+        """Send a binary frame to every browser that has nearly caught up; the others miss it.
+
+        Args:
+            kind: 0 to 255; names the handler in the browser.
+            payload: the content.
+        """
+        ready = [c for c in self._connections if _unsent_bytes(c) < MAX_UNSENT_BYTES]
+        if ready:
+            broadcast(ready, bytes((kind,)) + payload)
+
+    @property
+    def is_used(self) -> bool:
+        """Whether a browser is connected."""
+        return bool(self._connections)
+
+    async def serve(self, connection: ServerConnection) -> None:
+        """Serve a browser until it disconnects."""
+        browser = Browser(connection)
+        # Without waiting in between, so that no message comes before what it replaces.
+        for text in self._kept.values():
+            broadcast((connection,), text)
+        self._connections.add(connection)
+        try:
+            async for frame in connection:
+                self._take(frame, browser)
+        finally:
+            self._connections.discard(connection)
+
+    def _take(self, frame: str | bytes, browser: Browser) -> None:
+        """Serve one frame; whatever is wrong with it is answered and not raised."""
+        fields: dict[str, Any] = {}
+        try:
+            fields = _decoded(frame)
+            kind = fields["kind"]
+            handler = self._handlers.get(kind)
+            if handler is None:
+                raise MessageError(f"the page does not serve '{kind[:MAX_TEXT_LENGTH]}'")
+            handler(Message(kind, fields), browser)
+        except MessageError as error:
+            _refuse(browser, fields, str(error))
+        except Exception:
+            # The message's top-level handler: one that fails must not end the browser's connection.
+            logger.exception("a message of a browser failed")
+            _refuse(browser, fields, "the page failed at this; its log says why")
+
+
+def _refuse(browser: Browser, fields: Mapping[str, Any], problem: str) -> None:
+    number = fields.get("number")
+    browser.send(
+        REFUSED,
+        {
+            "of": str(fields.get("kind", ""))[:MAX_TEXT_LENGTH],
+            "number": number if isinstance(number, int) else None,
+            "problem": problem,
+        },
+    )
+
+
+def _decoded(frame: str | bytes) -> dict[str, Any]:
+    if len(frame) > MAX_LENGTH:
+        raise MessageError(f"the message has {len(frame)} characters; at most {MAX_LENGTH} may be")
+    try:
+        fields = json.loads(frame)
+    except (ValueError, RecursionError):
+        raise MessageError("the message is not JSON") from None
+    if not isinstance(fields, dict) or not isinstance(fields.get("kind"), str):
+        raise MessageError("the message is not a JSON object with a 'kind'")
+    return fields
+
+
+def _encoded(kind: str, fields: Mapping[str, object]) -> str:
+    return json.dumps({"kind": kind, **fields}, allow_nan=False)
+
+
+def _unsent_bytes(connection: ServerConnection) -> int:
+    return connection.transport.get_write_buffer_size()
