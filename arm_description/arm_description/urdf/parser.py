@@ -152,7 +152,7 @@ def _read_material(element: UrdfElement) -> Material:
     """Read a <material>; without colour and texture it has only a name.
 
     Raises:
-        UrdfError: a colour is not four numbers, or a texture has no file.
+        UrdfError: a colour is not four numbers.
     """
     color = element.child("color")
     texture = element.child("texture")
@@ -163,11 +163,9 @@ def _read_material(element: UrdfElement) -> Material:
         rgba = (red, green, blue, alpha)
         if rgba != values:
             color.warn(f"has rgba='{color.text('rgba', '')}'; values are clamped to 0 to 1")
-    return Material(
-        name=element.text("name", ""),
-        rgba=rgba,
-        texture=None if texture is None else texture.needed_text("filename"),
-    )
+    # A texture without a file counts as none, as in urdfdom.
+    file = "" if texture is None else texture.text("filename")
+    return Material(name=element.text("name", ""), rgba=rgba, texture=file or None)
 
 
 def _resolve_materials(links: Sequence[Link], materials: Iterable[Material]) -> tuple[Link, ...]:

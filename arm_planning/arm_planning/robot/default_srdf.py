@@ -155,6 +155,8 @@ class _Tree:
             for joint in joints
         )
         if len(branches) == 1:
+            if self._moving.get(joints[0].child) and _turns_a_gripper(joints[0]):
+                return False
             return 0 < deepest <= above and all(map(_is_finger, joints))
         if leaders and is_driven:
             return deepest <= max(above, 2)
@@ -167,6 +169,11 @@ class _Tree:
 
 def _is_finger(joint: Joint) -> bool:
     return any(word in name.lower() for word in FINGERS for name in (joint.name, joint.child))
+
+
+def _turns_a_gripper(joint: Joint) -> bool:
+    """Return whether a joint with a name of the arm's carries a link that is called a gripper."""
+    return "grip" in joint.child.lower() and not any(w in joint.name.lower() for w in FINGERS)
 
 
 def _tip(robot: Robot, body: Sequence[str], first: str, grippers: Sequence[_Gripper]) -> str:

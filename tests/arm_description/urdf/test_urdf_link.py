@@ -133,10 +133,6 @@ def test_every_shape_is_read_for_seeing_and_for_touching(shape, geometry):
             visual("<material name='m'><color rgba='1 0 0'/></material>"),
             "line 3: <color> of link 'a' has rgba='1 0 0': 3 values, not 4",
         ),
-        (
-            visual("<material name='m'><texture/></material>"),
-            "line 3: <texture> of link 'a' needs the attribute 'filename'",
-        ),
     ],
 )
 def test_an_error_names_line_element_and_link(inside, message):
@@ -151,6 +147,11 @@ def test_a_visuals_own_colour_and_texture():
     texture = "<texture filename='t.png'/>"
     read = link(visual(f"<material name='m'>{COLOUR}{texture}</material>"))
     assert read.visuals[0].material == Material("m", RED, "t.png")
+
+
+def test_a_texture_without_a_file_is_ignored_as_urdfdom_ignores_it():
+    read = link(visual(f"<material name='m'>{COLOUR}<texture/></material>"))
+    assert read.visuals[0].material == Material("m", RED)
 
 
 def test_a_visual_without_a_material_has_none():

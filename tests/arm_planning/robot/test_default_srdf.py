@@ -100,6 +100,15 @@ def test_a_single_jaw_is_told_by_its_name():
     assert model.group("gripper").joints == ("grip",)
 
 
+def test_a_joint_that_turns_a_single_jaw_gripper_is_the_arms():
+    wrist = [link("gripper_link"), joint("wrist_roll", "a3_link", "gripper_link")]
+    jaw = [link("moving_jaw"), joint("gripper", "gripper_link", "moving_jaw")]
+    _, srdf, model = read(link("base"), *serial("a", 3, "base"), *wrist, *jaw)
+    assert model.group("arm").joints == ("a1", "a2", "a3", "wrist_roll")
+    assert model.group("gripper").joints == ("gripper",)
+    assert srdf.end_effectors["gripper"] == EndEffector("gripper_link", "gripper", "arm")
+
+
 def test_a_sliding_last_joint_is_not_a_gripper():
     quill = [link("quill"), joint("z", "j2_link", "quill", kind="prismatic", axis="0 0 1")]
     assert read(link("base"), *serial("j", 2, "base"), *quill)[2].group("arm").joints == (
