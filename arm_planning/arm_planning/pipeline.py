@@ -14,6 +14,7 @@ from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
 from arm_planning.constraints.evaluation import ConstraintEvaluator
 from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.timing.driven_spline import chord_deviation
@@ -122,6 +123,7 @@ def timed_and_proved(
     constraints: ConstraintEvaluator,
     timing: Timing,
     corner: float = CORNER_TOLERANCE,
+    deadline: Deadline = NO_DEADLINE,
 ) -> TimedTrajectory:
     """Return a trajectory along a path, every state of which is proved free.
 
@@ -134,12 +136,14 @@ def timed_and_proved(
         constraints: what holds on the way; looked at in each returned point.
         timing: speed.
         corner: how far a rounded corner may pass by its way point, rad or m.
+        deadline: when the answer is due.
 
     Raises:
         PlanningError: INVALID_MOTION_PLAN: it cannot be made free; the message says where.
     """
     corners = np.full(len(path), corner)
     while True:
+        deadline.check("timing the path")
         trajectory = parameterize(
             path,
             group.limits,

@@ -28,7 +28,7 @@ from arm_planning.planners.goals import GoalSampler
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pilz.planner import PLANNERS, PilzPlanner
 from arm_planning.planners.pilz.sequence import SequenceItem, plan_sequence
-from arm_planning.planners.problem import Deadline, PlanningProblem
+from arm_planning.planners.problem import Deadline, PlanningProblem, never
 from arm_planning.planners.registry import planner_for, planner_ids
 from arm_planning.request import PlanRequest, PlanResponse
 from arm_planning.robot.build import planning_model
@@ -134,8 +134,19 @@ class Planner:
         scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
         return cls(model, scene, resources=finder)
 
-    def plan(self, request: PlanRequest, scene: PlanningScene | None = None) -> PlanResponse:
-        """Return the answer to a request; it raises nothing for a request that cannot be met."""
+    def plan(
+        self,
+        request: PlanRequest,
+        scene: PlanningScene | None = None,
+        interrupted: Callable[[], bool] = never,
+    ) -> PlanResponse:
+        """Return the answer to a request; it raises nothing for a request that cannot be met.
+
+        Args:
+            request: what to plan.
+            scene: the scene; by default the planner's.
+            interrupted: tells when planning is to end early, with PREEMPTED.
+        """
         started_s = time.monotonic()
         remarks: list[str] = []
         scene = scene or self.scene
@@ -150,7 +161,7 @@ class Planner:
             if begin.remark:
                 remarks.append(begin.remark)
             scene = replace(scene, positions=start)
-            trajectory = self._solve(request, group, scene, remarks.append)
+            trajectory = self._solve(request, group, scene, remarks.append, interrupted)
         except PlanningError as error:
             code, remarks = error.code, [str(error)]
         return PlanResponse(
@@ -323,9 +334,17 @@ class Planner:
         return TimedCartesianPath(trajectory, found.fraction, found.stopped)
 
     def sequence(
-        self, items: Sequence[SequenceItem], scene: PlanningScene | None = None
+        self,
+        items: Sequence[SequenceItem],
+        scene: PlanningScene | None = None,
+        interrupted: Callable[[], bool] = never,
     ) -> tuple[TimedTrajectory, ...]:
         """Return the motions of Pilz' planners one after the other, blended where asked for.
+
+        Args:
+            items: the motions.
+            scene: the scene; by default the planner's.
+            interrupted: tells when planning is to end early, with PREEMPTED.
 
         Raises:
             PlanningError: a motion cannot be planned, or is not free; the message says which.
@@ -340,7 +359,13 @@ class Planner:
             )
             for item in items
         ]
-        found = plan_sequence(PilzPlanner(self.model, self._tip_limits), own, scene.positions, free)
+        found = plan_sequence(
+            PilzPlanner(self.model, self._tip_limits),
+            own,
+            scene.positions,
+            free,
+            Deadline(interrupted=interrupted),
+        )
         positions = dict(scene.positions)
         for trajectory in found:
             group = self._group_of(trajectory)
@@ -434,9 +459,10 @@ class Planner:
         group: JointGroup,
         scene: PlanningScene,
         remark: Callable[[str], None],
+        interrupted: Callable[[], bool],
     ) -> TimedTrajectory:
         if request.pipeline == PILZ:
-            return self.sequence([SequenceItem(request)], scene)[0]
+            return self.sequence([SequenceItem(request)], scene, interrupted)[0]
         if request.pipeline not in ("", OMPL):
             known = describe_known(request.pipeline, pipelines(), "there are")
             raise PlanningError(
@@ -445,7 +471,7 @@ class Planner:
         checker = self.checker(scene, group.name)
         path = self._evaluator(request.path, group, scene)
         start = group.positions(scene.positions)
-        deadline = Deadline.after(request.allowed_time_s)
+        deadline = Deadline.after(request.allowed_time_s, interrupted)
         goals = GoalSampler(
             request.goals,
             request.path,
@@ -472,7 +498,7 @@ class Planner:
         )
         found = planner_for(_planner_of(request)).plan(problem)
         timing = Timing(request.velocity_scaling, request.acceleration_scaling)
-        return timed_and_proved(found, group, checker, path, timing)
+        return timed_and_proved(found, group, checker, path, timing, deadline=deadline)
 
     def _evaluator(
         self, constraints: MotionConstraints, group: JointGroup, scene: PlanningScene

@@ -29,6 +29,7 @@ WIDE = 0.1
 SLACK = 1e-4
 """How much inverse kinematics may miss a tolerance, rad or m."""
 FULL_TURN = 2.0 * math.pi
+DOING = "looking for a goal state"
 
 
 class Inverse(Protocol):
@@ -106,7 +107,7 @@ class GoalSampler:
             judges.append(judge)
             mine: list[Array] = []
             for candidate in self._candidates(goal, judge):
-                self.deadline.check("looking for a goal state")
+                self.deadline.check(DOING)
                 if judge.accepts(candidate) and _is_new(candidate, mine):
                     mine.append(candidate)
                 if len(mine) == MOST:
@@ -193,6 +194,7 @@ class GoalSampler:
     def _inverse(
         self, link: str, pose: Array, any_turn: bool, judge: "_Judge", *, most: int
     ) -> Iterator[Array]:
+        self.deadline.check(DOING)
         if self.inverse is None:
             raise PlanningError(
                 MoveItErrorCode.NO_IK_SOLUTION,

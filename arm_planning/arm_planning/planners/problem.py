@@ -50,29 +50,40 @@ class StateChecker(Protocol):
         ...
 
 
+def never() -> bool:
+    """Return False: nobody interrupts."""
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """A time by which an answer is due.
+    """A time by which an answer is due, unless nobody wants it any more.
 
     Attributes:
         end_s: the time, on the clock.
         clock: returns the present time in s.
+        interrupted: tells when the answer is not wanted any more; any thread may make it true.
     """
 
     end_s: float = math.inf
     clock: Callable[[], float] = time.monotonic
+    interrupted: Callable[[], bool] = never
 
     @classmethod
-    def after(cls, duration_s: float) -> "Deadline":
+    def after(cls, duration_s: float, interrupted: Callable[[], bool] = never) -> "Deadline":
         """Return the deadline that is so many seconds from now."""
-        return cls(time.monotonic() + duration_s)
+        return cls(time.monotonic() + duration_s, interrupted=interrupted)
 
     def check(self, doing: str) -> None:
-        """Raise an error after the deadline.
+        """Raise an error after the deadline, or once it is interrupted.
 
         Raises:
-            PlanningError: TIMED_OUT; the message says what was being done.
+            PlanningError: TIMED_OUT or PREEMPTED; the message says what was being done.
         """
+        if self.interrupted():
+            raise PlanningError(
+                MoveItErrorCode.PREEMPTED, f"planning was interrupted while {doing}"
+            )
         if self.clock() > self.end_s:
             raise PlanningError(
                 MoveItErrorCode.TIMED_OUT, f"the planning time ended while {doing}; allow more time"

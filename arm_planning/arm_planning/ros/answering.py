@@ -1,38 +1,90 @@
 """Services that answer whatever happens: a client without an answer waits for ever."""
 
 import logging
+import threading
 from collections.abc import Callable
 from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
 
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.convert import error_code
 
+HOLDERS = ("motion_plan_response", "response")
+"""Fields of answers and results that have the error code, where they have none themselves."""
 LOGGER = logging.getLogger("move_group")
 
+Serve = Callable[[Any, Any], Any]
+"""Takes a request and an empty response; returns the response."""
 
-def answering(name: str, serve: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-    """Return a service's callback that answers even if it has a fault.
+
+class BusyLimit:
+    """Lets so many requests plan at a time, so that threads are left to cancel and to look."""
+
+    def __init__(self, most: int) -> None:
+        self.most = most
+        self._free = threading.BoundedSemaphore(most)
+
+    def serve(self, name: str, serve: Serve, request: Any, response: Any) -> Any:
+        """Serve a request, or refuse it while too many others are being served."""
+        if not self._free.acquire(blocking=False):
+            sentence = f"{name}: {self.most} other requests are being served; ask again later"
+            LOGGER.error("%s", sentence)
+            fill_error(response, MoveItErrorCode.FAILURE, sentence)
+            return response
+        try:
+            return serve(request, response)
+        finally:
+            self._free.release()
+
+
+def offer_service(
+    node: Node,
+    kind: type[Any],
+    name: str,
+    serve: Serve,
+    *,
+    group: CallbackGroup | None = None,
+    limit: BusyLimit | None = None,
+) -> None:
+    """Offer a service; all of move_group's are made here, so that each of them answers.
 
     Args:
-        name: the service's name.
+        node: gets the service.
+        kind: its type.
+        name: its name.
         serve: fills the response; an exception of it is logged, and the code becomes FAILURE.
+        group: which callbacks may run beside it; by default those of the node's own group may not.
+        limit: shared by the services that take long.
     """
 
     def answer(request: Any, response: Any) -> Any:
         try:
+            if limit is not None:
+                return limit.serve(name, serve, request, response)
             return serve(request, response)
         except Exception as error:
-            LOGGER.exception("%s has a fault", name)
             failed = type(response)()
-            if hasattr(failed, "error_code"):
-                holder = failed
-            else:
-                holder = getattr(failed, "motion_plan_response", None)
-            if holder is not None:
-                holder.error_code = error_code(
-                    MoveItErrorCode.FAILURE,
-                    f"{name} has a fault, please report it: {type(error).__name__}: {error}",
-                )
+            fill_error(failed, MoveItErrorCode.FAILURE, report_fault(name, error))
             return failed
 
-    return answer
+    node.create_service(kind, name, answer, callback_group=group)
+
+
+def report_fault(name: str, error: Exception) -> str:
+    """Log the traceback of the exception that is being handled; return a sentence for the client.
+
+    Args:
+        name: of the service or action that has the fault.
+        error: the exception.
+    """
+    LOGGER.exception("%s has a fault", name)
+    return f"{name} has a fault, please report it: {type(error).__name__}: {error}"
+
+
+def fill_error(message: Any, code: MoveItErrorCode, sentence: str = "") -> None:
+    """Fill the error code of an answer or result; one that has none stays as it is."""
+    inner = next((getattr(message, name) for name in HOLDERS if hasattr(message, name)), message)
+    if hasattr(inner, "error_code"):
+        inner.error_code = error_code(code, sentence)

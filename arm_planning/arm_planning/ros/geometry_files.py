@@ -11,6 +11,7 @@ from rclpy.node import Node
 from arm_node.user_file import check_file, read_text
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
+from arm_planning.ros.answering import offer_service
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.scene import PlanningScene
@@ -25,8 +26,8 @@ class GeometryFiles:
     def __init__(self, node: Node, model: PlanningModel, monitor: SceneMonitor) -> None:
         self._model = model
         self._monitor = monitor
-        node.create_service(SaveGeometryToFile, "save_geometry_to_file", self._save)
-        node.create_service(LoadGeometryFromFile, "load_geometry_from_file", self._load)
+        offer_service(node, SaveGeometryToFile, "save_geometry_to_file", self._save)
+        offer_service(node, LoadGeometryFromFile, "load_geometry_from_file", self._load)
 
     def _save(self, request: Any, answer: SaveGeometryToFile.Response) -> Any:
         path = Path(request.file_path_and_name)

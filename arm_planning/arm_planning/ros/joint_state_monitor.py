@@ -3,6 +3,7 @@
 import math
 import threading
 import time
+from collections.abc import Callable
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -76,8 +77,14 @@ class JointStateMonitor:
         known = self.positions()
         return tuple(joint for joint in self._model.joints if joint not in known)
 
-    def wait_for_fresh(self, timeout_s: float) -> str:
+    def wait_for_fresh(
+        self, timeout_s: float, interrupted: Callable[[], bool] = lambda: False
+    ) -> str:
         """Wait until the state is at most 50 ms old; return what is wrong after the timeout.
+
+        Args:
+            timeout_s: how long.
+            interrupted: tells when waiting is to end early.
 
         Returns:
             "", or a sentence: joint states have stopped, or joints are missing.
@@ -88,7 +95,7 @@ class JointStateMonitor:
             age_s = time.time() - self._arrived_s
             if age_s < FRESH_S and not missing:
                 return ""
-            if time.monotonic() >= deadline_s:
+            if time.monotonic() >= deadline_s or interrupted():
                 break
             time.sleep(POLL_S)
         if math.isinf(age_s):

@@ -16,10 +16,12 @@ from arm_node.executor_thread import ExecutorThread
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
 from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.ros.answering import BusyLimit, offer_service
 from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code
 from arm_planning.ros.geometry_files import GeometryFiles
 from arm_planning.ros.goals import Turns
+from arm_planning.ros.motion_goals import PLANS, MotionGoals
 from arm_planning.ros.move_action import MoveActions
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
@@ -27,12 +29,13 @@ from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.robot_setup import PlanningSetup, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer
-from arm_planning.ros.sequence_session import SequenceSession
 from arm_planning.ros.state_services import StateServices
 from arm_planning.ros.trajectory_executor import ExecutionManager
 
-THREADS = 6
-"""Callbacks that may wait at the same time: goals that run, their cancelling, and services."""
+SERVICES = 8
+"""Services that plan, at the same time."""
+THREADS = SERVICES + PLANS + 8
+"""More than all that may wait at the same time: one is left to cancel goals."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOGGER = logging.getLogger("move_group")
 
@@ -56,36 +59,26 @@ class MoveGroup:
         )
         executor = ExecutionManager(node, self.monitor.states, controllers.available, settings)
         display = PlanDisplay(node, setup.model)
-        turns = Turns()
         allows = node.get_parameter_or("allow_trajectory_execution", None)
         allows_execution = allows is None or allows.value is not False
+        motions = MotionGoals(
+            session, executor, display, allows_execution, moving=Turns(), planning=Turns(PLANS)
+        )
+        limit = BusyLimit(SERVICES)
         self._served = (
-            MoveActions(
-                node,
-                session,
-                executor,
-                display,
-                turns,
-                allows_execution=allows_execution,
-            ),
-            SequenceServer(
-                node,
-                SequenceSession(session),
-                executor,
-                display,
-                turns,
-                allows_execution=allows_execution,
-            ),
-            PlanningServices(node, session, display),
-            StateServices(node, session),
+            MoveActions(node, motions),
+            SequenceServer(node, motions, limit),
+            PlanningServices(node, session, display, limit),
+            StateServices(node, session, limit),
             GeometryFiles(node, setup.model, self.monitor),
         )
         self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)
         self._semantic.publish(String(data=setup.srdf))
         self._executor = executor
+        self._moving = motions.moving
         scene_node.create_subscription(String, "trajectory_execution_event", self._take_event, 10)
-        node.create_service(GetGroupUrdf, "get_urdf", self._urdf)
-        node.create_service(Empty, "clear_octomap", _clear_octomap)
+        offer_service(node, GetGroupUrdf, "get_urdf", self._urdf)
+        offer_service(node, Empty, "clear_octomap", _clear_octomap)
 
     @contextmanager
     def serving(self) -> Iterator[None]:
@@ -101,6 +94,7 @@ class MoveGroup:
 
     def _take_event(self, event: String) -> None:
         if event.data == "stop":
+            self._moving.stop()
             self._executor.stop()
         else:
             LOGGER.warning("Unknown event type: '%s'; there is 'stop'", event.data)

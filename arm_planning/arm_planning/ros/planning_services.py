@@ -1,7 +1,7 @@
 """The services that plan, and those about the planners."""
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from moveit_msgs.msg import PlannerInterfaceDescription, RobotTrajectory
@@ -15,9 +15,9 @@ from rclpy.node import Node
 
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.pipeline import Timing
-from arm_planning.planner import TimedCartesianPath, pipelines
+from arm_planning.planner import Planner, TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
-from arm_planning.ros.answering import answering
+from arm_planning.ros.answering import BusyLimit, offer_service
 from arm_planning.ros.convert import (
     error_code,
     pose_of,
@@ -35,24 +35,28 @@ LOGGER = logging.getLogger("move_group")
 class PlanningServices:
     """Serves plan_kinematic_path, compute_cartesian_path and the queries about planners."""
 
-    def __init__(self, node: Node, session: PlanningSession, display: PlanDisplay) -> None:
+    def __init__(
+        self, node: Node, session: PlanningSession, display: PlanDisplay, limit: BusyLimit
+    ) -> None:
         """Offer the services; several threads must spin the node.
 
         Args:
             node: gets the services.
             session: plans in the present scene.
             display: shows plans.
+            limit: of the services that plan.
         """
         self._session = session
         self._display = display
         group = ReentrantCallbackGroup()
-        services: dict[str, tuple[type[Any], Callable[[Any, Any], Any]]] = {
-            "plan_kinematic_path": (GetMotionPlan, self._plan),
-            "compute_cartesian_path": (GetCartesianPath, self._cartesian),
-            "query_planner_interface": (QueryPlannerInterfaces, self._planners),
-        }
-        for name, (service, serve) in services.items():
-            node.create_service(service, name, answering(name, serve), callback_group=group)
+        for kind, name, serve in (
+            (GetMotionPlan, "plan_kinematic_path", self._plan),
+            (GetCartesianPath, "compute_cartesian_path", self._cartesian),
+        ):
+            offer_service(node, kind, name, serve, group=group, limit=limit)
+        offer_service(
+            node, QueryPlannerInterfaces, "query_planner_interface", self._planners, group=group
+        )
 
     def _plan(self, request: Any, answer: GetMotionPlan.Response) -> GetMotionPlan.Response:
         response = self._session.plan(request.motion_plan_request)
@@ -73,7 +77,8 @@ class PlanningServices:
         session = self._session
         try:
             scene = session.state(request.start_state)
-            result = self._straight(request, scene)
+            with session.planner() as planner:
+                result = self._straight(request, scene, planner)
         except PlanningError as error:
             LOGGER.error("compute_cartesian_path: %s", error)
             answer.error_code = error_code(error.code, str(error))
@@ -88,7 +93,7 @@ class PlanningServices:
         self._display.show(scene.positions, [result.trajectory])
         return answer
 
-    def _straight(self, request: Any, scene: PlanningScene) -> TimedCartesianPath:
+    def _straight(self, request: Any, scene: PlanningScene, planner: Planner) -> TimedCartesianPath:
         session = self._session
         frames = session.frames(scene)
         poses = [pose_of(pose, f"way point {i}") for i, pose in enumerate(request.waypoints)]
@@ -97,9 +102,9 @@ class PlanningServices:
         if not relative:
             mover, origin = frames.reference(frame)
             if mover:
-                origin = session.planner.link_pose(mover, scene).then(origin)
+                origin = planner.link_pose(mover, scene).then(origin)
             poses = [origin.then(pose) for pose in poses]
-        return session.planner.cartesian_path(
+        return planner.cartesian_path(
             request.group_name,
             poses,
             max_step_m=request.max_step,

@@ -1,8 +1,8 @@
 """Plans requests in messages: in the present scene, with its changes, from the present state."""
 
 import logging
-import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 
 from moveit_msgs.msg import MotionPlanRequest, RobotState
@@ -11,6 +11,7 @@ from moveit_msgs.msg import PlanningScene as SceneMessage
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
 from arm_planning.planner import Planner
+from arm_planning.planners.problem import never
 from arm_planning.request import PlanRequest, PlanResponse
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert_constraints import ConstraintFrames, plan_request
@@ -38,55 +39,77 @@ class PlanningSession:
         self.model: PlanningModel = setup.model
         self.monitor = monitor
         self._setup = setup
-        self._of_thread = threading.local()
+        self._idle: list[Planner] = []
 
-    @property
-    def planner(self) -> Planner:
-        """The calling thread's own planner, so that watching a motion never waits for a plan."""
-        planner: Planner | None = getattr(self._of_thread, "planner", None)
-        if planner is None:
+    @contextmanager
+    def planner(self) -> Iterator[Planner]:
+        """Lend a planner that nobody else uses, so that watching a motion never waits for a plan.
+
+        The one that came back last goes first: what it has compiled serves again.
+        """
+        try:
+            planner = self._idle.pop()
+        except IndexError:
             planner = Planner(
                 self.model,
                 self.monitor.scene,
                 resources=self._setup.resources,
                 tip_limits=self._setup.tip_limits,
             )
-            self._of_thread.planner = planner
-        return planner
-
-    def plan(self, request: MotionPlanRequest, diff: SceneMessage | None = None) -> PlanResponse:
-        """Plan from the request's start state in the present scene with changes."""
         try:
-            scene = self.in_state(self.scene_for(diff), request.start_state)
-            return self._plan(request, scene)
-        except PlanningError as error:
-            return PlanResponse(error.code, str(error), {}, None, 0.0)
+            yield planner
+        finally:
+            self._idle.append(planner)
 
-    def plan_from_present(self, request: MotionPlanRequest, diff: SceneMessage) -> PlanResponse:
-        """Plan from where the robot is, as a motion that follows at once must."""
-        if is_given(request.start_state):
+    def plan(
+        self,
+        request: MotionPlanRequest,
+        diff: SceneMessage | None = None,
+        *,
+        from_present: bool = False,
+        interrupted: Callable[[], bool] = never,
+    ) -> PlanResponse:
+        """Plan in the present scene with changes; it raises nothing for what is not possible.
+
+        Args:
+            request: what to plan.
+            diff: changes of the present scene.
+            from_present: whether the start state is ignored, because the robot moves at once.
+            interrupted: tells when planning is to end early.
+        """
+        if from_present and is_given(request.start_state):
             LOGGER.warning(
                 "Execution of motions should always start at the robot's current state. "
                 "Ignoring the state supplied as start state in the motion planning request"
             )
         try:
-            return self._plan(request, self.scene_for(diff, from_present=True))
+            scene = self.scene_for(diff, from_present=from_present, interrupted=interrupted)
+            if not from_present:
+                scene = self.in_state(scene, request.start_state)
+            with self.planner() as planner:
+                return planner.plan(self.request(request, scene), scene, interrupted)
         except PlanningError as error:
             return PlanResponse(error.code, str(error), {}, None, 0.0)
 
     def scene_for(
-        self, diff: SceneMessage | None = None, *, from_present: bool = False
+        self,
+        diff: SceneMessage | None = None,
+        *,
+        from_present: bool = False,
+        interrupted: Callable[[], bool] = never,
     ) -> PlanningScene:
         """Return the scene to plan in: the present one with changes.
 
         Args:
             diff: the changes; never a whole scene, whatever it says of itself.
             from_present: whether the robot stays where it is, because it moves at once.
+            interrupted: tells when waiting for joint states is to end early.
 
         Raises:
             PlanningError: a change is not possible.
         """
-        self._warn_if_stale()
+        if problem := self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
+            LOGGER.warning("%s", problem)
         scene = self.monitor.current()
         if diff is None:
             return scene
@@ -128,7 +151,8 @@ class PlanningSession:
             if scene is seen:
                 return ""
             seen = scene
-            return self.planner.blocked_ahead(trajectory, elapsed_s, self.monitor.current())
+            with self.planner() as planner:
+                return planner.blocked_ahead(trajectory, elapsed_s, self.monitor.current())
 
         return blocked
 
@@ -139,9 +163,6 @@ class PlanningSession:
     def state(self, message: RobotState) -> PlanningScene:
         """Return the present scene with the robot in a state; an empty one is the present state."""
         return self.in_state(self.monitor.current(), message)
-
-    def _plan(self, request: MotionPlanRequest, scene: PlanningScene) -> PlanResponse:
-        return self.planner.plan(self.request(request, scene), scene)
 
     def in_state(self, scene: PlanningScene, state: RobotState) -> PlanningScene:
         """Return the scene with the robot in a state; an empty one changes nothing."""
@@ -155,10 +176,6 @@ class PlanningSession:
     def _frame(self, scene: PlanningScene, name: str) -> RigidTransform:
         known = self.monitor.with_frames(scene, [name])
         return frame_pose(known, LinkPoses(self.model, known.positions), name)
-
-    def _warn_if_stale(self) -> None:
-        if problem := self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S):
-            LOGGER.warning("%s", problem)
 
 
 def _all_of(outcome: SceneOutcome) -> PlanningScene:

@@ -25,6 +25,7 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
+from arm_planning.ros.answering import offer_service
 from arm_planning.ros.convert import robot_state_message
 from arm_planning.ros.convert_scene import frames_in, scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
@@ -80,8 +81,8 @@ class SceneMonitor:
         }
         for topic, (message, take) in topics.items():
             node.create_subscription(message, topic, take, SERVICES_DEPTH)
-        node.create_service(GetPlanningScene, "get_planning_scene", self._serve_get)
-        node.create_service(ApplyPlanningScene, "apply_planning_scene", self._serve_apply)
+        offer_service(node, GetPlanningScene, "get_planning_scene", self._serve_get)
+        offer_service(node, ApplyPlanningScene, "apply_planning_scene", self._serve_apply)
         # Not on simulation time: it advances only when somebody reads the joint states.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         node.create_timer(1.0 / PUBLISH_HZ, self._publish, clock=steady)

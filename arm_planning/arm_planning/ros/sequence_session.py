@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from moveit_msgs.msg import MotionSequenceItem, MotionSequenceRequest, MotionSequenceResponse
@@ -12,6 +12,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.pipeline import start_state
 from arm_planning.planner import PILZ
 from arm_planning.planners.pilz.sequence import SequenceItem
+from arm_planning.planners.problem import never
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.convert import (
     error_code,
@@ -68,6 +69,7 @@ class SequenceSession:
         diff: SceneMessage | None = None,
         *,
         from_present: bool = False,
+        interrupted: Callable[[], bool] = never,
     ) -> SequencePlan:
         """Plan a sequence; it raises nothing for one that is not possible.
 
@@ -75,6 +77,7 @@ class SequenceSession:
             request: the motions. A group's first one may have a start state, the others none.
             diff: changes of the present scene.
             from_present: whether start states are ignored, because the robot moves at once.
+            interrupted: tells when planning is to end early.
         """
         started_s = time.monotonic()
         start: JointPositions = {}
@@ -84,12 +87,13 @@ class SequenceSession:
         if not items:
             LOGGER.warning("Received empty request. That's ok but maybe not what you intended.")
         try:
-            scene = self.session.scene_for(diff, from_present=from_present)
+            scene = self.session.scene_for(diff, from_present=from_present, interrupted=interrupted)
             if not from_present:
                 scene = self._at_start(scene, items)
             scene = self._inside_limits(scene, items)
             start = scene.positions
-            found = self.session.planner.sequence(self._items(scene, items), scene)
+            with self.session.planner() as planner:
+                found = planner.sequence(self._items(scene, items), scene, interrupted)
         except PlanningError as error:
             code, message = error.code, str(error)
         return SequencePlan(code, message, start, found, time.monotonic() - started_s)

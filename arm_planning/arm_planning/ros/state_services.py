@@ -1,7 +1,6 @@
 """The services about single states: compute_ik, compute_fk, check_state_validity."""
 
 import logging
-from collections.abc import Callable
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
@@ -13,7 +12,8 @@ from rclpy.node import Node
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import CollisionContact
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.ros.answering import answering
+from arm_planning.planner import Planner
+from arm_planning.ros.answering import BusyLimit, offer_service
 from arm_planning.ros.convert import (
     error_code,
     pose_message,
@@ -32,21 +32,18 @@ LOGGER = logging.getLogger("move_group")
 class StateServices:
     """Serves compute_ik, compute_fk and check_state_validity; several threads spin the node."""
 
-    def __init__(self, node: Node, session: PlanningSession) -> None:
+    def __init__(self, node: Node, session: PlanningSession, limit: BusyLimit) -> None:
         self._node = node
         self._session = session
         group = ReentrantCallbackGroup()
-        services: dict[str, tuple[type[Any], Callable[[Any, Any], Any]]] = {
-            "compute_ik": (GetPositionIK, self._inverse),
-            "compute_fk": (GetPositionFK, self._forward),
-            "check_state_validity": (GetStateValidity, self._validity),
-        }
-        for name, (service, serve) in services.items():
-            node.create_service(service, name, answering(name, serve), callback_group=group)
+        offer_service(node, GetPositionIK, "compute_ik", self._inverse, group=group, limit=limit)
+        offer_service(node, GetPositionFK, "compute_fk", self._forward, group=group)
+        offer_service(node, GetStateValidity, "check_state_validity", self._validity, group=group)
 
     def _inverse(self, request: Any, answer: GetPositionIK.Response) -> GetPositionIK.Response:
         try:
-            positions = self._solve(request.ik_request)
+            with self._session.planner() as planner:
+                positions = self._solve(request.ik_request, planner)
         except PlanningError as error:
             LOGGER.info("compute_ik: %s", error)
             answer.error_code = error_code(error.code, str(error))
@@ -55,7 +52,7 @@ class StateServices:
         answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         return answer
 
-    def _solve(self, request: Any) -> dict[str, float]:
+    def _solve(self, request: Any, planner: Planner) -> dict[str, float]:
         session = self._session
         scene = session.state(request.robot_state)
         frames = session.frames(scene)
@@ -70,8 +67,8 @@ class StateServices:
             )
         mover, origin = frames.reference(stamped.header.frame_id)
         if mover:
-            origin = session.planner.link_pose(mover, scene).then(origin)
-        return session.planner.inverse(
+            origin = planner.link_pose(mover, scene).then(origin)
+        return planner.inverse(
             request.group_name,
             origin.then(pose_of(stamped.pose, "the goal")),
             link=frames.link_and_offset(link) if link else None,
@@ -111,15 +108,17 @@ class StateServices:
     def _pose(self, scene: PlanningScene, link: str, offset: RigidTransform) -> RigidTransform:
         if not link:
             return offset
-        return self._session.planner.link_pose(link, scene).then(offset)
+        with self._session.planner() as planner:
+            return planner.link_pose(link, scene).then(offset)
 
     def _validity(self, request: Any, answer: GetStateValidity.Response) -> Any:
         session = self._session
         try:
             scene = session.state(request.robot_state)
             constraints = constraints_of(request.constraints, session.frames(scene), LOGGER.warning)
-            contacts = session.planner.contacts(request.group_name, scene)
-            evaluated = session.planner.evaluate(constraints, scene)
+            with session.planner() as planner:
+                contacts = planner.contacts(request.group_name, scene)
+                evaluated = planner.evaluate(constraints, scene)
         except PlanningError as error:
             LOGGER.error("check_state_validity: %s", error)
             answer.valid = False

@@ -50,6 +50,9 @@ class ExecutionOutcome:
     message: str = ""
 
 
+STOPPED = ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the motion was stopped")
+
+
 class ExecutionManager:
     """Runs one trajectory at a time; a thread that calls `execute` waits for its end."""
 
@@ -82,7 +85,11 @@ class ExecutionManager:
         self._stop.set()
 
     def execute(
-        self, trajectory: TimedTrajectory, names: Sequence[str] = (), watch: Watch | None = None
+        self,
+        trajectory: TimedTrajectory,
+        names: Sequence[str] = (),
+        watch: Watch | None = None,
+        interrupted: Callable[[], bool] = lambda: False,
     ) -> ExecutionOutcome:
         """Run a trajectory to its end.
 
@@ -90,6 +97,7 @@ class ExecutionManager:
             trajectory: what to run; its first point is where the robot is.
             names: the only controllers to use; empty for any.
             watch: called while the robot moves.
+            interrupted: tells when the motion is to end early, as `stop` does.
 
         Returns:
             SUCCESS, or why the robot did not get to the end: CONTROL_FAILED, TIMED_OUT, PREEMPTED,
@@ -103,19 +111,21 @@ class ExecutionManager:
             if not len(trajectory.times_s):
                 return ExecutionOutcome(MoveItErrorCode.SUCCESS)
             chosen = choose_controllers(list(self._controllers()), trajectory.joints, names)
-            self._check_start(trajectory)
+            self._check_start(trajectory, interrupted)
             run = _Run([self._goal(trajectory, each) for each in chosen])
-            return self._follow(run, watch)
+            if interrupted():
+                return STOPPED
+            return self._follow(run, watch, interrupted)
         except PlanningError as error:
             return ExecutionOutcome(error.code, str(error))
         finally:
             self._busy.release()
 
-    def _check_start(self, trajectory: TimedTrajectory) -> None:
+    def _check_start(self, trajectory: TimedTrajectory, interrupted: Callable[[], bool]) -> None:
         tolerance = self._settings.start_tolerance
         if tolerance <= 0.0:
             return
-        if problem := self._states.wait_for_fresh(STATE_TIMEOUT_S):
+        if problem := self._states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
             raise _failure(f"Failed to validate trajectory: {problem}")
         present = self._states.positions()
         for joint, wanted in zip(trajectory.joints, trajectory.positions[0].tolist(), strict=True):
@@ -146,12 +156,15 @@ class ExecutionManager:
         longest_s = self._settings.longest_s(trajectory.duration_s, controller)
         return _Goal(controller, client, _goal_message(part, controller), longest_s)
 
-    def _follow(self, run: "_Run", watch: Watch | None) -> ExecutionOutcome:
+    def _follow(
+        self, run: "_Run", watch: Watch | None, interrupted: Callable[[], bool]
+    ) -> ExecutionOutcome:
         start_s = self._states.stamp_s
         run.send()
         try:
             while not (outcome := run.outcome() or self._interruption(run, start_s, watch)):
-                pass
+                if interrupted():
+                    self.stop()
         finally:
             # Whatever ended it, an error of the watch included: what still runs is stopped.
             run.cancel()
@@ -164,7 +177,7 @@ class ExecutionManager:
     ) -> ExecutionOutcome | None:
         """Wait a moment; return why the run must end before the controllers are done."""
         if self._stop.wait(POLL_S):
-            return ExecutionOutcome(MoveItErrorCode.PREEMPTED, "the motion was stopped")
+            return STOPPED
         elapsed_s = self._states.stamp_s - start_s
         if self._settings.monitors_duration and elapsed_s > run.longest_s:
             return ExecutionOutcome(

@@ -45,11 +45,13 @@ def session(monitor: Monitor) -> PlanningSession:
 
 
 def test_what_came_while_a_plan_was_made_blocks_it(session: PlanningSession, monitor: Monitor):
-    trajectory = session.planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
+    with session.planner() as planner:
+        trajectory = planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
     monitor.scene = replace(EMPTY, objects={"box": BOX})
     assert "box" in session.watch(trajectory, EMPTY)(0.0)
 
 
 def test_a_scene_that_stays_as_it_was_blocks_nothing(session: PlanningSession, monitor: Monitor):
-    trajectory = session.planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
+    with session.planner() as planner:
+        trajectory = planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
     assert session.watch(trajectory, monitor.scene)(0.0) == ""

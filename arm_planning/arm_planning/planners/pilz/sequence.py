@@ -12,6 +12,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
 from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked, within_limits
+from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions
 from arm_planning.timing.stepped_motion import MotionLimits
@@ -40,6 +41,7 @@ def plan_sequence(
     items: Sequence[SequenceItem],
     state: JointPositions,
     free: Free | None = None,
+    deadline: Deadline = NO_DEADLINE,
 ) -> tuple[TimedTrajectory, ...]:
     """Return the trajectories of a sequence, one for each run of motions of the same group.
 
@@ -52,6 +54,7 @@ def plan_sequence(
         items: the motions; none gives no trajectory.
         state: positions of all joints at the start.
         free: as in `PilzPlanner.plan`.
+        deadline: looked at before each motion.
 
     Raises:
         PlanningError: as in `PilzPlanner.plan`, the message begins with the number of the motion;
@@ -64,6 +67,7 @@ def plan_sequence(
     current = dict(state)
     motions: list[TimedTrajectory] = []
     for number, item in enumerate(items):
+        deadline.check(f"planning motion {number} of the sequence")
         try:
             found = planner.plan(item.request, current, free)
         except PlanningError as error:

@@ -1,0 +1,90 @@
+"""The course of a goal that plans and moves: plan, execute, watch, plan again, cancel."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arm_planning.errors import MoveItErrorCode
+from arm_planning.ros.goals import ServedGoal, Turns
+from arm_planning.ros.plan_display import PlanDisplay
+from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.ros.trajectory_executor import ExecutionManager, ExecutionOutcome
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.trajectory import TimedTrajectory
+
+DEFAULT_REPLANS = 5
+"""Attempts of a goal that asks to replan and gives no number."""
+PLANS = 4
+"""Goals that only plan, at the same time."""
+INVALIDATED = MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE
+RETRIED = (MoveItErrorCode.PLANNING_FAILED, MoveItErrorCode.INVALID_MOTION_PLAN, INVALIDATED)
+"""Failures after which another attempt may succeed."""
+
+Plan = tuple[ExecutionOutcome, Sequence[TimedTrajectory]]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionGoals:
+    """What the actions move_action and sequence_move_group have in common.
+
+    Attributes:
+        session: plans in the present scene.
+        executor: moves the robot.
+        display: shows plans.
+        allows_execution: false for planning alone.
+        moving: turns of the goals that move the robot: one after the other.
+        planning: turns of those that only plan; they wait for no motion.
+    """
+
+    session: PlanningSession
+    executor: ExecutionManager
+    display: PlanDisplay
+    allows_execution: bool
+    moving: Turns
+    planning: Turns
+
+    def turns_of(self, request: Any) -> Turns:
+        """Return the turns that the message of a goal takes."""
+        return self.moving if self.moves(request) else self.planning
+
+    def moves(self, request: Any) -> bool:
+        """Return whether the message of a goal asks for a motion, and one is allowed."""
+        return self.allows_execution and not request.planning_options.plan_only
+
+    def serve(self, goal: ServedGoal, plan: Callable[[], Plan]) -> ExecutionOutcome:
+        """Plan; then move, and plan again where the goal asks for it and the first plan is no use.
+
+        Args:
+            goal: the goal.
+            plan: makes a plan, fills the result with it, and tells how it went.
+        """
+        options = goal.request.planning_options
+        moves = self.moves(goal.request)
+        attempts = (options.replan_attempts or DEFAULT_REPLANS) if options.replan and moves else 1
+        outcome = ExecutionOutcome(MoveItErrorCode.PLANNING_FAILED, "no attempt was made")
+        for _ in range(attempts):
+            goal.say("PLANNING")
+            planned_in = self.session.monitor.scene
+            outcome, trajectories = plan()
+            if outcome.code is MoveItErrorCode.SUCCESS and moves:
+                goal.say("MONITOR")
+                goal.has_moved = True
+                outcome = self._run(goal, trajectories, planned_in)
+            if interruption := goal.interruption():
+                return interruption
+            if outcome.code not in RETRIED:
+                break
+            if outcome.code is INVALIDATED:
+                goal.wait(options.replan_delay)
+        return outcome
+
+    def _run(
+        self, goal: ServedGoal, trajectories: Sequence[TimedTrajectory], planned_in: PlanningScene
+    ) -> ExecutionOutcome:
+        outcome = ExecutionOutcome(MoveItErrorCode.SUCCESS)
+        for trajectory in trajectories:
+            watch = self.session.watch(trajectory, planned_in)
+            outcome = self.executor.execute(trajectory, (), watch, goal.is_interrupted)
+            if outcome.code is not MoveItErrorCode.SUCCESS:
+                break
+        return outcome
