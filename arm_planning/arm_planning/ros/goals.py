@@ -65,10 +65,15 @@ class ServedGoal:
         """Return whether it is to end early. Any thread."""
         return self._interrupted.is_set()
 
-    def interruption(self) -> ExecutionOutcome | None:
-        """Return how it ends if it is to end early."""
-        if not self._interrupted.is_set():
-            return None
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether its client has cancelled it."""
+        return self._is_cancelled
+
+    def ending(self, outcome: ExecutionOutcome) -> ExecutionOutcome:
+        """Return how it ends: early if it is interrupted, whatever the outcome would be."""
+        if not self.is_interrupted() or outcome.code is MoveItErrorCode.PREEMPTED:
+            return outcome
         return CANCELLED if self._is_cancelled else STOPPED
 
     def wait(self, duration_s: float) -> None:
@@ -193,12 +198,12 @@ class GoalServer:
     def _result(self, goal: ServedGoal) -> Any:
         result = self._action.Result()
         try:
-            outcome = goal.interruption() or self._serve(goal, result)
+            outcome = CANCELLED if goal.is_cancelled else self._serve(goal, result)
         except Exception as error:
             result = self._action.Result()
             outcome = ExecutionOutcome(MoveItErrorCode.FAILURE, report_fault(self._name, error))
         fill_error(result, outcome.code, outcome.message)
-        _finish(goal.handle, outcome)
+        _finish(goal, outcome)
         goal.say("IDLE")
         return result
 
@@ -207,18 +212,19 @@ def _id(handle: ServerGoalHandle) -> bytes:
     return bytes(handle.goal_id.uuid)
 
 
-def _finish(handle: ServerGoalHandle, outcome: ExecutionOutcome) -> None:
+def _finish(goal: ServedGoal, outcome: ExecutionOutcome) -> None:
     """Give a goal its status: succeeded, canceled or aborted; log the reason of a failure."""
     if outcome.code is MoveItErrorCode.SUCCESS:
         if outcome.message:
             LOGGER.info("%s", outcome.message)
-        handle.succeed()
+        goal.handle.succeed()
         return
     LOGGER.error("%s: %s", outcome.code.name, outcome.message)
-    if outcome == CANCELLED and _is_canceling(handle):
-        handle.canceled()
+    is_preempted = outcome.code is MoveItErrorCode.PREEMPTED
+    if is_preempted and goal.is_cancelled and _is_canceling(goal.handle):
+        goal.handle.canceled()
     else:
-        handle.abort()
+        goal.handle.abort()
 
 
 def _is_canceling(handle: ServerGoalHandle) -> bool:

@@ -70,8 +70,7 @@ class MotionGoals:
                 goal.say("MONITOR")
                 goal.has_moved = True
                 outcome = self._run(goal, trajectories, planned_in)
-            if interruption := goal.interruption():
-                return interruption
+            outcome = goal.ending(outcome)
             if outcome.code not in RETRIED:
                 break
             if outcome.code is INVALIDATED:

@@ -73,5 +73,5 @@ class MoveActions:
         except PlanningError as error:
             return ExecutionOutcome(error.code, str(error))
         names = tuple(goal.request.controller_names)
-        outcome = self._motions.executor.execute(trajectory, names, None, goal.is_interrupted)
-        return goal.interruption() or outcome
+        execute = self._motions.executor.execute
+        return goal.ending(execute(trajectory, names, None, goal.is_interrupted))

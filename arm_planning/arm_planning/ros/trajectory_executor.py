@@ -3,7 +3,7 @@
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from rclpy.action.client import ActionClient
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
+from arm_node.names import listing
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.controllers import (
     ControllerKind,
@@ -34,6 +35,7 @@ POLL_S = 0.005
 SERVER_TIMEOUT_S = 2.0
 STATE_TIMEOUT_S = 1.0
 STOP_TIMEOUT_S = 2.0
+CANCEL_AGAIN_S = 0.25
 REST_TIMEOUT_S = 1.0
 RESTS = 1e-3
 """Speed below which the robot counts as still, rad/s or m/s."""
@@ -73,7 +75,7 @@ class ExecutionManager:
         """
         self._node = node
         self._states = states
-        self._controllers = controllers
+        self.controllers = controllers
         self._settings = settings
         self._group = ReentrantCallbackGroup()
         self._clients: dict[tuple[str, ControllerKind], ActionClient] = {}
@@ -110,7 +112,7 @@ class ExecutionManager:
             self._stop.clear()
             if not len(trajectory.times_s):
                 return ExecutionOutcome(MoveItErrorCode.SUCCESS)
-            chosen = choose_controllers(list(self._controllers()), trajectory.joints, names)
+            chosen = choose_controllers(list(self.controllers()), trajectory.joints, names)
             self._check_start(trajectory, interrupted)
             run = _Run([self._goal(trajectory, each) for each in chosen])
             if interrupted():
@@ -167,7 +169,13 @@ class ExecutionManager:
                     self.stop()
         finally:
             # Whatever ended it, an error of the watch included: what still runs is stopped.
-            run.cancel()
+            running = run.cancel()
+        if running:
+            return replace(
+                outcome,
+                message=f"{outcome.message}; {running} did not say within {STOP_TIMEOUT_S:g} s "
+                "that it stopped: the robot may still move",
+            )
         if outcome.code is MoveItErrorCode.SUCCESS:
             self._wait_until_still()
         return outcome
@@ -218,13 +226,26 @@ class _Run:
                 return outcome
         return None if None in outcomes else ExecutionOutcome(MoveItErrorCode.SUCCESS)
 
-    def cancel(self) -> None:
-        """Cancel what still runs, and wait until the controllers have said that it ended."""
-        for goal in self._goals:
-            goal.cancel()
+    def cancel(self) -> str:
+        """Cancel what still runs, and wait until the controllers have said that it ended.
+
+        A wish to cancel that is lost is sent again: the robot must stop.
+
+        Returns:
+            "", or the names of the controllers that have not said so.
+        """
         deadline_s = time.monotonic() + STOP_TIMEOUT_S
-        while any(goal.runs for goal in self._goals) and time.monotonic() < deadline_s:
+        again_s = 0.0
+        while running := [goal for goal in self._goals if goal.runs]:
+            now_s = time.monotonic()
+            if now_s >= deadline_s:
+                return listing(goal.controller.name for goal in running)
+            if now_s >= again_s:
+                again_s = now_s + CANCEL_AGAIN_S
+                for goal in running:
+                    goal.cancel()
             time.sleep(POLL_S)
+        return ""
 
 
 class _Goal:
@@ -234,7 +255,7 @@ class _Goal:
         self, controller: TrajectoryController, client: ActionClient, message: Any, longest_s: float
     ) -> None:
         self.longest_s = longest_s
-        self._controller = controller
+        self.controller = controller
         self._client = client
         self._message = message
         self._handle: Any = None
@@ -256,7 +277,7 @@ class _Goal:
             self._handle.cancel_goal_async()
 
     def outcome(self) -> ExecutionOutcome | None:
-        name = self._controller.name
+        name = self.controller.name
         if self._refused:
             return ExecutionOutcome(
                 MoveItErrorCode.CONTROL_FAILED,
@@ -291,9 +312,9 @@ class _Goal:
     def _ended(self, result: Any) -> ExecutionOutcome:
         succeeded = result.status == GoalStatus.STATUS_SUCCEEDED
         stalled = getattr(result.result, "stalled", False)
-        if succeeded or (stalled and self._controller.stall_is_success):
+        if succeeded or (stalled and self.controller.stall_is_success):
             return ExecutionOutcome(MoveItErrorCode.SUCCESS)
-        name = self._controller.name
+        name = self.controller.name
         if result.status == GoalStatus.STATUS_CANCELED:
             return ExecutionOutcome(
                 MoveItErrorCode.PREEMPTED, f"controller '{name}' was told to stop"
