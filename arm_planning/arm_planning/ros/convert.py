@@ -14,11 +14,12 @@ from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import RigidTransform, Vector
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.scene.object_checks import LARGEST_M, UNIT
 from arm_planning.trajectory import TimedTrajectory
 
 NANOSECONDS = 1_000_000_000
-UNIT = 1e-3
-"""How far the norm of a quaternion may be from 1: it is normalised."""
+FARTHEST = 1e6
+"""Largest position of a joint, rad or m; beyond it, numbers get too coarse."""
 
 Warn = Callable[[str], None]
 """Takes a sentence for the user about something that is passed over."""
@@ -33,12 +34,17 @@ def vector_of(message: Point | Vector3, what: str) -> Vector:
     """Return a point or vector.
 
     Raises:
-        PlanningError: a coordinate is not finite; `what` names the vector.
+        PlanningError: a coordinate is not finite, or too large; `what` names the vector.
     """
     vector = (message.x, message.y, message.z)
     if not all(map(math.isfinite, vector)):
         raise PlanningError(
             MoveItErrorCode.FAILURE, f"{what} is not finite: {listing(map(str, vector))}"
+        )
+    if max(map(abs, vector)) > LARGEST_M:
+        raise PlanningError(
+            MoveItErrorCode.FAILURE,
+            f"{what} is beyond {LARGEST_M:g} m: {listing(map(str, vector))}",
         )
     return vector
 
@@ -107,7 +113,7 @@ def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> di
     Clients forward every name on /joint_states, so a joint that is not the robot's only warns.
 
     Raises:
-        PlanningError: INVALID_ROBOT_STATE: a position is not finite.
+        PlanningError: INVALID_ROBOT_STATE: a position is not finite, or too large.
     """
     names, values = list(message.joint_state.name), list(message.joint_state.position)
     if len(names) != len(values):
@@ -122,7 +128,7 @@ def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> di
         if name not in known:
             unknown = describe_known(name, known, "the robot has")
             warn(f"a state names the joint '{name}', which the robot does not have; {unknown}")
-        elif not math.isfinite(value):
+        elif not abs(value) <= FARTHEST:
             raise PlanningError(
                 MoveItErrorCode.INVALID_ROBOT_STATE, f"the position of joint '{name}' is {value}"
             )

@@ -1,6 +1,5 @@
 """Converts the shapes of objects from and to messages."""
 
-import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -10,8 +9,8 @@ from shape_msgs.msg import Plane as PlaneMessage
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.ros.convert import pose_of
+from arm_planning.scene.object_checks import refusal, shape_problem
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
@@ -82,27 +81,28 @@ def _placed(
     owner: str, kind: str, shapes: Sequence[Shape], poses: Iterable[Pose]
 ) -> list[PlacedShape]:
     what = f"a {kind} of {owner}"
+    for shape in shapes:
+        if problem := shape_problem(shape):
+            raise refusal(f"{owner} has a {problem}")
     placed = [pose_of(pose, what) for pose in poses]
     if len(placed) > len(shapes):
-        raise _refusal(f"{owner} has {len(placed)} {kind} poses for {len(shapes)} shapes")
+        raise refusal(f"{owner} has {len(placed)} {kind} poses for {len(shapes)} shapes")
     placed += [RigidTransform()] * (len(shapes) - len(placed))
     return [PlacedShape(shape, pose) for shape, pose in zip(shapes, placed, strict=True)]
 
 
 def _solid(owner: str, message: SolidPrimitive) -> Shape:
     if message.type not in SIZES:
-        raise _refusal(
+        raise refusal(
             f"{owner} has a primitive of type {message.type}; there are 1 (box), 2 (sphere), "
             "3 (cylinder) and 4 (cone)"
         )
     name, wanted = SIZES[message.type]
     sizes = list(message.dimensions)
     if len(sizes) != len(wanted):
-        raise _refusal(
+        raise refusal(
             f"{owner} has a {name} of {len(sizes)} dimensions; it has {', '.join(wanted)}"
         )
-    if not all(math.isfinite(size) and size > 0.0 for size in sizes):
-        raise _refusal(f"{owner} has a {name} with a size that is not positive: {sizes}")
     match message.type:
         case SolidPrimitive.BOX:
             x, y, z = sizes
@@ -119,24 +119,9 @@ def _mesh(owner: str, message: Mesh) -> TriangleMesh:
     vertices = np.array([(v.x, v.y, v.z) for v in message.vertices], dtype=float).reshape(-1, 3)
     triangles = np.array([list(t.vertex_indices) for t in message.triangles], dtype=np.int64)
     triangles = triangles.reshape(-1, 3)
-    if not len(triangles):
-        raise _refusal(f"{owner} has a mesh without triangles")
-    if triangles.max() >= len(vertices):
-        raise _refusal(
-            f"{owner} has a mesh with {len(vertices)} vertices, of which a triangle uses number "
-            f"{triangles.max()}"
-        )
-    if not np.isfinite(vertices).all():
-        raise _refusal(f"{owner} has a mesh with a vertex that is not finite")
     return TriangleMesh(vertices, triangles)
 
 
 def _plane(owner: str, message: PlaneMessage) -> Plane:
     a, b, c, d = map(float, message.coef)
-    if not all(map(math.isfinite, (a, b, c, d))) or not (a or b or c):
-        raise _refusal(f"{owner} has a plane without a normal: {[a, b, c, d]}")
     return Plane(a, b, c, d)
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)

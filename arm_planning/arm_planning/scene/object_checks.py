@@ -13,6 +13,8 @@ from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
 UNIT = 1e-3
 """How far the norm of a quaternion may be from 1."""
+LARGEST_M = 1e6
+"""Largest coordinate and size, in m; beyond it, numbers are too coarse, their squares too large."""
 
 
 def check_pose(pose: RigidTransform, what: str) -> None:
@@ -24,6 +26,8 @@ def check_pose(pose: RigidTransform, what: str) -> None:
     """
     if not all(map(math.isfinite, pose.position)):
         raise refusal(f"the position of {what} is not finite: {_listed(pose.position)}")
+    if max(map(abs, pose.position)) > LARGEST_M:
+        raise refusal(f"the position of {what} is beyond {LARGEST_M:g} m: {_listed(pose.position)}")
     norm = math.hypot(*pose.rotation)
     if not abs(norm - 1.0) <= UNIT:
         raise refusal(
@@ -57,8 +61,7 @@ def shape_problem(shape: Shape) -> str:
         case Cone(radius, height):
             return _size_problem("cone", (height, radius))
         case Plane(a, b, c, d):
-            has_normal = all(map(math.isfinite, (a, b, c, d))) and (a or b or c)
-            return "" if has_normal else f"plane without a normal: {_listed((a, b, c, d))}"
+            return _plane_problem((a, b, c), d)
         case TriangleMesh():
             return _mesh_problem(shape)
 
@@ -69,9 +72,21 @@ def refusal(sentence: str) -> PlanningError:
 
 
 def _size_problem(name: str, sizes: Sequence[float]) -> str:
-    if all(math.isfinite(size) and size > 0.0 for size in sizes):
-        return ""
-    return f"{name} with a size that is not positive: {_listed(sizes)}"
+    if not all(math.isfinite(size) and size > 0.0 for size in sizes):
+        return f"{name} with a size that is not positive: {_listed(sizes)}"
+    if max(sizes) > LARGEST_M:
+        return f"{name} with a size beyond {LARGEST_M:g} m: {_listed(sizes)}"
+    return ""
+
+
+def _plane_problem(normal: Sequence[float], d: float) -> str:
+    length = math.hypot(*normal)
+    listed = _listed((*normal, d))
+    if not (math.isfinite(length) and math.isfinite(d) and length > 0.0):
+        return f"plane without a normal: {listed}"
+    if not 1.0 / LARGEST_M <= length <= LARGEST_M or abs(d) > LARGEST_M * length:
+        return f"plane that is too far away, or whose normal's length is far from 1: {listed}"
+    return ""
 
 
 def _mesh_problem(mesh: TriangleMesh) -> str:
@@ -85,6 +100,8 @@ def _mesh_problem(mesh: TriangleMesh) -> str:
         return f"mesh with {len(vertices)} vertices, of which a triangle uses number {wrong}"
     if not np.isfinite(vertices).all():
         return "mesh with a vertex that is not finite"
+    if np.abs(vertices).max() > LARGEST_M:
+        return f"mesh with a vertex beyond {LARGEST_M:g} m"
     return ""
 
 

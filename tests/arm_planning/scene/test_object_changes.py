@@ -132,6 +132,7 @@ def test_removing_without_a_name_removes_all():
             add("x", shapes=(PlacedShape(CUBE.shape, at(math.nan)),)),
             "the position of a shape of object 'x' is not finite: nan, 0, 0",
         ),
+        (add("x", at(-1e7)), "the position of object 'x' is beyond 1e+06 m: -1e+07, 0, 0"),
         (
             ObjectChange(Operation.MOVE, "box", pose=at(math.nan)),
             "the position of object 'box' is not finite: nan, 0, 0",
@@ -150,6 +151,16 @@ def test_what_is_not_possible_is_refused(change: ObjectChange, sentence: str):
         (Cylinder(1, -2), "cylinder with a size that is not positive: -2, 1"),
         (Cone(math.inf, 2), "cone with a size that is not positive: 2, inf"),
         (Plane(0, 0, 0, 1), "plane without a normal: 0, 0, 0, 1"),
+        (Sphere(1e7), "sphere with a size beyond 1e+06 m: 1e+07"),
+        (
+            Plane(0, 0, 1e-300, 1),
+            "plane that is too far away, or whose normal's length is far from 1: 0, 0, 1e-300, 1",
+        ),
+        (
+            Plane(0, 0, 1, 1e300),
+            "plane that is too far away, or whose normal's length is far from 1: 0, 0, 1, 1e+300",
+        ),
+        (TriangleMesh(SQUARE * 1e7, np.array([(0, 1, 2)])), "mesh with a vertex beyond 1e+06 m"),
         (TriangleMesh(SQUARE, np.zeros((0, 3), int)), "mesh without triangles"),
         (
             TriangleMesh(SQUARE, np.array([(0, 1, 3)])),

@@ -1,0 +1,168 @@
+"""Runs trajectories on controllers: whatever ends it, the robot is stopped."""
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from action_msgs.msg import GoalStatus
+
+from arm_planning.errors import MoveItErrorCode
+from arm_planning.execution.controllers import ControllerKind, TrajectoryController
+from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.ros import trajectory_executor
+from arm_planning.ros.trajectory_executor import ExecutionManager
+from arm_planning.trajectory import TimedTrajectory
+
+ARM = TrajectoryController(
+    "arm_controller", "follow", ControllerKind.FOLLOW_JOINT_TRAJECTORY, ("a",)
+)
+MOTION = TimedTrajectory(
+    ("a",), np.array([0.0, 1.0]), np.array([[0.0], [0.5]]), np.zeros((2, 1)), np.zeros((2, 1))
+)
+
+
+class Answer:
+    """A future: it completes once, maybe before somebody asks."""
+
+    def __init__(self, result: Any = None, *, is_done: bool = True) -> None:
+        self._result, self._is_done = result, is_done
+        self._waiting: list[Callable[[Any], None]] = []
+
+    def add_done_callback(self, call: Callable[[Any], None]) -> None:
+        if self._is_done:
+            call(self)
+        else:
+            self._waiting.append(call)
+
+    def complete(self, result: Any) -> None:
+        self._result, self._is_done = result, True
+        for call in self._waiting:
+            call(self)
+
+    def result(self) -> Any:
+        return self._result
+
+
+class Controller:
+    """A controller's action, as the client sees it; it moves until it is cancelled."""
+
+    def __init__(self, *_arguments: Any, **_options: Any) -> None:
+        self.cancels = 0
+        self.lost_cancels = 0
+        self.accepted = True
+        self._end = Answer(is_done=False)
+
+    def wait_for_server(self, _timeout_s: float) -> bool:
+        return True
+
+    def server_is_ready(self) -> bool:
+        return True
+
+    def send_goal_async(self, _goal: Any) -> Answer:
+        return Answer(self)
+
+    def get_result_async(self) -> Answer:
+        return self._end
+
+    def cancel_goal_async(self) -> None:
+        self.cancels += 1
+        if self.cancels > self.lost_cancels:
+            self.end(GoalStatus.STATUS_CANCELED)
+
+    def end(self, status: int) -> None:
+        self._end.complete(SimpleNamespace(status=status, result=SimpleNamespace()))
+
+
+class States:
+    """A robot that stands at the start."""
+
+    stamp_s = 0.0
+
+    def wait_for_fresh(self, *_arguments: Any) -> str:
+        return ""
+
+    def positions(self) -> dict[str, float]:
+        return {"a": 0.0}
+
+    def largest_speed(self) -> float:
+        return 0.0
+
+
+@pytest.fixture
+def controller(monkeypatch: pytest.MonkeyPatch) -> Controller:
+    made = Controller()
+    monkeypatch.setattr(trajectory_executor, "ActionClient", lambda *_, **__: made)
+    return made
+
+
+@pytest.fixture
+def manager() -> ExecutionManager:
+    return ExecutionManager(None, States(), lambda: [ARM], ExecutionSettings())
+
+
+def test_an_error_of_the_watch_stops_the_robot(manager: ExecutionManager, controller: Controller):
+    def watch(_elapsed_s: float) -> str:
+        raise ValueError("the scene cannot be read")
+
+    with pytest.raises(ValueError, match="the scene cannot be read"):
+        manager.execute(MOTION, (), watch)
+    assert controller.cancels == 1
+
+
+def test_after_an_error_the_next_motion_runs(manager: ExecutionManager, controller: Controller):
+    def watch(_elapsed_s: float) -> str:
+        controller.end(GoalStatus.STATUS_SUCCEEDED)
+        raise ValueError("no scene")
+
+    with pytest.raises(ValueError, match="no scene"):
+        manager.execute(MOTION, (), watch)
+    assert manager.execute(MOTION).code is MoveItErrorCode.SUCCESS
+
+
+def test_what_blocks_the_way_stops_the_robot(manager: ExecutionManager, controller: Controller):
+    outcome = manager.execute(MOTION, (), lambda _: "box with link2")
+    assert outcome.code is MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE
+    assert outcome.message == "the way ahead is no longer free: box with link2"
+    assert controller.cancels == 1
+
+
+def test_a_wish_to_cancel_that_is_lost_is_sent_again(
+    manager: ExecutionManager, controller: Controller
+):
+    controller.lost_cancels = 1
+    outcome = manager.execute(MOTION, (), lambda _: "box")
+    assert controller.cancels == 2
+    assert "may still move" not in outcome.message
+
+
+def test_a_controller_that_does_not_stop_is_named(
+    manager: ExecutionManager, controller: Controller, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(trajectory_executor, "STOP_TIMEOUT_S", 0.02)
+    controller.lost_cancels = 1000
+    outcome = manager.execute(MOTION, (), lambda _: "box")
+    assert "arm_controller did not say within 0.02 s that it stopped" in outcome.message
+
+
+def test_an_interrupted_motion_is_stopped(manager: ExecutionManager, controller: Controller):
+    interrupted = iter([False, False, True])
+    outcome = manager.execute(MOTION, (), None, lambda: next(interrupted))
+    assert outcome.code is MoveItErrorCode.PREEMPTED
+    assert controller.cancels == 1
+
+
+def test_what_is_interrupted_before_it_begins_does_not_move(
+    manager: ExecutionManager, controller: Controller
+):
+    outcome = manager.execute(MOTION, (), None, lambda: True)
+    assert outcome.code is MoveItErrorCode.PREEMPTED
+    assert controller.cancels == 0
+
+
+def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):
+    controller.accepted = False
+    outcome = manager.execute(MOTION)
+    assert outcome.code is MoveItErrorCode.CONTROL_FAILED
+    assert outcome.message == "controller 'arm_controller' refused the trajectory; see its log"
