@@ -7,7 +7,9 @@ Latombe, "Adaptive dynamic collision checking for single and multiple articulate
 environments", 2005). The proof goes along the path from one such interval to the next.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from math import ceil, log
 
 import mujoco
 import numpy as np
@@ -27,6 +29,8 @@ ERROR_M = 2e-6
 MAX_STATES = 20_000
 """Most states that a proof of one path looks at, about a second."""
 FIRST_MARGIN_M = 0.05
+STEP_OF_MARGINS = 1.4
+LEAST_PART = 1e-9
 NOT_MOVING = 1e-12
 CONTACT_FULL = int(mujoco.mjtWarning.mjWARN_CONTACTFULL)
 
@@ -105,14 +109,15 @@ class MotionProof:
             return Obstruction(0, 0.0, contact, str(contact))
         if len(path) == 1:
             path = np.repeat(path, 2, axis=0)
-        self._cover(path, extra)
+        positions = self._posed.positions(path)
+        self._cover(positions, extra)
         # Each proof starts alike, so that its answer does not depend on earlier ones.
         self._states, self._margin_m = 0, FIRST_MARGIN_M
         self._data.warning[CONTACT_FULL].number = 0
         self._relaxed = None
         self._ends = (path[0], path[-1])
         try:
-            return self._prove_chords(path, extra)
+            return self._prove_chords(positions, extra @ self._scale.T)
         finally:
             # The checks of single states look for contacts only.
             for out, _ in self._margins:
@@ -127,9 +132,10 @@ class MotionProof:
         """
         return self._checker.is_free(b) and self.prove(np.stack([a, b])) is None
 
-    def _prove_chords(self, path: Array, extra: Array) -> Obstruction | None:
+    def _prove_chords(self, positions: Array, extra: Array) -> Obstruction | None:
+        """Prove chords that are given in MuJoCo's coordinates."""
         for segment, (start, end, spread) in enumerate(
-            zip(path[:-1], path[1:], extra, strict=True)
+            zip(positions[:-1], positions[1:], extra, strict=True)
         ):
             obstruction = self._prove_chord(segment, start, end - start, spread)
             if obstruction is not None:
@@ -143,6 +149,7 @@ class MotionProof:
         model = self._model
         self._reach, self._count = bounds, len(bounds.pairs)
         self._bounds = bounds.pairs.reshape(-1, model.nq)
+        self._part_of = bounds.part.tolist()
         first, second = bounds.part[model.pair_geom1], bounds.part[model.pair_geom2]
         # MuJoCo adds the margins of two geoms, so those of what is fixed stay 0.
         self._margins = (
@@ -159,11 +166,10 @@ class MotionProof:
         low, high = np.sort(ends, axis=0).sum(axis=2) + self._posed.coordinates.constant
         return np.stack([low, high])
 
-    def _cover(self, path: Array, extra: Array) -> None:
+    def _cover(self, positions: Array, extra: Array) -> None:
         """Take other bounds if a sliding joint leaves its limits: it carries what turns farther."""
         if not self._slides.any():
             return
-        positions = path @ self._posed.coordinates.matrix.T + self._posed.coordinates.constant
         spread = (extra @ self._scale.T).max(axis=0)
         low = np.minimum(positions.min(axis=0) - spread, self._range[0])
         high = np.maximum(positions.max(axis=0) + spread, self._range[1])
@@ -176,6 +182,8 @@ class MotionProof:
     def _relaxed_floors(self) -> dict[tuple[int, int], float]:
         """Return the floors of what is closer than the usual one at an end of the path."""
         floors: dict[tuple[int, int], float] = {}
+        # The chord that is being proved goes on with its margins.
+        before = [out.copy() for out, _ in self._margins]
         for out, _ in self._margins:
             out[:] = FLOOR_M + ERROR_M
         for q in self._ends:
@@ -186,6 +194,8 @@ class MotionProof:
                 pair = self._bodies_of(geoms)
                 floor = max((distance - ERROR_M) / 2, LEAST_FLOOR_M)
                 floors[pair] = min(floor, floors.get(pair, FLOOR_M))
+        for (out, _), margin in zip(self._margins, before, strict=True):
+            out[:] = margin
         return floors
 
     def _bodies_of(self, geoms: list[int]) -> tuple[int, int]:
@@ -196,13 +206,15 @@ class MotionProof:
         self, segment: int, start: Array, change: Array, spread: Array
     ) -> Obstruction | None:
         """Prove one chord, as fractions from 0 to 1 of its motion."""
-        rates = self._bounds @ (self._scale @ np.abs(change))
-        lost = self._bounds @ (self._scale @ np.abs(spread)) + ERROR_M
+        rates = self._bounds @ np.abs(change)
+        lost = self._bounds @ np.abs(spread) + ERROR_M
         floors = np.where((rates > 0.0) | (lost > ERROR_M), FLOOR_M, 0.0)
-        margins = [(out, rates[which], lost[which]) for out, which in self._margins]
         rates = np.maximum(rates, NOT_MOVING)
         fastest = float(rates.max())
-        part, count = self._reach.part, self._count
+        set_margins = self._margin_setter(rates, lost)
+        model, data, qpos = self._model, self._data, self._data.qpos
+        # Contacts are few: one by one is faster than as arrays.
+        rate_of, lost_of, floor_of = rates.tolist(), lost.tolist(), floors.tolist()
         proved, guess = 0.0, min(1.0, self._margin_m / fastest)
         # Proved intervals farther on; what lies before them is not.
         ahead: list[tuple[float, float]] = []
@@ -211,22 +223,20 @@ class MotionProof:
             self._states += 1
             if self._states > MAX_STATES:
                 return Obstruction(segment, at, None, f"not proved with {MAX_STATES} states")
-            horizon = min(1.3 * guess, 1.0)
-            for out, rate, least in margins:
-                np.multiply(rate, horizon, out=out)
-                out += least
-            self._posed.place(start + at * change)
-            mujoco.mj_collision(self._model, self._data)
-            clear = horizon
-            if self._data.ncon:
-                found = self._data.contact
-                pair = part[found.geom] @ (count, 1)
-                slack = found.dist - lost[pair]
-                if (slack < floors[pair]).any():
-                    obstruction = self._obstruction(segment, at, slack, floors[pair])
-                    if obstruction is not None:
-                        return obstruction
-                clear = min(horizon, float((slack / rates[pair]).min()))
+            horizon = set_margins(1.2 * guess)
+            np.multiply(change, at, out=qpos)
+            np.add(qpos, start, out=qpos)
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_collision(model, data)
+            clear, is_close = horizon, False
+            for pair, distance in self._distances():
+                slack = distance - lost_of[pair]
+                is_close = is_close or slack < floor_of[pair]
+                clear = min(clear, slack / rate_of[pair])
+            if is_close:
+                obstruction = self._obstruction(segment, at, lost, floors)
+                if obstruction is not None:
+                    return obstruction
             guess = clear if clear < horizon else 2.0 * horizon
             if at - clear > proved:
                 ahead.append((at - clear, at + clear))
@@ -237,11 +247,42 @@ class MotionProof:
         self._margin_m = min(guess, 1.0) * fastest
         return None
 
+    def _margin_setter(self, rates: Array, lost: Array) -> Callable[[float], float]:
+        """Return what sets margins for a part of a chord, or more, and returns which part.
+
+        Parts are powers of a number, so that the same margins often serve the next state.
+        """
+        margins = [(out, rates[which], lost[which]) for out, which in self._margins]
+        last = 0.0
+
+        def set_margins(least: float) -> float:
+            nonlocal last
+            step = ceil(log(max(least, LEAST_PART), STEP_OF_MARGINS))
+            horizon = min(STEP_OF_MARGINS**step, 1.0)
+            if horizon != last:
+                for out, rate, constant in margins:
+                    np.multiply(rate, horizon, out=out)
+                    np.add(out, constant, out=out)
+                last = horizon
+            return horizon
+
+        return set_margins
+
+    def _distances(self) -> Iterable[tuple[int, float]]:
+        """Return the pair of parts and the distance of each contact that was found."""
+        if not self._data.ncon:
+            return ()
+        found, part, count = self._data.contact, self._part_of, self._count
+        pairs = [part[first] * count + part[second] for first, second in found.geom.tolist()]
+        return zip(pairs, found.dist.tolist(), strict=True)
+
     def _obstruction(
-        self, segment: int, at: float, slack: Array, floors: Array
+        self, segment: int, at: float, lost: Array, floors: Array
     ) -> Obstruction | None:
         """Return the deepest of the contacts that are too close, after the exceptions."""
         contacts = list(self._posed.found())
+        parts = [pair for pair, _ in self._distances()]
+        slack, floors = self._data.contact.dist - lost[parts], floors[parts]
         pairs = [self._bodies_of(geoms) for geoms in self._data.contact.geom.tolist()]
         if self._relaxed is None and float(slack.min()) > LEAST_FLOOR_M:
             self._relaxed = self._relaxed_floors()
