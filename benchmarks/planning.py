@@ -41,6 +41,7 @@ class Checker:
     def __init__(self, model: CollisionModel) -> None:
         proof = MotionProof(model)
         self.is_free, self.contacts = model.is_free, model.contacts
+        self.free_count = model.free_count
         self.is_free_edge, self.prove = proof.is_free_edge, proof.prove
 
 

@@ -58,6 +58,9 @@ class PlanarArm:
     def is_free(self, q: np.ndarray) -> bool:
         return self.clearance(q) > 0.0
 
+    def free_count(self, states: np.ndarray) -> int:
+        return sum(1 for _ in itertools.takewhile(self.is_free, states))
+
     def is_free_edge(self, a: np.ndarray, b: np.ndarray) -> bool:
         return self.prove(np.array([a, b])) is None
 

@@ -56,6 +56,10 @@ class PositionMap:
         """Return the positions of all joints, (m,), for those that vary, (n,)."""
         return self.matrix @ q + self.constant
 
+    def of_many(self, states: Array) -> Array:
+        """Return the positions of all joints, (k, m), in states of those that vary, (k, n)."""
+        return states @ self.matrix.T + self.constant
+
 
 def kinematic_tree(
     robot: Robot,

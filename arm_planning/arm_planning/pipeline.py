@@ -86,6 +86,10 @@ class SceneChecker:
         """Return whether the robot is free at positions of the group, (n,)."""
         return self.model.is_free(q)
 
+    def free_count(self, states: Array) -> int:
+        """Return how many states, (k, n), are free before the first that is not."""
+        return self.model.free_count(states)
+
     def is_free_edge(self, a: Array, b: Array) -> bool:
         """Return whether all states on the straight line between two are free."""
         return self.proof.is_free_edge(a, b)

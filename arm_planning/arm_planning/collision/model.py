@@ -100,6 +100,17 @@ class CollisionModel:
         mujoco.mj_collision(self._model, self._data)
         return self._data.ncon == 0
 
+    def free_count(self, states: Array) -> int:
+        """Return how many states are free before the first that collides; all if none does.
+
+        Args:
+            states: positions of `joints`, (k, n), in the order in which they are looked at.
+
+        Raises:
+            PlanningError: a position is not finite.
+        """
+        return 0 if self._constant else self._posed.free_count(states)
+
     def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
         """Return the deepest contact of each pair that collides, the deepest first.
 

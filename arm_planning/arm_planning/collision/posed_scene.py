@@ -56,11 +56,39 @@ class PosedScene:
             self._qpos[:] = self.coordinates(np.asarray(q))
         # MuJoCo finds no contact at all where a number is not finite.
         if not self._qpos.dot(self._qpos) < inf:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE,
-                f"a state has positions that are not finite: {q}",
-            )
+            raise _not_finite(q)
         mujoco.mj_kinematics(self.model, self.data)
+
+    def positions(self, states: Array) -> Array:
+        """Return MuJoCo's coordinates, (k, nq), in states of the joints that vary, (k, n).
+
+        Raises:
+            PlanningError: a position is not finite.
+        """
+        if not np.isfinite(states).all():
+            raise _not_finite(states)
+        return states if self._direct else self.coordinates.of_many(states)
+
+    def free_count(self, states: Array) -> int:
+        """Return how many states are free before the first in which something touches.
+
+        It takes two thirds of the time of a call for each state.
+
+        Args:
+            states: positions of the joints that vary, (k, n).
+
+        Raises:
+            PlanningError: a position is not finite.
+        """
+        positions = self.positions(states)
+        model, data, qpos = self.model, self.data, self._qpos
+        for number, row in enumerate(positions):
+            qpos[:] = row
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_collision(model, data)
+            if data.ncon:
+                return number
+        return len(positions)
 
     def found(self) -> Iterator[CollisionContact]:
         """Yield the contacts of the last `mujoco.mj_collision`."""
@@ -103,6 +131,12 @@ def deepest(contacts: Iterable[CollisionContact]) -> tuple[CollisionContact, ...
         if pair not in found or found[pair].depth_m < contact.depth_m:
             found[pair] = contact
     return tuple(sorted(found.values(), key=lambda contact: -contact.depth_m))
+
+
+def _not_finite(q: object) -> PlanningError:
+    return PlanningError(
+        MoveItErrorCode.INVALID_ROBOT_STATE, f"a state has positions that are not finite: {q}"
+    )
 
 
 def _vector(values: Array) -> Vector:

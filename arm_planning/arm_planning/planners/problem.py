@@ -37,6 +37,10 @@ class StateChecker(Protocol):
         """Return whether the robot is free at positions of the group, (n,)."""
         ...
 
+    def free_count(self, states: Array) -> int:
+        """Return how many states, (k, n), are free before the first that is not."""
+        ...
+
     def is_free_edge(self, a: Array, b: Array) -> bool:
         """Return whether all states on the straight line between two are free, ends included."""
         ...

@@ -1,5 +1,6 @@
 """The states that a path may use: free ones, and those that satisfy constraints on the way."""
 
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -84,7 +85,7 @@ class SampledSpace:
 
     def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
         self.lower, self.upper = lower, upper
-        self._is_free = checker.is_free
+        self._free_count = checker.free_count
 
     def project(self, q: Array) -> Array | None:
         """Return the state itself."""
@@ -94,28 +95,32 @@ class SampledSpace:
         """Go straight until something blocks, and stop a little before it."""
         change, count = b - a, _samples(a, b)
         step = change / count
-        for number in range(1, count + 1):
-            if not self._is_free(a + number * step):
-                kept = number - 1 - BACK_OFF
-                if kept > 0 and kept / count * float(np.linalg.norm(change)) >= SHORTEST:
-                    return (a + kept * step)[None, :], False
-                return np.empty((0, len(a))), False
-        return b[None, :], True
+        states = a + np.arange(1, count + 1)[:, None] * step
+        free = self._free_count(states)
+        if free == count:
+            return b[None, :], True
+        kept = free - BACK_OFF
+        if kept > 0 and kept / count * float(np.linalg.norm(change)) >= SHORTEST:
+            return states[kept - 1 : kept], False
+        return states[:0], False
 
     def connect(self, a: Array, b: Array) -> Array | None:
         """Go straight; samples are taken in the order in which they find obstacles soonest."""
         count = _samples(a, b)
-        step = (b - a) / count
-        if not self._is_free(b):
-            return None
-        spans = [(0, count)]
-        for low, high in spans:
-            middle = (low + high) // 2
-            if middle > low:
-                if not self._is_free(a + middle * step):
-                    return None
-                spans += ((low, middle), (middle, high))
-        return b[None, :]
+        states = a + _from_coarse_to_fine(count)[:, None] * ((b - a) / count)
+        return b[None, :] if self._free_count(states) == count else None
+
+
+@lru_cache(maxsize=256)
+def _from_coarse_to_fine(count: int) -> NDArray[np.intp]:
+    """Return the numbers from 1 to a count: the last, the middle, those between, and so on."""
+    order, spans = [count], [(0, count)]
+    for low, high in spans:
+        middle = (low + high) // 2
+        if middle > low:
+            order.append(middle)
+            spans += ((low, middle), (middle, high))
+    return np.array(order)
 
 
 def _samples(a: Array, b: Array) -> int:

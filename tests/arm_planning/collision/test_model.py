@@ -57,6 +57,28 @@ def test_links_collide_with_each_other():
     assert pairs(slider(), -0.79) == set()
 
 
+def test_many_states_are_counted_up_to_the_first_that_collides():
+    states = np.array([[0.0], [-0.79], [-0.81], [0.0], [-0.9]])
+    assert slider().free_count(states) == 2
+    assert slider().free_count(states[3:]) == 1
+    assert slider().free_count(states[:2]) == 2
+    with pytest.raises(PlanningError, match="not finite"):
+        slider().free_count(np.array([[0.0], [nan]]))
+
+
+def test_many_states_follow_mimic_joints():
+    follower = "<mimic joint='lead' multiplier='-2' offset='0.1'/>"
+    urdf = robot(
+        *(link(name, BALL) for name in ("base", "first", "second")),
+        joint("lead", "base", "first", kind="prismatic", axis="1 0 0", xyz="1 0 0"),
+        joint("follow", "base", "second", follower, kind="prismatic", axis="0 1 0", xyz="0 1 0"),
+    )
+    model = CollisionModel(model_of(urdf), scene())
+    states = np.array([[0.0], [0.44], [0.46]])
+    assert [model.is_free(q) for q in states] == [True, True, False]
+    assert model.free_count(states) == 2
+
+
 def test_a_contact_says_what_where_and_how_deep():
     (contact,) = slider(thing("box1", Box((0.2, 0.2, 0.2)), 2.0, 0.0, 0.0)).contacts([0.803])
     assert (contact.first_kind, contact.second_kind) == (

@@ -70,6 +70,7 @@ class Cell:
         self.collisions = CollisionModel(self.model, scene, "arm")
         proof = MotionProof(self.collisions)
         self.is_free, self.contacts = self.collisions.is_free, self.collisions.contacts
+        self.free_count = self.collisions.free_count
         self.is_free_edge, self.prove = proof.is_free_edge, proof.prove
 
     def problem(
