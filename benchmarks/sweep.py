@@ -21,8 +21,7 @@ from harness import Row
 
 from arm_sim.sweep.engine import Engine
 from arm_sim.sweep.journal import FILE_NAME, Journal, Outcome
-from arm_sim.sweep.pool import Pool
-from arm_sim.sweep.process_pool import ProcessPool
+from arm_sim.sweep.pool import Pool, ProcessPool
 from arm_sim.sweep.study import Study
 from arm_sim.sweep.table import write_tables
 

@@ -90,7 +90,7 @@ def _make_runs(study: "Study", journal: "Journal", options: argparse.Namespace) 
 
 def _pool(study: "Study", folder: Path, options: argparse.Namespace) -> "Pool":
     if options.ray is None:
-        from arm_sim.sweep.process_pool import ProcessPool
+        from arm_sim.sweep.pool import ProcessPool
 
         return ProcessPool(study, folder, options.processes or os.cpu_count() or 1)
     # Ray is an extra.

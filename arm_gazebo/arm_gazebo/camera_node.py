@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING
 
-from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
+from arm_gazebo.camera.process import EXIT_BACKEND, CameraSettings
 from arm_gazebo.errors import BackendError, GazeboError
 from arm_gazebo.feed.child_process import add_parent_arguments, follow_parent
 from arm_gazebo.feed.socket_pair import CameraEnd
@@ -60,8 +60,7 @@ def _application(
     from rclpy.node import Node
 
     from arm_gazebo.camera.pipeline import CameraPipeline
-    from arm_gazebo.ros.camera_diagnostics import CameraDiagnostics
-    from arm_gazebo.ros.camera_publisher import CameraPublisher
+    from arm_gazebo.ros.camera_publisher import CameraDiagnostics, CameraPublisher
 
     node = first_node(lambda: Node("camera"))
     publishers = [CameraPublisher(node, sensor) for sensor in settings.cameras]

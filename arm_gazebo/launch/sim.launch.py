@@ -5,8 +5,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from arm_gazebo.run.robot_settings import RobotSettings
-from arm_gazebo.run.settings import SimulationSettings
+from arm_gazebo.run.settings import RobotSettings, SimulationSettings
 from arm_node.setting import settings_of
 from launch_py import (
     Action,

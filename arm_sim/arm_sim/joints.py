@@ -1,11 +1,13 @@
-"""The joints of the simulated robot as arrays."""
+"""What the simulated robot measures: its joints as arrays, its hardware, its sensors."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_control.hardware.resource_manager import ResourceManager
+from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.physics import Physics
 from arm_sim.errors import UnknownNameError
 from arm_sim.user_traceback import ends_at_the_caller
@@ -78,3 +80,49 @@ class Joints(Mapping[str, JointState]):
 
     def __len__(self) -> int:
         return len(self.names)
+
+
+@ends_at_the_caller
+class States(Mapping[str, float]):
+    """The state interfaces of the hardware by full name, such as 'j0/position'.
+
+    They are what controllers read, as of the last tick.
+    """
+
+    def __init__(self, resources: ResourceManager) -> None:
+        self._values = resources.states
+        self._indices = {name: index for index, name in enumerate(resources.state_names)}
+
+    def __getitem__(self, name: str) -> float:
+        if name not in self._indices:
+            raise UnknownNameError(
+                f"no state interface '{name}'; the hardware has {', '.join(self._indices)}"
+            )
+        return float(self._values[self._indices[name]])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._indices)
+
+    def __len__(self) -> int:
+        return len(self._indices)
+
+
+@ends_at_the_caller
+class Sensors(Mapping[str, Mapping[str, float]]):
+    """The present readings of the robot's sensors by name: the values of their channels."""
+
+    def __init__(self, sensors: Sequence[SimulatedSensor]) -> None:
+        self._sensors = {sensor.description.name: sensor for sensor in sensors}
+
+    def __getitem__(self, name: str) -> Mapping[str, float]:
+        if name not in self._sensors:
+            existing = ", ".join(self._sensors) or "none"
+            raise UnknownNameError(f"no sensor '{name}'; the robot has {existing}")
+        sensor = self._sensors[name]
+        return dict(zip(sensor.description.channels, sensor.read().tolist(), strict=True))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._sensors)
+
+    def __len__(self) -> int:
+        return len(self._sensors)

@@ -15,11 +15,10 @@ from arm_sim.arguments import SimulationArguments, takes, with_settings
 from arm_sim.controllers import ControllerHandle, Controllers
 from arm_sim.errors import CallError, GoalError
 from arm_sim.goals import Goal, ResultT
-from arm_sim.joints import Joints
+from arm_sim.joints import Joints, Sensors, States
 from arm_sim.pose import AnyPose, Matrix, pose_matrix
 from arm_sim.robots import AnyPath
 from arm_sim.snapshots import SavedState, Snapshots
-from arm_sim.states import Sensors, States
 from arm_sim.user_traceback import ends_at_the_caller, warn_caller
 
 if TYPE_CHECKING:

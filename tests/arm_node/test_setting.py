@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from arm_gazebo.run.robot_settings import RobotSettings
-from arm_gazebo.run.settings import SimulationSettings, simulation_settings
+from arm_gazebo.run.settings import RobotSettings, SimulationSettings, simulation_settings
 from arm_node.parameter_values import NumberReader, ParameterValueError, read_numbers, read_words
 from arm_node.setting import given_values, read_settings, setting, settings_of
 

@@ -29,7 +29,7 @@ from arm_controller.publisher_terminal_node import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_description.static_transform_publisher_node import _node as static_transform
-from arm_gazebo.ros.fault_parameter import declare_faults
+from arm_gazebo.ros.live_parameters import declare_faults
 from arm_gazebo.run.settings import simulation_settings
 from arm_node.parameters import declare
 from arm_viewer.ros.viewer import Viewer

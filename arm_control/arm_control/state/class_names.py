@@ -23,8 +23,9 @@ EARLIER_NAMES: dict[str, str] = {
     f"{_TRAJECTORY}.tolerances": f"{_TRAJECTORY}.goals",
     f"{_SENSORS}.force_torque": f"{_SENSORS}.controller",
     f"{_SENSORS}.imu": f"{_SENSORS}.controller",
-    "arm_gazebo.assembly.robot_settings": "arm_gazebo.run.robot_settings",
+    "arm_gazebo.assembly.robot_settings": "arm_gazebo.run.settings",
     "arm_gazebo.model.saved_model": "arm_gazebo.model.built_model",
+    "arm_gazebo.run.robot_settings": "arm_gazebo.run.settings",
     "arm_gazebo.spec.physics_timing": "arm_gazebo.physics_timing",
     "arm_gazebo.recording.recorded_run:RecordedRobot": "arm_gazebo.run.robot:ManagedRobot",
 }

@@ -21,7 +21,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from arm_description.errors import DescriptionError, SettingsError
-from arm_description.kinematics.transform_tree import Frame, Motion, TransformTree
+from arm_description.kinematics.forward import Frame, Motion, TransformTree
 from arm_description.publishers.settings import StatePublisherSettings
 from arm_description.urdf.parser import parse_urdf
 from arm_node.executor_thread import ExecutorThread

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 from arm_gazebo.batch.copies import CommandBounds, Copies
 from arm_gazebo.batch.gpu_device import check_device
-from arm_gazebo.batch.physics_batch import PhysicsBatch
-from arm_gazebo.batch.serial_batch import SerialBatch
+from arm_gazebo.batch.host_batches import PhysicsBatch, SerialBatch
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.physics.physics import Physics
 

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 import mujoco
 
-from arm_gazebo.camera.process import CameraProcess
-from arm_gazebo.camera.settings import CameraSettings
+from arm_gazebo.camera.process import CameraProcess, CameraSettings
 from arm_gazebo.feed.schedule import FrameDue, FrameSchedule, StreamCount
 from arm_gazebo.feed.socket_pair import CameraProgress
 from arm_gazebo.feed.state_feed import PreparedModel, StateFeed

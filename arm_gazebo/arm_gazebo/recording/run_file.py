@@ -1,14 +1,18 @@
 """The file of a recorded run: an MCAP file that is readable to its last second after a kill.
 
 It holds the header with all that rebuilds the run, then, as they come, inputs and blocks of states
-with one hash for each control period.
+with one hash for each control period. Files of format 1, whose values are JSON, are read as well.
 """
 
+import base64
+import dataclasses
+import json
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -21,9 +25,9 @@ from mcap.writer import Writer
 from numpy.typing import NDArray
 
 from arm_control.errors import StateError
+from arm_control.state.class_names import class_named
 from arm_control.state.encoding import decode, encode
 from arm_gazebo.errors import RecordingError
-from arm_gazebo.recording.json_records import read_json
 
 FORMATS = (1, 2)
 """Those that this version reads; it writes the last. In format 1 a value is JSON."""
@@ -268,3 +272,52 @@ def _block(data: bytes) -> StateBlock:
     hashes = np.frombuffer(content, np.uint64, count)
     states = np.frombuffer(content, np.float64, offset=8 * count).reshape(-1, width)
     return StateBlock(first, hashes, interval, states)
+
+
+def read_json(content: bytes) -> Any:
+    """Return the value of a record.
+
+    Raises:
+        ValueError: it names a class that does not exist, or is damaged.
+    """
+    try:
+        return _value(json.loads(content))
+    except (KeyError, TypeError, AttributeError, ImportError) as error:
+        raise ValueError(f"{type(error).__name__}: {error}") from error
+
+
+def _value(data: Any) -> Any:
+    match data:
+        case [*items]:
+            return tuple(map(_value, items))
+        case {"!list": items}:
+            return [_value(item) for item in items]
+        case {"!set": items}:
+            return {_value(item) for item in items}
+        case {"!dict": pairs}:
+            return {_value(key): _value(item) for key, item in pairs}
+        case {"!bytes": text}:
+            return base64.b64decode(text)
+        case {"!array": text, "dtype": dtype, "shape": shape}:
+            array = np.frombuffer(base64.b64decode(text), dtype=np.dtype(dtype))
+            return array.reshape(shape).copy()
+        case {"!enum": name, "name": member}:
+            return _class(name, Enum)[member]
+        case {"!data": name, **fields}:
+            values = {key: _value(item) for key, item in fields.items()}
+            return _class(name, None)(**values)
+        case dict():
+            return {key: _value(item) for key, item in data.items()}
+        case _:
+            return data
+
+
+def _class(name: str, base: type | None) -> Any:
+    """Return a dataclass, or a class that derives from `base`, by its name."""
+    found = class_named(name)
+    is_fit = isinstance(found, type) and (
+        issubclass(found, base) if base is not None else dataclasses.is_dataclass(found)
+    )
+    if not is_fit:
+        raise ValueError(f"there is no class '{name}' here")
+    return found

@@ -1,13 +1,32 @@
-"""Parameters of the simulation's node that take effect while it runs."""
+"""Parameters of the simulation's node that take effect while it runs; two start something."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+import logging
+from collections.abc import Sequence
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from arm_node.parameter_values import ParameterValueError, read_parameter
+from arm_control.errors import LoopStoppedError
+from arm_control.loop.control_loop import ControlLoop
+from arm_gazebo.errors import FaultError, RecordingError
+from arm_gazebo.faults.fault import USAGE, Fault, read_fault
+from arm_gazebo.faults.injector import FaultInjector
+from arm_gazebo.run.run import SimulationRun
+from arm_node.parameter_values import ParameterValueError, read_texts
+from arm_node.parameters import declare, take_other_notations
+
+if TYPE_CHECKING:
+    from arm_gazebo.recording.recorder import RunRecorder
+from collections.abc import Callable
+from typing import Any
+
+from arm_node.parameter_values import read_parameter
 from arm_node.setting import Setting
 
 
@@ -37,3 +56,143 @@ def follow_setting(node: Node, setting: Setting, apply: Callable[[Any], object])
 
     node.add_on_set_parameters_callback(check)
     node.add_post_set_parameters_callback(take)
+
+
+RECORD_RUN = "record_run"
+
+logger = logging.getLogger(__name__)
+
+
+class RunRecording:
+    """Begins a recording when `record_run` is set to a file, and ends it when it is set to "".
+
+    The parameter's callbacks run on the executor of its node, which waits for the loop.
+
+    Args:
+        node: declares the parameter.
+        run: the run to record.
+        path: the parameter's first value; "" for no recording.
+
+    Raises:
+        RecordingError: the first recording cannot begin.
+    """
+
+    def __init__(self, node: Node, run: SimulationRun, path: str) -> None:
+        self._node = node
+        self._run = run
+        self._recorder: RunRecorder | None = None
+        if path:
+            self._begin(path)
+        node.add_on_set_parameters_callback(self._take)
+
+    def supervise(self) -> None:
+        """End a recording whose file can no longer be written; it has logged why."""
+        if self._recorder is not None and self._recorder.failure:
+            self._node.set_parameters([Parameter(RECORD_RUN, Parameter.Type.STRING, "")])
+
+    def close(self) -> None:
+        """End the recording with the simulation, whose loop still runs."""
+        # A failed loop records nothing more, and what it recorded has reached the file.
+        with suppress(LoopStoppedError):
+            self._end("the simulation ended")
+
+    def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
+        try:
+            for parameter in changed:
+                if parameter.name == RECORD_RUN:
+                    self._change(str(parameter.value))
+        except (RecordingError, LoopStoppedError) as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _change(self, path: str) -> None:
+        if not path:
+            self._end()
+        elif self._recorder is not None:
+            raise RecordingError(
+                f"a recording to {self._recorder.path} is still running; end it by setting "
+                f"{RECORD_RUN} to ''"
+            )
+        else:
+            self._begin(path)
+
+    def _begin(self, path: str) -> None:
+        # Imported here, because most runs are not recorded.
+        from arm_gazebo.recording.recorder import RunRecorder
+
+        self._recorder = RunRecorder.to_file(self._run, Path(path).expanduser().absolute())
+        logger.info("recording the run to %s", self._recorder.path)
+
+    def _end(self, reason: str = "") -> None:
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            recorder.end(reason)
+            logger.info("recorded %d control periods to %s", recorder.periods, recorder.path)
+
+
+FAULTS = "faults"
+LOOP_TIMEOUT_S = 10.0
+
+_KINDS = "; ".join(f"{kind.value} {words}" for kind, words in USAGE.items())
+_read_names = partial(read_texts, wanted=f"a list of texts, each one of: {_KINDS}")
+
+
+def declare_faults(node: Node) -> None:
+    """Declare the parameter, without any faults."""
+    declare(
+        node,
+        FAULTS,
+        [],
+        _read_names,
+        "faults for tests; each lasts as long as it is listed",
+        read_only=False,
+    )
+
+
+class FaultParameter:
+    """Begins and ends faults when the parameter `faults` is set.
+
+    Its value is the list of all requested faults, such as `['joint_stalled j0', 'slow_tick 0.02']`;
+    see `arm_gazebo.faults.fault`. The callback runs on the executor of its node, which waits for
+    the loop.
+
+    Args:
+        node: declares the parameter.
+        injector: belongs to the loop.
+        loop: runs the simulation.
+    """
+
+    def __init__(self, node: Node, injector: FaultInjector, loop: ControlLoop) -> None:
+        self._injector = injector
+        self._loop = loop
+        declare_faults(node)
+        take_other_notations(node, FAULTS)
+        node.add_on_set_parameters_callback(self._take)
+
+    def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
+        try:
+            for parameter in changed:
+                if parameter.name == FAULTS:
+                    wanted = [read_fault(text) for text in read_texts(list(parameter.value or ()))]
+                    self._loop.call(lambda faults=wanted: self._change(faults)).result(
+                        LOOP_TIMEOUT_S
+                    )
+        except (ParameterValueError, FaultError, LoopStoppedError) as error:
+            return SetParametersResult(successful=False, reason=f"{FAULTS}: {error}")
+        except FutureTimeoutError:
+            reason = f"{FAULTS}: the simulation did not respond within {LOOP_TIMEOUT_S:g} s"
+            return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _change(self, wanted: Sequence[Fault]) -> None:
+        """Begin and end faults so that those in the list remain, all or nothing. Loop thread."""
+        injector = self._injector
+        for fault in wanted:
+            injector.check(fault)
+        for fault in [fault for fault in injector.active if fault not in wanted]:
+            injector.end(fault)
+            logger.warning("fault ends: %s", fault)
+        for fault in dict.fromkeys(wanted):
+            if fault not in injector.active:
+                logger.warning("fault begins: %s", fault)
+                injector.begin(fault)

@@ -29,15 +29,12 @@ from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.hardware.simulated_sensors import SensorFeed
 from arm_gazebo.physics.statistics import SimulationStatistics
 from arm_gazebo.ros.clock_publisher import RosClockPublisher
-from arm_gazebo.ros.fault_parameter import FaultParameter
-from arm_gazebo.ros.live_parameters import follow_setting
-from arm_gazebo.ros.run_recording import RunRecording
+from arm_gazebo.ros.live_parameters import FaultParameter, RunRecording, follow_setting
 from arm_gazebo.run.robot import ManagedRobot, SimulatedRobot
-from arm_gazebo.run.robot_settings import RobotSettings
 from arm_gazebo.run.run import SimulationRun
-from arm_gazebo.run.settings import SimulationSettings, simulation_settings
+from arm_gazebo.run.settings import RobotSettings, SimulationSettings, simulation_settings
 from arm_gazebo.window.display import check_display
-from arm_gazebo.window.feed import WindowFeed
+from arm_gazebo.window.process import WindowFeed
 from arm_node.notify import notify
 from arm_node.parameters import declare
 from arm_node.process import EXIT_FAILED, NodeProcess

@@ -17,7 +17,7 @@ from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
-from arm_gazebo.run.robot_settings import RobotSettings
+from arm_gazebo.run.settings import RobotSettings
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors

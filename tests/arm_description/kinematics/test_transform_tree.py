@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arm_description import Robot, forward_kinematics, parse_urdf
-from arm_description.kinematics.forward import resolve_mimics
-from arm_description.kinematics.transform_tree import Frame, TransformTree
+from arm_description.kinematics.forward import Frame, TransformTree, resolve_mimics
 from arm_node.rigid_transform import RigidTransform
 
 LIMIT = "<limit lower='-9' upper='9' effort='1' velocity='1'/>"

@@ -8,8 +8,7 @@ import pytest
 
 from arm_gazebo.batch.choice import SERIAL_COPIES, make_copies
 from arm_gazebo.batch.copies import CommandBounds, Copies
-from arm_gazebo.batch.physics_batch import PhysicsBatch
-from arm_gazebo.batch.serial_batch import SerialBatch
+from arm_gazebo.batch.host_batches import PhysicsBatch, SerialBatch
 from arm_gazebo.errors import BatchError
 from arm_sim import Simulation
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.camera.feed import CameraFeed
-from arm_gazebo.camera.process import CameraProcess
-from arm_gazebo.camera.settings import CameraSettings
+from arm_gazebo.camera.process import CameraProcess, CameraSettings
 from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.snapshot import CameraSnapshot
 from arm_gazebo.feed.socket_pair import CameraEnd, CameraProgress, ModelMessage

@@ -6,8 +6,7 @@ import subprocess
 
 import pytest
 
-from arm_gazebo.camera.process import CameraProcess
-from arm_gazebo.camera.settings import EXIT_BACKEND, CameraSettings
+from arm_gazebo.camera.process import EXIT_BACKEND, CameraProcess, CameraSettings
 from arm_gazebo.sensors.camera import CameraSensor
 
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.batch.copies import CommandBounds
-from arm_gazebo.batch.physics_batch import PhysicsBatch
-from arm_gazebo.batch.serial_batch import SerialBatch
+from arm_gazebo.batch.host_batches import PhysicsBatch, SerialBatch
 
 WORLDS_OWN = 7
 """Controls of the world's three actuators."""

@@ -17,7 +17,7 @@ from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.replay import Replay, ReplayResult
 from arm_gazebo.recording.run_file import RunFile, RunFileWriter
 from arm_gazebo.run.robot import ManagedRobot
-from arm_gazebo.run.robot_settings import RobotSettings
+from arm_gazebo.run.settings import RobotSettings
 from arm_gazebo.state.made_with import made_with
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource

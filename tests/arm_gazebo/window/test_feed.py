@@ -8,8 +8,13 @@ import mujoco
 import pytest
 
 from arm_gazebo.feed.socket_pair import CameraEnd, ModelMessage
-from arm_gazebo.window.feed import WindowFeed
-from arm_gazebo.window.process import EXIT_CLOSED, EXIT_FAILED, EXIT_NEW_MODEL, WindowProcess
+from arm_gazebo.window.process import (
+    EXIT_CLOSED,
+    EXIT_FAILED,
+    EXIT_NEW_MODEL,
+    WindowFeed,
+    WindowProcess,
+)
 
 MJCF = "<mujoco><worldbody><body><joint/><geom size='0.1'/></body></worldbody></mujoco>"
 

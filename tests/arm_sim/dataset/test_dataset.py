@@ -13,7 +13,7 @@ import pytest
 
 from arm_sim import CallError
 from arm_sim.dataset import CameraStream, DatasetWriter, Samples, align, check_dataset
-from arm_sim.dataset.statistics import image_statistics, merged, statistics_of
+from arm_sim.dataset.writer import image_statistics, merged, statistics_of
 
 MS = 1_000_000
 START = 5_000 * MS

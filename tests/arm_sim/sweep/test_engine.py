@@ -12,7 +12,7 @@ from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim.sweep.engine import Engine
 from arm_sim.sweep.journal import FILE_NAME, Journal
-from arm_sim.sweep.process_pool import ProcessPool
+from arm_sim.sweep.pool import ProcessPool
 from arm_sim.sweep.study import Study, StudyError
 from arm_sim.sweep.table import write_tables
 
@@ -161,7 +161,7 @@ import sys
 from pathlib import Path
 from arm_sim.sweep.engine import Engine
 from arm_sim.sweep.journal import Journal
-from arm_sim.sweep.process_pool import ProcessPool
+from arm_sim.sweep.pool import ProcessPool
 from arm_sim.sweep.study import Study
 if __name__ == "__main__":
     study = Study(sys.argv[1], {"x": (1,)})

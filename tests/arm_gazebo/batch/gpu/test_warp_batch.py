@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.batch.copies import CommandBounds
-from arm_gazebo.batch.physics_batch import PhysicsBatch
+from arm_gazebo.batch.host_batches import PhysicsBatch
 from arm_gazebo.errors import BatchError
 from arm_sim import Simulation
 
