@@ -37,11 +37,6 @@ def load_yaml_documents(text: str) -> list[Any]:
     return _guarded(text, lambda yaml: list(yaml.load_all(text, Loader=_loader())))
 
 
-def compose_yaml(text: str) -> "yaml.Node | None":
-    """Return the nodes of a YAML text, which know their lines; raises like `load_yaml`."""
-    return _guarded(text, lambda yaml: yaml.compose(text, Loader=_loader()))
-
-
 def compose_yaml_documents(text: str, loader: Any) -> "list[yaml.Node]":
     """Return the nodes of all documents of a YAML text; raises like `load_yaml`.
 

@@ -10,7 +10,6 @@ import math
 from array import array
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TypeGuard, TypeVar
 
 Value = TypeVar("Value")
@@ -111,11 +110,6 @@ def read_nonempty_text(value: object, wanted: str = "a text") -> str:
     if not isinstance(value, str) or not value:
         raise refusal(wanted, value)
     return value
-
-
-def read_path(value: object) -> Path:
-    """Return the path of a file, with `~` expanded; the file need not exist."""
-    return Path(read_nonempty_text(value, "the path of a file")).expanduser()
 
 
 def one_of(choices: Iterable[str]) -> Reader[str]:

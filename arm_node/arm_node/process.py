@@ -27,13 +27,12 @@ from arm_node.notify import notify
 from arm_node.parameter_values import ParameterValueError
 from arm_node.printable import first_line, printable, printable_message
 from arm_node.user_file import MAX_TEXT_BYTES, check_file
-from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.local_profile import use_local_profile
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
 from arm_node.workarounds.switch import switched_off
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    pass
 
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""
@@ -297,22 +296,6 @@ def _logger_of(error: Exception, process: NodeProcess) -> logging.Logger:
         if isinstance(node, Node) and hasattr(node, "_logger")
     )
     return logging.getLogger(next(named, "arm_node"))
-
-
-def run_node(
-    make_node: Callable[[NodeProcess], "Node"],
-    argv: Sequence[str] | None = None,
-    user_errors: tuple[type[Exception], ...] = (),
-) -> int:
-    """Run one node, which may stop its process when its work is done; see `run_process`."""
-
-    @contextmanager
-    def application(process: NodeProcess) -> Iterator[None]:
-        node = first_node(lambda: make_node(process))
-        process.executor.add_node(node)
-        yield
-
-    return run_process(application, argv, user_errors)
 
 
 def _refusals() -> tuple[type[Exception], ...]:

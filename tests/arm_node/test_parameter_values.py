@@ -1,7 +1,6 @@
 """Parameter values whose exact type does not matter."""
 
 from array import array
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,6 @@ from arm_node.parameter_values import (
     read_number,
     read_numbers,
     read_parameter,
-    read_path,
     read_text,
     read_texts,
     read_words,
@@ -68,8 +66,6 @@ def test_takes_what_can_be_converted(read, value, result):
         (read_flag, None, "must be true or false, not None"),
         (read_text, 5, "must be a text, not 5"),
         (read_nonempty_text, "", "must be a text, not ''"),
-        (read_path, "", "must be the path of a file, not ''"),
-        (read_path, None, "must be the path of a file, not None"),
         (read_texts, "a", "must be a list of texts, not 'a'"),
         (read_texts, ["a", ""], "must be a list of texts, not ['a', '']"),
         (read_words, [1], "must be a list of texts, not [1]"),
@@ -96,8 +92,3 @@ def test_what_a_reader_takes_can_be_asked():
 def test_the_name_of_the_parameter_comes_first():
     with pytest.raises(ParameterValueError, match=r"^left\.base must be true or false, not 3$"):
         read_parameter("left.base", 3, read_flag)
-
-
-def test_a_path_may_start_at_home(monkeypatch):
-    monkeypatch.setenv("HOME", "/home/somebody")
-    assert read_path("~/poses.yaml") == Path("/home/somebody/poses.yaml")

@@ -194,9 +194,12 @@ def test_a_parameter_file_that_cannot_be_read_is_a_sentence(tmp_path, kind, prob
 REFUSING = """
 import sys
 
-from arm_node.process import run_node
+from contextlib import contextmanager
 
-def make(process):
+from arm_node.process import run_process
+
+@contextmanager
+def application(process):
     from rclpy.node import Node
 
     class Worker(Node):
@@ -204,9 +207,10 @@ def make(process):
             super().__init__("worker")
             raise ValueError("no such robot")
 
-    return Worker()
+    process.executor.add_node(Worker())
+    yield
 
-sys.exit(run_node(make, ["program", *sys.argv[1:]], user_errors=(ValueError,)))
+sys.exit(run_process(application, ["program", *sys.argv[1:]], (ValueError,)))
 """
 
 

@@ -92,10 +92,6 @@ class ServoWarp:
         inputs = [self._joints, self._drives, qpos, qvel, inertia, bias, act, ctrl]
         wp.launch(update, self._copies, inputs=inputs, device=self._device, block_dim=THREADS)
 
-    def setpoints(self) -> tuple[Array, Array]:
-        """Return positions and velocities of the set-points, shape (copies, joints) each."""
-        return self._drives.position.numpy(), self._drives.velocity.numpy()
-
 
 def _joints(constants: DriveConstants, product: InertiaProduct) -> DriveLaw:
     joints = DriveLaw()
