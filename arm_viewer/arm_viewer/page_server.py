@@ -256,7 +256,12 @@ def _listed(values: list[str]) -> str:
 
 
 TITLE = "Arm suite"
-SCRIPTS = ("channel.js", "typed_numbers.js", "quiet.js")
+SCRIPTS = (
+    "software_rendering.js",
+    "channel.js",
+    "typed_numbers.js",
+    "quiet.js",
+)
 _ICON = re.compile(r'<link\s+rel="icon"\s[^>]*>', re.DOTALL)
 _TITLE = re.compile(r"<title>[^<]*</title>")
 _HEAD_END = "</head>"

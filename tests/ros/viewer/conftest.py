@@ -170,12 +170,28 @@ def browser():
 
 
 @pytest.fixture(scope="module")
-def visitor(browser, simulation, page_url) -> Iterator[Visitor]:
+def new_visitor(browser, simulation, page_url) -> Iterator[Callable[..., Visitor]]:
+    """Return a function that lets one more visitor open the page of the simulation.
+
+    Its argument is a script that runs before those of the page.
+    """
+    pages = []
+
+    def arrive(script: str = "") -> Visitor:
+        page = browser.new_page(viewport=VIEWPORT)
+        pages.append(page)
+        page.set_default_timeout(TIMEOUT_S * 1000)
+        page.add_init_script(f"{script}; {COUNTED_DRAWING}")
+        arrived = Visitor(page)
+        arrived.visit(page_url)
+        return arrived
+
+    yield arrive
+    for page in pages:
+        page.close()
+
+
+@pytest.fixture(scope="module")
+def visitor(new_visitor) -> Visitor:
     """Return a visitor of the page of the simulation."""
-    page = browser.new_page(viewport=VIEWPORT)
-    page.set_default_timeout(TIMEOUT_S * 1000)
-    page.add_init_script(COUNTED_DRAWING)
-    arrived = Visitor(page)
-    arrived.visit(page_url)
-    yield arrived
-    page.close()
+    return new_visitor()

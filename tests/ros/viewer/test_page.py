@@ -1,5 +1,6 @@
 """The page in a real browser, beside a simulation: one of each for the file."""
 
+import itertools
 import re
 from urllib.parse import urlsplit
 
@@ -54,6 +55,43 @@ def test_the_page_loads_and_fetches_nothing_from_outside(visitor, page_url):
     assert visitor.requests
     assert outside == set()
     assert visitor.errors == []
+
+
+SHADOWS = """() => {
+  const lights = [];
+  window.__viserMutable.scene.traverse((node) => { if (node.isLight) lights.push(node); });
+  return lights.some((light) => light.castShadow);
+}"""
+PIXELS = "() => window.__viserTestpoints.devSettings.get().fixedDpr"
+IS_READ = """() => {
+  const canvas = document.createElement("canvas");
+  return canvas.getContext("2d").getContextAttributes().willReadFrequently;
+}"""
+
+
+def test_a_browser_without_a_graphics_card_draws_without_what_costs_most(
+    visitor, new_visitor, command
+):
+    assert visitor.drawn()["antialias"]
+    assert visitor.page.evaluate(SHADOWS)
+    assert visitor.page.evaluate(PIXELS) is None
+    assert not visitor.page.evaluate(IS_READ)
+    slow = new_visitor("window.renderer = 'SwiftShader'")
+    page = slow.page
+    slow.wait_until(lambda: slow.drawn()["triangles"] > 0, "the robot is drawn")
+    slow.wait_until(lambda: not page.evaluate(SHADOWS), "no light casts a shadow")
+    assert not slow.drawn()["antialias"]
+    assert page.evaluate(IS_READ)
+    goals = itertools.cycle([0.5, -0.5])
+
+    def moves_in_fewer_pixels() -> bool:
+        command([next(goals), 0.0, 0.0, 0.0])
+        return (page.evaluate(PIXELS) or 1.0) < 1.0
+
+    slow.wait_until(moves_in_fewer_pixels, "the moving scene has fewer pixels")
+    slow.wait_until(lambda: page.evaluate(PIXELS) == 1.0, "the scene at rest has all of them")
+    assert slow.errors == []
+    page.close()
 
 
 def test_a_slider_moves_the_simulated_arm(visitor, positions):
