@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from websockets.asyncio.server import ServerConnection, broadcast
+from websockets.protocol import State
 
 from arm_viewer.errors import MessageError
 
@@ -83,6 +84,11 @@ class Browser:
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether it can still be sent to."""
+        return self._connection.state is State.OPEN
 
     def send(self, kind: str, fields: Mapping[str, object]) -> None:
         """Send a message to this browser; nothing happens if it has left."""

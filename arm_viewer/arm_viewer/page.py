@@ -28,6 +28,7 @@ from arm_viewer.requests import Send
 from arm_viewer.rviz_config import PageConfig
 from arm_viewer.scene.first_view import FirstView
 from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.poses import Poses
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.typed_numbers import KIND as TYPED_NUMBER
 from arm_viewer.typed_numbers import typed_number_handler
@@ -67,13 +68,14 @@ def page_running(
 async def _build(server: PageServer, send: Send, config: PageConfig | None) -> tuple[Panel, ...]:
     apply_look(server)
     gui = server.gui
-    frames = Frames(server.scene)
+    poses = Poses(server.channel, lambda: len(server.get_clients()))
+    frames = Frames(server.scene, poses)
     status = StatusPanel()
     status.build(gui)
     joints = JointPanel(send)
     server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
-    robots = RobotPanel(server.scene, frames, view)
+    robots = RobotPanel(server.scene, frames, poses, view)
     main = {
         "Robot": (joints, robots, ConfigPanel(server, robots, view, config)),
         "Control": (ClockPanel(), ControllerPanel(send)),

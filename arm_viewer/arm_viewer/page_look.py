@@ -26,8 +26,8 @@ def apply_look(server: ViserServer) -> None:
     server.gui.main_panel.dock_right()
     server.gui.main_panel.set_width(RIGHT_PANEL_WIDTH_PX)
     scene = server.scene
-    # Without a graphics card the environment map costs most. Shadows cost as much as all else; there
-    # front/software_rendering.js switches them off.
+    # Without a graphics card the environment map costs most. Shadows cost as much as all else, and
+    # front/software_rendering.js switches them off there.
     scene.configure_environment_map(None)
     scene.configure_default_lights(enabled=False)
     scene.add_light_directional(

@@ -259,6 +259,7 @@ TITLE = "Arm suite"
 SCRIPTS = (
     "software_rendering.js",
     "channel.js",
+    "poses.js",
     "typed_numbers.js",
     "quiet.js",
 )

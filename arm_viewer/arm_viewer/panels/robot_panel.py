@@ -12,6 +12,7 @@ from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.first_view import Contents, FirstView
 from arm_viewer.scene.frames import Frames, assumed_transforms, node_name, unknown_joints
 from arm_viewer.scene.markers import Markers
+from arm_viewer.scene.poses import Poses
 from arm_viewer.scene.robot_model import COLLISION, INERTIA, MASS, VISUAL, RobotModel
 from arm_viewer.snapshot import Description, Snapshot, Transform, frame_name
 
@@ -46,13 +47,14 @@ _Known = tuple[
 class RobotPanel:
     """Draws the robots of the 3D view as described, at their poses in /tf."""
 
-    def __init__(self, scene: SceneApi, frames: Frames, view: FirstView) -> None:
-        """Draw into this scene, below these frames, and fit this view."""
+    def __init__(self, scene: SceneApi, frames: Frames, poses: Poses, view: FirstView) -> None:
+        """Draw into this scene, below these frames, move things by `poses`, and fit this view."""
         self._scene = scene
+        self._poses = poses
         self._view = view
         self._fit_for: set[int] = set()
         self._frames = frames
-        self._markers = Markers(scene, frames)
+        self._markers = Markers(scene, frames, poses)
         self._cameras = Cameras(scene, frames)
         self._robots: dict[str, _Shown] = {}
         self._completed_for: _Known | None = None
@@ -90,6 +92,7 @@ class RobotPanel:
         self._frames.show_names(self._names.value)
         self._markers.update(snapshot.markers)
         self._markers.show(self._world.value)
+        self._poses.send(snapshot.made_s)
         self._cameras.update(snapshot.cameras, self._views.value)
         for topic in self._robots.keys() - snapshot.descriptions.keys():
             self._robots.pop(topic).model.remove()

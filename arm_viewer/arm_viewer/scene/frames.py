@@ -11,6 +11,7 @@ from arm_description.transforms import quaternion_from_rpy, rpy_from_rotation
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Joint, Robot
 from arm_node.rigid_transform import RigidTransform
+from arm_viewer.scene.poses import Poses
 from arm_viewer.snapshot import Transform
 
 
@@ -31,9 +32,10 @@ class Frames:
     arrives late or changes does not affect them. A frame without a transform is hidden.
     """
 
-    def __init__(self, scene: SceneApi) -> None:
-        """Start without frames."""
+    def __init__(self, scene: SceneApi, poses: Poses) -> None:
+        """Start without frames, which `poses` will move."""
         self._scene = scene
+        self._moving = poses
         self._seen: Mapping[str, Transform] = {}
         self._poses: dict[str, RigidTransform] = {}
         self._handles: dict[str, FrameHandle] = {}
@@ -69,14 +71,13 @@ class Frames:
             before = self._poses.get(frame)
             if before is None:
                 self.path(frame)
+                self._moving.move(self._handles[frame], pose)
                 self._handles[frame].visible = True
                 self._name(frame)
-            elif not _differ(before, pose):
+            elif _differ(before, pose):
+                self._moving.move(self._handles[frame], pose)
+            else:
                 poses[frame] = before
-                continue
-            handle = self._handles[frame]
-            x, y, z, w = pose.rotation
-            handle.position, handle.wxyz = pose.position, (w, x, y, z)
         for frame in self._poses.keys() - poses.keys():
             self._handles[frame].visible = False
         self._poses = poses

@@ -14,6 +14,7 @@ from arm_description.view_fitting import Body, body_of
 from arm_node.rigid_transform import RigidTransform, rotated
 from arm_viewer.scene.first_view import Obstacles
 from arm_viewer.scene.frames import Frames, node_name
+from arm_viewer.scene.poses import Poses
 from arm_viewer.scene.triangles import smooth, triangles
 from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape
 
@@ -34,9 +35,10 @@ _SOLIDS = {
 class Markers:
     """Draws the markers at their poses; use it in viser's event loop."""
 
-    def __init__(self, scene: SceneApi, frames: Frames) -> None:
-        """Draw into this scene, in these frames."""
+    def __init__(self, scene: SceneApi, frames: Frames, poses: Poses) -> None:
+        """Draw into this scene, in these frames, and move the markers by `poses`."""
         self._scene = scene
+        self._poses = poses
         self._frames = frames
         self._seen: Mapping[str, Marker] = {}
         self._origins: dict[str, RigidTransform] = {}
@@ -45,12 +47,13 @@ class Markers:
 
     def show(self, shown: bool) -> None:
         """Show or hide all markers."""
-        self._root.visible = shown
+        if self._root.visible != shown:
+            self._root.visible = shown
 
     def update(self, markers: Mapping[str, Marker]) -> None:
         """Draw new markers, move changed ones and remove old ones."""
         for name in self._handles.keys() - markers.keys():
-            self._handles.pop(name).remove()
+            self._remove(name)
         for name, marker in markers.items():
             before = self._seen.get(name)
             # A frame without a transform counts as the root, because the world frame is the root.
@@ -60,10 +63,7 @@ class Markers:
             if before is None or before.look != marker.look:
                 self._draw(name, marker.look)
             self._origins[name] = origin
-            pose = origin.then(marker.pose)
-            x, y, z, w = pose.rotation
-            self._handles[name].position = pose.position
-            self._handles[name].wxyz = (w, x, y, z)
+            self._poses.move(self._handles[name], origin.then(marker.pose))
         self._seen = markers
 
     def bodies(self) -> tuple[list[Body], Obstacles]:
@@ -85,9 +85,14 @@ class Markers:
         turns, centres, halves = (np.array([box[i] for box in boxes]) for i in range(3))
         return bodies, Obstacles(turns, centres, halves, [box[3] for box in boxes])
 
+    def _remove(self, name: str) -> None:
+        handle = self._handles.pop(name)
+        self._poses.forget(handle)
+        handle.remove()
+
     def _draw(self, name: str, look: MarkerLook) -> None:
         if name in self._handles:
-            self._handles.pop(name).remove()
+            self._remove(name)
         path = f"{ROOT}/{node_name(name)}"
         self._handles[name] = self._scene.add_frame(path, show_axes=False)
         red, green, blue, alpha = look.rgba

@@ -76,7 +76,8 @@ class RobotModel:
             if layer in layers and layer not in self._drawn:
                 self._draw(layer)
             for handle in self._drawn.get(layer, ()):
-                handle.visible = layer in layers
+                if handle.visible != (layer in layers):
+                    handle.visible = layer in layers
         if transparent != self._transparent:
             self._transparent = transparent
             self._set_opacities()

@@ -94,6 +94,27 @@ def test_a_browser_without_a_graphics_card_draws_without_what_costs_most(
     page.close()
 
 
+FRAME_OF_CHANNEL = """() => {
+  const poses = Object.entries(window.__viserMutable.nodePoseData);
+  // The channel's numbers have half the length of viser's.
+  const isShort = (value) => value === Math.fround(value);
+  const isTurned = ({wxyz}) => wxyz.some((value) => value % 0.5 !== 0);
+  return poses.some(([name, pose]) =>
+    name.startsWith("/frames/") && isTurned(pose) && pose.wxyz.every(isShort));
+}"""
+
+
+def test_the_robot_moves_by_frames_of_the_pages_own_channel(visitor, command):
+    goals = itertools.cycle([0.5, -0.5])
+
+    def moves() -> bool:
+        command([next(goals), 0.0, 0.0, 0.0])
+        return visitor.page.evaluate(FRAME_OF_CHANNEL)
+
+    visitor.wait_until(moves, "a link's pose comes from the channel")
+    assert visitor.errors == []
+
+
 def test_a_slider_moves_the_simulated_arm(visitor, positions):
     assert positions()["j0"] < 1.0
 
