@@ -1,7 +1,6 @@
 """Plans motions without ROS: the face of this package."""
 
 import logging
-import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -16,6 +15,7 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
+from arm_planning.collision.scene_difference import same_posture
 from arm_planning.constraints.constraints import MotionConstraints, joint_goal, pose_goal
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
 from arm_planning.errors import MoveItErrorCode, PlanningError
@@ -47,9 +47,6 @@ STRAIGHT_CORNER = 1e-3
 """How far a straight motion of a link may pass by its way points in the joints, rad or m."""
 NO_JUMP_LIMITS = JumpLimits()
 FULL_SPEED = Timing()
-STILL = 1e-6
-"""Change of a joint that does not vary, rad or m, up to which a compiled scene serves: a joint that
-holds trembles by less, and the proof allows for more."""
 MODELS_KEPT = 4
 """Compiled scenes that are kept for the next request."""
 LOGGER = logging.getLogger(__name__)
@@ -409,7 +406,8 @@ class Planner:
         kept = self._checkers.get(group)
         if kept is not None and _is_same(kept[0], scene, self._joints(group)):
             return kept[1]
-        model = CollisionModel(self.model, scene, group or None, self._meshes)
+        like = None if kept is None else kept[1].model
+        model = CollisionModel(self.model, scene, group or None, self._meshes, like)
         checker = SceneChecker(model)
         if len(self._checkers) >= MODELS_KEPT:
             self._checkers.clear()
@@ -510,7 +508,7 @@ class Planner:
         own = self._group(group).joints
         outside = {joint: q for joint, q in scene.positions.items() if joint not in own}
         kept = self._inverse.get(group)
-        is_same = kept is not None and all(_is_near(kept[0], outside, joint) for joint in outside)
+        is_same = kept is not None and same_posture(kept[0], outside, ())
         if kept is None or not is_same:
             kept = outside, GroupKinematics(self.model, group, outside)
             self._inverse[group] = kept
@@ -544,10 +542,5 @@ def _is_same(before: PlanningScene, scene: PlanningScene, varying: Sequence[str]
     """Return whether a compiled scene serves for another: only varying joints may differ."""
     if before is scene:
         return True
-    rest = (before.positions.keys() | scene.positions.keys()) - set(varying)
     same = replace(before, positions=scene.positions) == scene
-    return same and all(_is_near(before.positions, scene.positions, joint) for joint in rest)
-
-
-def _is_near(before: JointPositions, after: JointPositions, joint: str) -> bool:
-    return abs(before.get(joint, math.inf) - after.get(joint, -math.inf)) < STILL
+    return same and same_posture(before.positions, scene.positions, varying)

@@ -12,7 +12,7 @@ from arm_planning.collision.constant_contacts import constant_contacts
 from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.posed_scene import PosedScene, deepest
-from arm_planning.collision.specification import CollisionBody, SceneCompiler
+from arm_planning.collision.specification import CollisionBody, CompiledScene, SceneCompiler
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.scene import PlanningScene
@@ -42,6 +42,8 @@ class CollisionModel:
         scene: its surroundings, and the positions of its joints.
         group: name of the group that moves.
         meshes: cuts meshes; pass the same to all models of a robot, because it remembers them.
+        like: a model of the same robot and group in another scene: what is the same is taken over,
+            which is faster. It stays as it is.
 
     Raises:
         PlanningError: there is no such group, a shape or a mesh cannot be used, or a body is
@@ -54,14 +56,17 @@ class CollisionModel:
         scene: PlanningScene,
         group: str | None = None,
         meshes: MeshPieces | None = None,
+        like: "CollisionModel | None" = None,
     ) -> None:
         self._planning_model = model
         self._scene = scene
         self._group = group
         self._meshes = meshes or MeshPieces()
         self._joints = model.joints if group is None else model.group(group).joints
-        compiler = SceneCompiler(model, scene, self._joints, self._meshes)
-        self._posed = PosedScene(compiler.compile())
+        known = None if like is None else like.compiled
+        compiler = SceneCompiler(model, scene, self._joints, self._meshes, known)
+        self._compiled = compiler.compile()
+        self._posed = PosedScene(self._compiled)
         self._model, self._data = self._posed.model, self._posed.data
         self._constant = self._constant_contacts()
 
@@ -69,6 +74,11 @@ class CollisionModel:
     def constant_contacts(self) -> tuple[CollisionContact, ...]:
         """What collides in every state, the deepest first."""
         return self._constant
+
+    @property
+    def compiled(self) -> CompiledScene:
+        """What MuJoCo compiled."""
+        return self._compiled
 
     @property
     def posed(self) -> PosedScene:
@@ -148,7 +158,7 @@ class CollisionModel:
     def with_positions(self, positions: JointPositions) -> "CollisionModel":
         """Return the model of the scene with other positions; joints not named keep theirs."""
         scene = replace(self._scene, positions={**self._scene.positions, **positions})
-        return CollisionModel(self._planning_model, scene, self._group, self._meshes)
+        return CollisionModel(self._planning_model, scene, self._group, self._meshes, self)
 
     def _constant_contacts(self) -> tuple[CollisionContact, ...]:
         self._posed.place(np.zeros(len(self._joints)))

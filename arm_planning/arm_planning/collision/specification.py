@@ -4,8 +4,9 @@ Each is a body of its own. Only the joints that vary are joints; the others are 
 positions. Pairs that may touch are left out, so that any contact is a collision.
 """
 
+import copy
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, product
 
 import mujoco
@@ -16,6 +17,7 @@ from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.collision.scene_difference import same_robot, same_shapes
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
 from arm_planning.robot.model import PlanningModel
@@ -35,6 +37,8 @@ MAX_NAMED_PAIRS = 500
 """MuJoCo looks at each named pair in each state, which takes some 20 ns; unnamed ones it sorts."""
 MEMORY_BYTES = 1 << 23
 """Room for some thousands of contacts."""
+MOST_GONE = 20
+"""A specification is not taken over if more objects than these and those of the scene are gone."""
 PAIR_BYTES = 4
 """What MuJoCo's sorting needs for each pair of bodies: 2 bytes were seen."""
 
@@ -73,12 +77,21 @@ class CompiledScene:
         bodies: by MuJoCo's id; None for the world's own body.
         links: MuJoCo's id of the body of each link.
         coordinates: MuJoCo's coordinates as a function of the joints that vary.
+        scene: what was compiled. It may have objects that are not in the scene that was asked
+            for: in the model they touch nothing.
+        spec: MuJoCo's specification; never changed once it is here.
+        parts: what the specification was made of.
+        assets: the meshes in it, by the id of their corners.
     """
 
     model: mujoco.MjModel
     bodies: tuple[CollisionBody | None, ...]
     links: dict[str, int]
     coordinates: PositionMap
+    scene: PlanningScene
+    spec: mujoco.MjSpec
+    parts: "tuple[_Part, ...]"
+    assets: dict[int, tuple[str, Array]]
 
 
 @dataclass(slots=True)
@@ -114,6 +127,9 @@ class SceneCompiler:
         scene: where everything is.
         varying: active joints that can move; all others stay at their positions in the scene.
         meshes: cuts meshes; keep it, because it remembers them.
+        like: a compiled scene of the same robot with the same joints, if there is one. If only
+            objects differ, what is the same is taken over: MuJoCo copies a specification or a
+            model much faster than it makes them.
     """
 
     def __init__(
@@ -122,21 +138,13 @@ class SceneCompiler:
         scene: PlanningScene,
         varying: Sequence[str],
         meshes: MeshPieces,
+        like: CompiledScene | None = None,
     ) -> None:
         self._robot = model.robot
+        self._varying = varying
+        self._like = like
         self._scene = scene
         self._meshes = meshes
-        names = [joint.name for joint in self._robot.joints_in_tree_order if joint.type.is_scalar]
-        positions = position_map(self._robot, names, varying, scene.positions)
-        moving = (positions.matrix != 0.0).sum(axis=1) > 0
-        built_in = {
-            name: float(positions.constant[row])
-            for row, name in enumerate(names)
-            if not moving[row]
-        }
-        self._coordinates = PositionMap(positions.matrix[moving], positions.constant[moving])
-        self._tree = kinematic_tree(self._robot, built_in=built_in)
-        self._spec = self._tree.spec
         self._links: dict[str, _Part] = {}
         self._attached: list[_Part] = []
         self._objects: list[_Part] = []
@@ -149,24 +157,107 @@ class SceneCompiler:
             PlanningError: a mesh or a shape cannot be used, or a body is attached to a link that
                 does not exist.
         """
-        self._set_options()
-        self._add_links()
-        self._add_attached()
+        if self._like is not None and self._may_take_over(self._like):
+            if self._scene.objects.keys() <= self._like.scene.objects.keys():
+                return self._rearranged(self._like)
+            self._take_over(self._like)
+        else:
+            self._begin()
+            self._add_links()
+            self._add_attached()
+            self._leave_out_allowed_pairs()
         self._add_objects()
-        self._leave_out_allowed_pairs()
+        return self._compiled()
+
+    def _may_take_over(self, like: CompiledScene) -> bool:
+        before, scene = like.scene, self._scene
+        gone = len(before.objects.keys() - scene.objects.keys())
+        return (
+            gone <= max(MOST_GONE, len(scene.objects))
+            and same_robot(before, scene, self._varying)
+            and same_shapes(before.objects, scene.objects)
+        )
+
+    def _rearranged(self, like: CompiledScene) -> CompiledScene:
+        """Return a compiled scene with its objects in other places, or without some of them."""
+        model = copy.copy(like.model)
+        for number, body in enumerate(like.bodies):
+            if body is not None and body.kind is BodyKind.WORLD_OBJECT:
+                thing = self._scene.objects.get(body.name)
+                if thing is not None:
+                    model.body_pos[number], model.body_quat[number] = object_placement(thing)
+        self._set_bits(model, like.bodies)
+        return replace(like, model=model)
+
+    def _take_over(self, like: CompiledScene) -> None:
+        """Begin with a compiled scene's specification."""
+        self._spec, self._coordinates = like.spec.copy(), like.coordinates
+        self._assets = dict(like.assets)
+        for part in like.parts:
+            own = replace(part, body=self._spec.body(part.body.name))
+            if part.kind is BodyKind.ROBOT_LINK:
+                self._links[part.name] = own
+            elif part.kind is BodyKind.ROBOT_ATTACHED:
+                self._attached.append(own)
+            else:
+                self._objects.append(own)
+                thing = self._scene.objects.get(part.name)
+                if thing is not None:
+                    own.body.pos, own.body.quat = object_placement(thing)
+
+    def _begin(self) -> None:
+        names = [joint.name for joint in self._robot.joints_in_tree_order if joint.type.is_scalar]
+        positions = position_map(self._robot, names, self._varying, self._scene.positions)
+        moving = (positions.matrix != 0.0).sum(axis=1) > 0
+        built_in = {
+            name: float(positions.constant[row])
+            for row, name in enumerate(names)
+            if not moving[row]
+        }
+        self._coordinates = PositionMap(positions.matrix[moving], positions.constant[moving])
+        self._tree = kinematic_tree(self._robot, built_in=built_in)
+        self._spec = self._tree.spec
+        self._set_options()
+
+    def _compiled(self) -> CompiledScene:
         parts = tuple(self._parts())
         self._spec.memory = MEMORY_BYTES + PAIR_BYTES * (len(parts) + 1) ** 2
         model = self._spec.compile()
-        _set_bits(model)
         bodies: list[CollisionBody | None] = [None] * model.nbody
         for part in parts:
             bodies[part.body.id] = CollisionBody(part.name, part.kind, part.moves)
+        self._set_bits(model, tuple(bodies))
+        before = {} if self._like is None else self._like.scene.objects
+        objects = {
+            part.name: self._scene.objects.get(part.name) or before[part.name]
+            for part in self._objects
+        }
         return CompiledScene(
             model,
             tuple(bodies),
             {name: part.body.id for name, part in self._links.items()},
             self._coordinates,
+            replace(self._scene, objects=objects),
+            self._spec,
+            parts,
+            self._assets,
         )
+
+    def _set_bits(self, model: mujoco.MjModel, bodies: tuple[CollisionBody | None, ...]) -> None:
+        """Give geoms the bits that decide what they touch; objects that are gone touch nothing."""
+        objects = self._scene.objects
+        is_gone = np.array(
+            [
+                body is not None and body.kind is BodyKind.WORLD_OBJECT and body.name not in objects
+                for body in bodies
+            ]
+        )
+        group = np.where(is_gone[model.geom_bodyid], 0, model.geom_group)
+        model.geom_contype[:] = group & (1 << AFFINITY_SHIFT) - 1
+        model.geom_conaffinity[:] = group >> AFFINITY_SHIFT
+        model.body_contype[:] = model.body_conaffinity[:] = 0
+        np.bitwise_or.at(model.body_contype, model.geom_bodyid, model.geom_contype)
+        np.bitwise_or.at(model.body_conaffinity, model.geom_bodyid, model.geom_conaffinity)
 
     def _set_options(self) -> None:
         option, compiler = self._spec.option, self._spec.compiler
@@ -237,15 +328,34 @@ class SceneCompiler:
         return self._links[attached.link]
 
     def _add_objects(self) -> None:
+        """Add the objects that the specification does not have yet."""
+        known = {part.name for part in self._objects}
+        added: list[_Part] = []
         for thing in self._scene.objects.values():
+            if thing.id in known:
+                continue
             position, quaternion = object_placement(thing)
             body = self._spec.worldbody.add_body(
                 name=f"object {thing.id}", pos=position, quat=quaternion
             )
             part = _Part(thing.id, BodyKind.WORLD_OBJECT, body, moves=False)
-            self._objects.append(part)
+            added.append(part)
             for geom in object_geoms(thing, self._meshes):
                 self._add_geom(part, geom, OF_WORLD)
+        self._leave_out_allowed_objects(added)
+        self._objects += added
+
+    def _leave_out_allowed_objects(self, objects: list[_Part]) -> None:
+        robot = [part for part in (*self._links.values(), *self._attached) if part.geoms]
+        allowed = self._scene.allowed
+        named = {name for pair in allowed.pairs for name in pair} | set(allowed.defaults)
+        for thing in objects:
+            for part in robot:
+                # Of many objects most are nowhere named, and so may touch nothing.
+                known = thing.name in named or part.name in allowed.defaults
+                may = known and allowed.may_touch(thing.name, part.name)
+                if may or thing.name in part.touch:
+                    self._spec.add_exclude(bodyname1=thing.body.name, bodyname2=part.body.name)
 
     def _add_geom(self, part: _Part, geom: Geom, bits: tuple[int, int]) -> None:
         corners = geom.corners
@@ -290,15 +400,6 @@ class SceneCompiler:
             elif first.weld != second.weld:
                 checked.append((first, second))
         self._name_pairs(robot, checked)
-        allowed = self._scene.allowed
-        named = {name for pair in allowed.pairs for name in pair} | set(allowed.defaults)
-        for thing in self._objects:
-            for part in robot:
-                # Of many objects most are nowhere named, and so may touch nothing.
-                known = thing.name in named or part.name in allowed.defaults
-                may = known and allowed.may_touch(thing.name, part.name)
-                if may or thing.name in part.touch:
-                    self._spec.add_exclude(bodyname1=thing.body.name, bodyname2=part.body.name)
 
     def _name_pairs(self, robot: list[_Part], checked: list[tuple[_Part, _Part]]) -> None:
         """Name the pairs of the robot's geoms, if they are few, so that each has its own margin."""
@@ -327,11 +428,3 @@ class SceneCompiler:
 
 def _set_group(geom: mujoco.MjsGeom, bits: tuple[int, int]) -> None:
     geom.group = bits[0] | bits[1] << AFFINITY_SHIFT
-
-
-def _set_bits(model: mujoco.MjModel) -> None:
-    model.geom_contype[:] = model.geom_group & (1 << AFFINITY_SHIFT) - 1
-    model.geom_conaffinity[:] = model.geom_group >> AFFINITY_SHIFT
-    model.body_contype[:] = model.body_conaffinity[:] = 0
-    np.bitwise_or.at(model.body_contype, model.geom_bodyid, model.geom_contype)
-    np.bitwise_or.at(model.body_conaffinity, model.geom_bodyid, model.geom_conaffinity)

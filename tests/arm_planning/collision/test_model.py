@@ -14,7 +14,15 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.scene.shapes import Box, Cone, Cylinder, Plane, Shape, Sphere
+from arm_planning.scene.shapes import (
+    Box,
+    Cone,
+    Cylinder,
+    Plane,
+    Shape,
+    Sphere,
+    TriangleMesh,
+)
 
 
 def collision(shape: str, xyz: str = "0 0 0") -> str:
@@ -340,3 +348,83 @@ def test_a_plane_cannot_be_attached():
     body = AttachedBody(thing("floor", Plane(0.0, 0.0, 1.0, 0.0), 0.0, 0.0, 0.0), "sledge")
     with pytest.raises(PlanningError, match="'floor' has a plane, which cannot be attached"):
         held(body)
+
+
+def changed(before: PlanningScene, rng: np.random.Generator) -> PlanningScene:
+    """A scene after one change of a kind that users make."""
+    objects, names = dict(before.objects), sorted(before.objects)
+    name = str(rng.choice(names)) if names else ""
+    x, y, z = rng.uniform((0.6, -0.4, -0.2), (1.6, 0.4, 0.8))
+    shapes = (Box((0.2, 0.3, 0.1)), Sphere(0.1), Cylinder(0.1, 0.2), tetrahedron(0.2))
+    match rng.integers(5) if names else 0:
+        case 0:
+            new = f"thing{rng.integers(9)}"
+            objects[new] = thing(new, shapes[rng.integers(4)], x, y, z)
+        case 1:
+            moved = RigidTransform((x, y, z), (0.0, 0.0, 0.6, 0.8))
+            objects[name] = replace(objects[name], pose=moved)
+        case 2:
+            del objects[name]
+        case 3:
+            allowed = AllowedCollisions({("mast", name): bool(rng.integers(2))})
+            return replace(before, allowed=allowed)
+        case _:
+            held = CollisionObject("held", RigidTransform(), (PlacedShape(Box((0.1, 0.1, 0.3))),))
+            body = AttachedBody(held, "mast", frozenset({"mast"}))
+            return replace(before, attached={} if before.attached else {"held": body})
+    return replace(before, objects=objects)
+
+
+def tetrahedron(size: float) -> TriangleMesh:
+    corners = size * np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    return TriangleMesh(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_after_changes_a_model_says_what_a_new_one_says(seed):
+    rng = np.random.default_rng(seed)
+    model, now = slider(), scene()
+    for _ in range(40):
+        now = changed(now, rng)
+        model = CollisionModel(model_of(SLIDER, arm=(("slide",), "")), now, like=model)
+        fresh = CollisionModel(model_of(SLIDER, arm=(("slide",), "")), now)
+        assert len(model.constant_contacts) == len(fresh.constant_contacts)
+        for q in rng.uniform(-0.9, 0.5, (8, 1)):
+            found, expected = model.contacts(q), fresh.contacts(q)
+            assert [str(each) for each in found] == [str(each) for each in expected]
+
+
+def test_a_moved_removed_or_returned_object_needs_no_compilation():
+    box = thing("box", Box((0.2, 0.2, 0.2)), 2.0, 0.0, 0.0)
+    first = slider(box, thing("other", Sphere(0.1), 0.0, 2.0, 0.0))
+    robot_model = model_of(SLIDER, arm=(("slide",), ""))
+
+    def after(*objects: CollisionObject) -> CollisionModel:
+        model = CollisionModel(robot_model, scene(*objects), like=first)
+        assert model.compiled.spec is first.compiled.spec
+        return model
+
+    near = replace(box, pose=RigidTransform((1.0, 0.15, 0.0)))
+    assert pairs(after(near), 0.0) == {("sledge", "box")}
+    assert pairs(after(), 0.85) == set()
+    assert pairs(after(box), 0.85) == {("sledge", "box")}
+    assert pairs(first, 0.85) == {("sledge", "box")}
+
+
+def test_a_mesh_that_is_sent_again_is_the_same_mesh():
+    first = slider(thing("wedge", tetrahedron(0.2), 1.0, 0.0, 0.0))
+    again = scene(thing("wedge", tetrahedron(0.2), 1.0, 0.0, 0.5))
+    model = CollisionModel(model_of(SLIDER, arm=(("slide",), "")), again, like=first)
+    assert model.compiled.spec is first.compiled.spec
+    other = scene(thing("wedge", tetrahedron(0.3), 1.0, 0.0, 0.5))
+    model = CollisionModel(model_of(SLIDER, arm=(("slide",), "")), other, like=first)
+    assert model.compiled.spec is not first.compiled.spec
+
+
+def test_a_scene_does_not_grow_with_objects_that_come_and_go():
+    model = slider()
+    for number in range(100):
+        ball = thing(f"ball{number}", Sphere(0.1), 1.0, 0.0, 0.0)
+        model = CollisionModel(model_of(SLIDER, arm=(("slide",), "")), scene(ball), like=model)
+    assert len(model.compiled.bodies) < 40
+    assert pairs(model, 0.0) == {("sledge", "ball99")}
