@@ -25,6 +25,7 @@ from launch_py.substitutions import (
     IfElseSubstitution,
     LaunchConfiguration,
     NotSubstitution,
+    OrSubstitution,
     PathJoinSubstitution,
 )
 
@@ -32,8 +33,10 @@ OWN_POSE = "arm launch arm_controller arm_controller_node.launch.py interface:=r
 IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
 OF_FILE = EqualsSubstitution(LaunchConfiguration("spawn"), "auto")
 IS_ALONE = EqualsSubstitution(LaunchConfiguration("copies"), "1")
+IS_PLANNED = EqualsSubstitution(LaunchConfiguration("planning", default="false"), "true")
+TAKES_POSITIONS = NotSubstitution(OrSubstitution(OF_FILE, IS_PLANNED))
 HAS_CAMERA = NotSubstitution(EqualsSubstitution(LaunchConfiguration("camera", default=""), "none"))
-"""The argument is declared in the included file, which has a camera by default."""
+"""These two arguments are declared in included files."""
 
 
 def by_interface(ros2: Text, ros1: Text) -> IfElseSubstitution:
@@ -53,7 +56,7 @@ def panels() -> list[ReadyPanel]:
                 ("type poses", "publisher_terminal"),
                 ("five poses", "publisher_defined"),
             ],
-            condition=IfCondition(AndSubstitution(is_ros2, NotSubstitution(OF_FILE))),
+            condition=IfCondition(AndSubstitution(is_ros2, TAKES_POSITIONS)),
         ),
         ReadyPanel(
             title="The arm is up",
@@ -143,7 +146,11 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "spawn",
                 default_value=by_interface(
-                    "joint_state_broadcaster,position_controller",
+                    IfElseSubstitution(
+                        IS_PLANNED,
+                        if_value="joint_state_broadcaster,joint_trajectory_controller",
+                        else_value="joint_state_broadcaster,position_controller",
+                    ),
                     f"joint_state_broadcaster,{single}",
                 ),
                 description="controllers to start with the simulation, separated by commas; with "
@@ -157,8 +164,13 @@ def generate_launch_description() -> LaunchDescription:
             ),
             DeclareLaunchArgument(
                 "controller_node",
-                default_value=IfElseSubstitution(IS_ALONE, if_value="true", else_value="false"),
-                description="start arm_controller_node too, without a pose; not with copies",
+                default_value=IfElseSubstitution(
+                    AndSubstitution(IS_ALONE, NotSubstitution(IS_PLANNED)),
+                    if_value="true",
+                    else_value="false",
+                ),
+                description="start arm_controller_node too, without a pose; by default not with "
+                "copies or planning",
                 choices=["true", "false"],
             ),
             OpaqueFunction(function=check_controller_node),

@@ -50,7 +50,8 @@ def robot_arguments() -> list[DeclareLaunchArgument]:
             "controllers",
             default_value="",
             description="parameter file of the controller manager and its controllers, where "
-            "${name} or $(var name) is an argument of the model; by default a position controller",
+            "${name} or $(var name) is an argument of the model; by default a position controller, "
+            "with planning:=true a trajectory controller",
         ),
         DeclareLaunchArgument(
             "spawn",
@@ -183,12 +184,14 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
 
 def single_robot(words: Mapping[str, str]) -> "RobotSetup":
     """Return the robot that the argument `model` names."""
+    from arm_gazebo.launching.default_control import COMMANDER, TRAJECTORY
     from arm_gazebo.launching.robot_setup import set_up_robot
 
     if not words["model"]:
         raise UsageError("launch argument 'model' (URDF or xacro file) is empty: give model:=FILE")
     names = ("model", "model_args", "controllers", "spawn", "package_path")
-    return set_up_robot(*(words[name] for name in names))
+    commander = TRAJECTORY if words["planning"] == "true" else COMMANDER
+    return set_up_robot(*(words[name] for name in names), commander=commander)
 
 
 def robots_of(words: Mapping[str, str]) -> "Mapping[str, PlacedRobot]":

@@ -2,6 +2,7 @@
 
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from launch_py import Action, DeclareLaunchArgument, LaunchDescription, Notified, ReadyPanel
 from launch_py.actions import OpaqueFunction
@@ -35,14 +36,15 @@ def move_group(context: LaunchContext) -> list[Action]:
             configured = move_group_parameters(folder)
         except (PlanningError, DescriptionError) as error:
             raise UsageError(f"moveit_config:={words['moveit_config']}: {error}") from error
-    own = {
+    own: dict[str, Any] = {
         "robot_description": words.get("planning_description", ""),
         "use_sim_time": words["use_sim_time"] == "true",
         "package_path": words.get("package_path", ""),
         "seed": seed(words["planning_seed"]),
         "scene_from_world": words["scene_from_world"] == "true",
-        "pose_in_world": numbers(words.get("pose", "")),
     }
+    if place := numbers(words.get("pose", "")):
+        own["pose_in_world"] = place
     return [
         Node(
             package="arm_planning",

@@ -17,10 +17,19 @@ if TYPE_CHECKING:
 
 BROADCASTER = "joint_state_broadcaster"
 COMMANDER = "position_controller"
-DEFAULT_CONTROLLERS = {
+TRAJECTORY = "joint_trajectory_controller"
+CONTROLLER_TYPES = {
     BROADCASTER: "joint_state_broadcaster/JointStateBroadcaster",
     COMMANDER: "position_controllers/JointGroupPositionController",
+    TRAJECTORY: "joint_trajectory_controller/JointTrajectoryController",
 }
+TRAJECTORY_PARAMETERS = {
+    "command_interfaces": ["position"],
+    "state_interfaces": ["position", "velocity"],
+    "allow_partial_joints_goal": True,
+    "interpolate_from_desired_state": True,
+}
+"""A motion that was planned for an arm leaves out its gripper; each starts at the last command."""
 UPDATE_RATE_HZ = 100
 INTERFACES = ("position", "velocity", "effort")
 PLUGIN = "arm_gazebo/SimulatedHardware"
@@ -98,19 +107,26 @@ def with_hardware(urdf: str, robot: Robot) -> str:
     return _END.sub(lambda end: block + end.group(), urdf, count=1)
 
 
-def default_controllers(joints: HardwareJoints) -> tuple[str, ...]:
-    """Return the default controllers that have a joint to broadcast or to command."""
-    needed = {BROADCASTER: joints.observed, COMMANDER: joints.position_commanded}
-    return tuple(name for name in DEFAULT_CONTROLLERS if needed[name])
+def default_controllers(joints: HardwareJoints, commander: str = COMMANDER) -> tuple[str, ...]:
+    """Return the default controllers that have a joint to broadcast or to command.
+
+    Args:
+        joints: the robot's joints.
+        commander: COMMANDER or TRAJECTORY, which claim the same joints.
+    """
+    needed = {BROADCASTER: joints.observed, commander: joints.position_commanded}
+    return tuple(name for name, whose in needed.items() if whose)
 
 
 def default_parameters(joints: HardwareJoints) -> Mapping[str, Any]:
-    """Return the content of a parameter file with the `default_controllers`."""
-    names = default_controllers(joints)
-    types = {name: {"type": DEFAULT_CONTROLLERS[name]} for name in names}
+    """Return the content of a parameter file with all `default_controllers`."""
+    names = dict.fromkeys((*default_controllers(joints), *default_controllers(joints, TRAJECTORY)))
+    types = {name: {"type": CONTROLLER_TYPES[name]} for name in names}
     content: dict[str, Any] = {
         "controller_manager": {"ros__parameters": {"update_rate": UPDATE_RATE_HZ, **types}}
     }
-    if COMMANDER in names:
-        content[COMMANDER] = {"ros__parameters": {"joints": list(joints.position_commanded)}}
+    commanded = {"joints": list(joints.position_commanded)}
+    if joints.position_commanded:
+        content[COMMANDER] = {"ros__parameters": commanded}
+        content[TRAJECTORY] = {"ros__parameters": {**commanded, **TRAJECTORY_PARAMETERS}}
     return content

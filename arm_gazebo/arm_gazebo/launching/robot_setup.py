@@ -70,6 +70,7 @@ def set_up_robot(
     controllers: str | Mapping[str, Any] = "",
     spawn: str = SPAWN_AUTO,
     package_path: str = "",
+    commander: str = COMMANDER,
 ) -> RobotSetup:
     """Read a robot and add defaults for what it lacks.
 
@@ -81,6 +82,7 @@ def set_up_robot(
         spawn: controllers, separated by commas; "auto" for every controller that can start on
             this robot and whose joints are not claimed yet.
         package_path: folders, separated by colons.
+        commander: the default controller that drives the joints, COMMANDER or TRAJECTORY.
 
     Raises:
         SimSettingsError: an argument is invalid.
@@ -101,12 +103,13 @@ def set_up_robot(
         content = substitute_arguments(path_of(controllers, expansion.finder), expansion.arguments)
     else:
         content = default_parameters(joints)
-        remarks.append(f"no controllers are given: {_describe_defaults(joints)}")
+        remarks.append(f"no controllers are given: {_describe_defaults(joints, commander)}")
         remarks += (
             f"the description names a file for Gazebo's plugin; to use it: controllers:={file}"
             for file in named_files
         )
-    spawned, left_out = _spawned(spawn, content if controllers else None, joints, remarks)
+    defaults = default_controllers(joints, commander)
+    spawned, left_out = _spawned(spawn, content if controllers else None, defaults, remarks)
     required = spawn.strip() != SPAWN_AUTO
     return RobotSetup(text, content, spawned, required, given, tuple(remarks), left_out)
 
@@ -160,13 +163,13 @@ def _completed(
     return description, hardware_joints(robot, parse_hardware_info(description))
 
 
-def _describe_defaults(joints: HardwareJoints) -> str:
-    names = default_controllers(joints)
+def _describe_defaults(joints: HardwareJoints, commander: str) -> str:
+    names = default_controllers(joints, commander)
     clauses = [
         f"the default is {' and '.join(names)}" if names else "there is no default for this robot"
     ]
     if joints.position_commanded:
-        clauses.append(f"{COMMANDER} drives {', '.join(joints.position_commanded)}")
+        clauses.append(f"{commander} drives {', '.join(joints.position_commanded)}")
     if joints.otherwise_commanded:
         clauses.append(
             f"nothing drives {', '.join(joints.otherwise_commanded)}, which the hardware does not "
@@ -185,14 +188,14 @@ def gz_parameter_files(description: RobotDescription) -> list[str]:
 def _spawned(
     spawn: str,
     controllers: Controllers | None,
-    joints: HardwareJoints,
+    defaults: tuple[str, ...],
     remarks: list[str],
 ) -> tuple[tuple[str, ...], str]:
     """Return the controllers to start, and a sentence about those that the suite does not have."""
     if spawn.strip() != SPAWN_AUTO:
         return tuple(name for name in spawn.replace(",", " ").split()), ""
     if controllers is None:
-        return default_controllers(joints), ""
+        return defaults, ""
     from arm_control.manager.registry import controller_types
 
     startable = startable_controllers(controllers, frozenset(controller_types()))

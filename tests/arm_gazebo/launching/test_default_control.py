@@ -83,7 +83,10 @@ def test_parameters_have_the_form_of_a_file():
     [
         (HardwareJoints(), []),
         (HardwareJoints(observed=("turn",)), ["joint_state_broadcaster"]),
-        (HardwareJoints(position_commanded=("turn",)), ["position_controller"]),
+        (
+            HardwareJoints(position_commanded=("turn",)),
+            ["position_controller", "joint_trajectory_controller"],
+        ),
     ],
 )
 def test_a_controller_without_joints_is_not_made_up(joints, names):

@@ -6,7 +6,7 @@ import pytest
 
 from arm_description.errors import ResourceNotFoundError, XacroError
 from arm_description.urdf.description_source import DescriptionSource, source_of
-from arm_gazebo.launching.default_control import has_hardware
+from arm_gazebo.launching.default_control import TRAJECTORY, has_hardware
 from arm_gazebo.launching.robot_setup import folders, set_up_robot
 
 
@@ -34,6 +34,16 @@ def test_default_hardware_and_controllers_are_added_and_reported(bare):
     assert setup.controllers["position_controller"]["ros__parameters"]["joints"] == ["j0", "j1"]
     assert "no <ros2_control> block: a default one commands j0, j1" in setup.remarks[0]
     assert "position_controller drives j0, j1" in setup.remarks[1]
+
+
+def test_a_robot_to_plan_for_gets_a_trajectory_controller(bare):
+    setup = set_up_robot(str(bare), commander=TRAJECTORY)
+    assert setup.spawn == ("joint_state_broadcaster", TRAJECTORY)
+    assert not isinstance(setup.controllers, Path)
+    parameters = setup.controllers[TRAJECTORY]["ros__parameters"]
+    assert parameters["joints"] == ["j0", "j1"]
+    assert parameters["allow_partial_joints_goal"]
+    assert f"{TRAJECTORY} drives j0, j1" in setup.remarks[1]
 
 
 def test_a_file_that_the_description_hands_to_gazebos_plugin_is_named(bare, tmp_path):

@@ -1,0 +1,41 @@
+"""Motion planning for a robot of which there is only a URDF: no controllers, no SRDF, no pose."""
+
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+from programs import Program
+from robots import box, joint, link, robot
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    """The file of an arm of three joints on a column."""
+    file = tmp_path / "arm.urdf"
+    file.write_text(
+        robot(
+            *(link(name, box("visual", "collision")) for name in ("base", "a", "b", "c")),
+            joint("j1", "base", "a", axis="0 0 1", xyz="0 0 0.3"),
+            joint("j2", "a", "b", xyz="0 0 0.3"),
+            joint("j3", "b", "c", xyz="0 0 0.3"),
+        )
+    )
+    return file
+
+
+def test_arm_move_plans_and_moves_it(launch, client, urdf):
+    from sensor_msgs.msg import JointState
+
+    launch(str(urdf), "planning:=true").wait_until_ready()
+    states = client.subscribe(JointState, "/joint_states")
+    words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=0.4", "j2=-0.3"]
+    with closing(Program(words)) as program:
+        assert "moved group 'arm'" in program.succeed()
+    states.clear()
+    state = states.wait_for(1)[-1]
+    positions = dict(zip(state.name, state.position, strict=True))
+    assert np.allclose([positions[j] for j in ("j1", "j2", "j3")], [0.4, -0.3, 0.0], atol=0.01)
