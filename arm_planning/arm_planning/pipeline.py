@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.collision.contact import CollisionContact
+from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
 from arm_planning.constraints.evaluation import ConstraintEvaluator
@@ -105,6 +105,34 @@ class SceneChecker:
     def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
         """Return what touches at positions of the group."""
         return self.model.contacts(q)
+
+
+def check_start(checker: SceneChecker, start: Array) -> None:
+    """Refuse a start from which no motion can be proved free, with advice.
+
+    Args:
+        checker: what is free.
+        start: positions of the group, (n,).
+
+    Raises:
+        PlanningError: START_STATE_IN_COLLISION; the message names what touches.
+    """
+    touching = next(iter(checker.contacts(start)), None)
+    what = str(touching)
+    if touching is None:
+        obstruction = checker.prove(np.vstack([start, start]))
+        if obstruction is None:
+            return
+        touching, what = obstruction.contact, str(obstruction)
+    advice = ""
+    if touching is not None and touching.first_kind == touching.second_kind == BodyKind.ROBOT_LINK:
+        advice = (
+            "; if the two may touch, allow the pair in the SRDF (`arm planning srdf` finds such "
+            "pairs)"
+        )
+    raise PlanningError(
+        MoveItErrorCode.START_STATE_IN_COLLISION, f"the start is in collision: {what}{advice}"
+    )
 
 
 @dataclass(frozen=True, slots=True)

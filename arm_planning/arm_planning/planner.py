@@ -22,7 +22,13 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform
 from arm_planning.kinematics.group_kinematics import GroupKinematics
-from arm_planning.pipeline import SceneChecker, Timing, start_state, timed_and_proved
+from arm_planning.pipeline import (
+    SceneChecker,
+    Timing,
+    check_start,
+    start_state,
+    timed_and_proved,
+)
 from arm_planning.planners.cartesian import JumpLimits, cartesian_path
 from arm_planning.planners.goals import GoalSampler
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
@@ -494,7 +500,12 @@ class Planner:
             request.seed,
             request.attempts,
         )
-        found = planner_for(_planner_of(request)).plan(problem)
+        try:
+            found = planner_for(_planner_of(request)).plan(problem)
+        except PlanningError as error:
+            if error.code is MoveItErrorCode.START_STATE_IN_COLLISION:
+                check_start(checker, start)
+            raise
         timing = Timing(request.velocity_scaling, request.acceleration_scaling)
         return timed_and_proved(found, group, checker, path, timing, deadline=deadline)
 

@@ -148,9 +148,8 @@ class _Sampler:
         upper = np.array([limit.upper if limit else np.inf for limit in limits])
         lower = np.where(np.isfinite(lower), lower, -np.pi)
         upper = np.where(np.isfinite(upper), upper, np.pi)
-        for _ in range(count):
-            share = self.rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, len(lower))
-            yield lower + (upper - lower) * np.clip(share, 0.0, 1.0)
+        shares = self.rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, (count, len(lower)))
+        yield from lower + (upper - lower) * np.clip(shares, 0.0, 1.0)
 
 
 def _touching(collisions: CollisionModel, q: Array) -> set[Pair]:

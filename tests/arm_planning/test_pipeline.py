@@ -162,6 +162,21 @@ def test_a_failure_has_its_code_and_a_sentence(
     assert sentence in response.message
 
 
+@pytest.mark.parametrize(
+    ("elbow", "what"),
+    [(0.0, "apart, closer than the 0.1 mm that the proof of a motion needs"), (0.5, "deep")],
+)
+def test_neighbours_that_touch_and_are_not_allowed_to_are_named(elbow: float, what: str):
+    planner = Planner(MODEL, replace(at(elbow=elbow), allowed=AllowedCollisions()))
+    response = planner.plan(PlanRequest("arm", (joint_goal({"shoulder": 1.0}),)))
+    assert response.code is MoveItErrorCode.START_STATE_IN_COLLISION
+    assert response.message.startswith("the start is in collision: fore with upper, ")
+    assert response.message.endswith(
+        f"{what}; if the two may touch, allow the pair in the SRDF (`arm planning srdf` finds such "
+        "pairs)"
+    )
+
+
 @pytest.mark.parametrize("looks", [0, 1])
 def test_an_interruption_ends_each_step(planner: Planner, looks: int):
     answers = iter([False] * looks)

@@ -37,6 +37,7 @@ class RrtConnectPlanner:
         path, goals = straight_to_any(problem)
         if path is not None:
             return path
+        check_start_is_proved(problem)
         paths = list(self._paths(problem, goals, is_proved=False))
         # Where samples do not tell what is free, each move is proved.
         paths = paths or list(self._paths(problem, goals, is_proved=True))
@@ -100,6 +101,19 @@ def check_start(problem: PlanningProblem) -> None:
                 MoveItErrorCode.START_STATE_VIOLATES_PATH_CONSTRAINTS,
                 f"the start violates the path constraints: {violation}",
             )
+
+
+def check_start_is_proved(problem: PlanningProblem) -> None:
+    """Raise an error if no path from the start can be proved, so that nobody searches for one.
+
+    Raises:
+        PlanningError: START_STATE_IN_COLLISION: something is too close.
+    """
+    obstruction = problem.checker.prove(np.vstack([problem.start, problem.start]))
+    if obstruction is not None:
+        raise PlanningError(
+            MoveItErrorCode.START_STATE_IN_COLLISION, f"the start is in collision: {obstruction}"
+        )
 
 
 def race(problem: PlanningProblem, space: Space, goals: Array) -> Iterator[tuple[int, Array]]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from arm_planning.errors import MissingOmplError, MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
-from arm_planning.planners.search import check_start, shortened_and_proved
+from arm_planning.planners.search import check_start, check_start_is_proved, shortened_and_proved
 from arm_planning.planners.space import space_of
 from arm_planning.planners.straight import straight_to_any
 
@@ -77,6 +77,7 @@ class OmplPlanner:
         path, goals = straight_to_any(problem)
         if path is not None:
             return path
+        check_start_is_proved(problem)
         found = (
             self._search(problem, goals, problem.seed + attempt)
             for attempt in range(problem.attempts)
