@@ -140,7 +140,13 @@ def hull(points: Array) -> Array:
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="hull")
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise PlanningError(
+            MoveItErrorCode.INVALID_OBJECT_NAME,
+            f"the mesh cannot be used: MuJoCo finds no convex hull of a part: {error}",
+        ) from error
     count = int(model.mesh_graph[0])
     corners = model.mesh_vert[model.mesh_graph[2 + count : 2 + 2 * count]].astype(np.float64)
     rotation = np.zeros(9)

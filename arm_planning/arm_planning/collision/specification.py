@@ -222,7 +222,13 @@ class SceneCompiler:
     def _compiled(self) -> CompiledScene:
         parts = tuple(self._parts())
         self._spec.memory = MEMORY_BYTES + PAIR_BYTES * (len(parts) + 1) ** 2
-        model = self._spec.compile()
+        try:
+            model = self._spec.compile()
+        except ValueError as error:
+            raise PlanningError(
+                MoveItErrorCode.COLLISION_CHECKING_UNAVAILABLE,
+                f"MuJoCo cannot use a shape of the robot or the scene: {error}",
+            ) from error
         bodies: list[CollisionBody | None] = [None] * model.nbody
         for part in parts:
             bodies[part.body.id] = CollisionBody(part.name, part.kind, part.moves)

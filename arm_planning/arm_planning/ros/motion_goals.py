@@ -60,8 +60,9 @@ class MotionGoals:
         """
         options = goal.request.planning_options
         moves = self.moves(goal.request)
-        attempts = (options.replan_attempts or DEFAULT_REPLANS) if options.replan and moves else 1
-        outcome = ExecutionOutcome(MoveItErrorCode.PLANNING_FAILED, "no attempt was made")
+        replans = options.replan_attempts if options.replan_attempts > 0 else DEFAULT_REPLANS
+        attempts = replans if options.replan and moves else 1
+        outcome = ExecutionOutcome(MoveItErrorCode.PLANNING_FAILED)
         for _ in range(attempts):
             goal.say("PLANNING")
             planned_in = self.session.monitor.scene

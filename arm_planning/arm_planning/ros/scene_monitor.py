@@ -30,6 +30,7 @@ from arm_planning.ros.convert import robot_state_message
 from arm_planning.ros.convert_scene import frames_in, scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.scene_messages import scene_message
+from arm_planning.ros.usable_meshes import without_unusable
 from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
 from arm_planning.scene.scene import PlanningScene
@@ -150,20 +151,30 @@ class SceneMonitor:
         """Change the present scene; return what was not possible, or "". Any thread."""
         present = self.current()
         with self._lock:
+            before = replace(self._scene, positions=present.positions)
             try:
-                outcome = self.applied(replace(self._scene, positions=present.positions), message)
+                outcome = self.applied(before, message)
             except PlanningError as error:
                 LOGGER.error("%s", error)
                 return str(error)
-            self._scene = outcome.scene
-        for problem in outcome.problems:
+            self._scene, unusable = without_unusable(self._model, before, outcome.scene)
+        problems = (*outcome.problems, *unusable)
+        for problem in problems:
             LOGGER.error("%s", problem)
-        return "; ".join(map(str, outcome.problems))
+        return "; ".join(map(str, problems))
 
     def update(self, change: Callable[[PlanningScene], PlanningScene]) -> None:
-        """Change the present scene by a function; if it raises, nothing changes. Any thread."""
+        """Change the present scene by a function; if it raises, nothing changes. Any thread.
+
+        Raises:
+            PlanningError: a mesh cannot be used.
+        """
         with self._lock:
-            self._scene = change(self.current())
+            before = self.current()
+            scene, unusable = without_unusable(self._model, before, change(before))
+            if unusable:
+                raise unusable[0]
+            self._scene = scene
 
     def _hear_scene(self, message: SceneMessage) -> None:
         self.change(message)

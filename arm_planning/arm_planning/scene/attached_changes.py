@@ -16,6 +16,7 @@ from arm_planning.scene.object_changes import (
 from arm_planning.scene.object_checks import refusal
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.shapes import Plane
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +69,8 @@ def _attached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
     if known is not None and change.object.operation is Operation.APPEND:
         before = replace(known.object, pose=links[known.link].then(known.object.pose))
         body, touching = joined(before, body), touching | known.touch_links
+    if any(isinstance(placed.shape, Plane) for placed in body.shapes):
+        raise refusal(f"object '{name}' has a plane, which cannot be attached to a link")
     pose = links[change.link].inverse().then(body.pose)
     if change.object.shapes and change.object.frame == change.link and known is None:
         # Clients send scenes back: what is given in the link's own frame stays so to the bit.

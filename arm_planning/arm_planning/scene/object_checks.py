@@ -13,6 +13,8 @@ from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
 UNIT = 1e-3
 """How far the norm of a quaternion may be from 1."""
+SMALLEST_M = 1e-6
+"""Least size of a shape, in m: MuJoCo refuses meshes, and so cones, of hardly any area."""
 LARGEST_M = 1e6
 """Largest coordinate and size, in m; beyond it, numbers are too coarse, their squares too large."""
 
@@ -74,8 +76,9 @@ def refusal(sentence: str) -> PlanningError:
 def _size_problem(name: str, sizes: Sequence[float]) -> str:
     if not all(math.isfinite(size) and size > 0.0 for size in sizes):
         return f"{name} with a size that is not positive: {_listed(sizes)}"
-    if max(sizes) > LARGEST_M:
-        return f"{name} with a size beyond {LARGEST_M:g} m: {_listed(sizes)}"
+    if min(sizes) < SMALLEST_M or max(sizes) > LARGEST_M:
+        bounds = f"{SMALLEST_M:g} m or above {LARGEST_M:g} m"
+        return f"{name} with a size below {bounds}: {_listed(sizes)}"
     return ""
 
 
@@ -102,6 +105,11 @@ def _mesh_problem(mesh: TriangleMesh) -> str:
         return "mesh with a vertex that is not finite"
     if np.abs(vertices).max() > LARGEST_M:
         return f"mesh with a vertex beyond {LARGEST_M:g} m"
+    corners = vertices[triangles]
+    sides = corners[:, 1:] - corners[:, :1]
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2.0
+    if area < SMALLEST_M**2:
+        return "mesh whose triangles have hardly any area"
     return ""
 
 

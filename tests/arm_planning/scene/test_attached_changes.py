@@ -8,6 +8,7 @@ from arm_planning.scene.attached_changes import AttachedChange, change_attached
 from arm_planning.scene.object_changes import ObjectChange, Operation
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.shapes import Plane
 
 BOX = CollisionObject("box", at(1), (CUBE,), {"top": at(z=0.1)}, ("key", "db"))
 WORLD = replace(SCENE, objects={"box": BOX}, colors={"box": (1, 0, 0, 1)})
@@ -132,3 +133,9 @@ def test_what_is_not_possible_is_refused(
     with pytest.raises(PlanningError) as caught:
         changed(scene, change)
     assert (caught.value.code, str(caught.value)) == (code, sentence)
+
+
+def test_a_plane_cannot_be_attached():
+    change = AttachedChange(add("floor", shapes=(PlacedShape(Plane(0, 0, 1, 0)),)), "hand")
+    with pytest.raises(PlanningError, match="'floor' has a plane, which cannot be attached"):
+        changed(SCENE, change)

@@ -151,7 +151,8 @@ def test_what_is_not_possible_is_refused(change: ObjectChange, sentence: str):
         (Cylinder(1, -2), "cylinder with a size that is not positive: -2, 1"),
         (Cone(math.inf, 2), "cone with a size that is not positive: 2, inf"),
         (Plane(0, 0, 0, 1), "plane without a normal: 0, 0, 0, 1"),
-        (Sphere(1e7), "sphere with a size beyond 1e+06 m: 1e+07"),
+        (Sphere(1e7), "sphere with a size below 1e-06 m or above 1e+06 m: 1e+07"),
+        (Box((1, 1e-9, 1)), "box with a size below 1e-06 m or above 1e+06 m: 1, 1e-09, 1"),
         (
             Plane(0, 0, 1e-300, 1),
             "plane that is too far away, or whose normal's length is far from 1: 0, 0, 1e-300, 1",
@@ -161,6 +162,7 @@ def test_what_is_not_possible_is_refused(change: ObjectChange, sentence: str):
             "plane that is too far away, or whose normal's length is far from 1: 0, 0, 1, 1e+300",
         ),
         (TriangleMesh(SQUARE * 1e7, np.array([(0, 1, 2)])), "mesh with a vertex beyond 1e+06 m"),
+        (TriangleMesh(SQUARE, np.array([(0, 1, 1)])), "mesh whose triangles have hardly any area"),
         (TriangleMesh(SQUARE, np.zeros((0, 3), int)), "mesh without triangles"),
         (
             TriangleMesh(SQUARE, np.array([(0, 1, 3)])),
