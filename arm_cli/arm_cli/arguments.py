@@ -117,7 +117,10 @@ class VerbFunction:
 
 
 def verb(*arguments: Declaration, epilog: str | None = None) -> Callable[[Run], VerbFunction]:
-    """Declare a verb: decorates the function that runs it.
+    """Declare a verb: decorates the function that runs it, and may return an exit code.
+
+    Whatever the user can mend, the function raises as an `ArmCliError`, which becomes one line on
+    stderr (see `run_reporting_errors`). Its docstring does not list these errors.
 
     Args:
         arguments: its arguments, in the order of the help.

@@ -50,12 +50,7 @@ MEMORY_LIMIT_MB = 2000.0
     ),
 )
 def check(options: argparse.Namespace) -> int:
-    """Print the report; return 1 if the robot or world cannot be simulated.
-
-    Raises:
-        CommandUsageError: no file is named.
-        ArmCliError: the file cannot be read, or the check takes too much time or memory.
-    """
+    """Print the report; return 1 if the robot or world cannot be simulated."""
     words = {
         name: getattr(options, name)
         for name in ("file", "arguments", "package_path", "strict", "json", "urdf", "memory_limit")

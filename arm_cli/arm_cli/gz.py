@@ -88,13 +88,7 @@ SENSORS = {
     Argument("-d", "--duration", type=float, metavar="S", help="end after that time"),
 )
 def topic(options: argparse.Namespace) -> None:
-    """List topics, show a topic's publishers, or print its messages.
-
-    Raises:
-        CommandUsageError: none of -l, -i, -e is given, or a topic is missing.
-        NoSuchNameError: there is no such topic.
-        UnansweredError: no simulation answers.
-    """
+    """List topics, show a topic's publishers, or print its messages."""
     if not (options.list or options.info or options.echo):
         raise CommandUsageError("give -l, -i -t NAME or -e -t NAME")
     if not options.list and not options.topic:
@@ -210,13 +204,7 @@ SERVICES = {
     Flag("-p", "--pose", help="show its pose (always on)"),
 )
 def model(options: argparse.Namespace) -> None:
-    """List the models, or print the pose of one.
-
-    Raises:
-        CommandUsageError: neither --list nor -m is given.
-        NoSuchNameError: there is no such model.
-        UnansweredError: no simulation answers.
-    """
+    """List the models, or print the pose of one."""
     if not (options.list or options.model):
         raise CommandUsageError("give --list, or -m NAME")
     with ask_simulation() as simulation:
@@ -256,13 +244,7 @@ def pose_lines(name: str, number: int, pose: Any) -> list[str]:
     ),
 )
 def service(options: argparse.Namespace) -> None:
-    """List the services, or print what to use instead of one.
-
-    Raises:
-        CommandUsageError: neither -l nor -s is given, or a service is called.
-        NoSuchNameError: there is no such service.
-        UnansweredError: no simulation answers.
-    """
+    """List the services, or print what to use instead of one."""
     if not (options.list or options.service):
         raise CommandUsageError("give -l, or -s NAME")
     with ask_simulation() as simulation:

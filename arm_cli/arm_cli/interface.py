@@ -43,11 +43,7 @@ def wanted_kinds(options: argparse.Namespace) -> tuple[str, ...]:
 
 @verb(Argument("package_name", help="such as std_msgs", completer=interface_packages), *ONLY, JSON)
 def package(options: argparse.Namespace) -> None:
-    """Print the names of the types.
-
-    Raises:
-        NoSuchNameError: there is no such package, or it has no types.
-    """
+    """Print the names of the types."""
     index = InterfaceIndex()
     package = options.package_name
     packages = index.packages()
@@ -79,12 +75,7 @@ def packages(options: argparse.Namespace) -> None:
     ),
 )
 def show(options: argparse.Namespace) -> None:
-    """Print the definition.
-
-    Raises:
-        NoSuchNameError: there is no such type.
-        CommandUsageError: stdin does not hold a name.
-    """
+    """Print the definition."""
     name = sys.stdin.readline().strip() if options.type == "-" else options.type
     if not name:
         raise CommandUsageError("stdin does not hold the name of a type")
@@ -99,11 +90,7 @@ def show(options: argparse.Namespace) -> None:
     Flag("--no-quotes", help="print no quotes around the text"),
 )
 def proto(options: argparse.Namespace) -> None:
-    """Print the type's fields (a service's request, an action's goal) with their default values.
-
-    Raises:
-        NoSuchNameError: there is no such type.
-    """
+    """Print the type's fields (a service's request, an action's goal) with their default values."""
     type_ = InterfaceIndex().find(options.type)
     from arm_cli.messages.text import to_yaml
 

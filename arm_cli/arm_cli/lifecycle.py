@@ -82,12 +82,7 @@ def nodes(options: argparse.Namespace) -> None:
     JSON,
 )
 def get(options: argparse.Namespace) -> None:
-    """Print the states.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no lifecycle.
-        UnansweredError: the named node does not answer.
-    """
+    """Print the states."""
     states = {}
     with connect() as session:
         from lifecycle_msgs.srv import GetState
@@ -117,12 +112,7 @@ def get(options: argparse.Namespace) -> None:
 
 @verb(*NODE, Flag("-a", "--all", help="include those that its state does not allow"))
 def list_transitions(options: argparse.Namespace) -> None:
-    """Print the transitions.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no lifecycle.
-        UnansweredError: the node does not answer.
-    """
+    """Print the transitions."""
     with connect() as session:
         from lifecycle_msgs.srv import GetAvailableTransitions
 
@@ -145,13 +135,7 @@ def list_transitions(options: argparse.Namespace) -> None:
 
 @verb(*NODE, Argument("transition", help="its label, such as configure, or its id"))
 def set_state(options: argparse.Namespace) -> None:
-    """Request the transition and print its success.
-
-    Raises:
-        NoSuchNameError: there is no such node, it has no lifecycle, or its state does not allow
-            the transition.
-        UnansweredError: the node does not answer, or its transition failed.
-    """
+    """Request the transition and print its success."""
     with connect() as session:
         from lifecycle_msgs.srv import ChangeState, GetAvailableTransitions
 

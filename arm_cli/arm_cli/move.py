@@ -54,14 +54,7 @@ EXTRA_TIME_S = 5.0
     JSON,
 )
 def move(options: argparse.Namespace) -> None:
-    """Plan and move; print what was planned.
-
-    Raises:
-        CommandUsageError: an argument is wrong.
-        NoSuchNameError: there is no such group, state or joint.
-        UnansweredError: no move_group runs, or it does not answer.
-        MotionFailedError: there is no plan, or the robot did not get there.
-    """
+    """Plan and move; print what was planned."""
     if options.pose is None and options.state is None and options.joints is None:
         raise CommandUsageError(
             "say where to: --pose X Y Z, --state NAME or --joints JOINT=POSITION"

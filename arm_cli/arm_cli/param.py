@@ -79,12 +79,7 @@ def _pattern(text: str) -> re.Pattern[str]:
     JSON,
 )
 def list_parameters(options: argparse.Namespace) -> None:
-    """Print the names of the parameters.
-
-    Raises:
-        NoSuchNameError: there is no such node.
-        UnansweredError: the named node does not answer.
-    """
+    """Print the names of the parameters."""
     found: dict[str, dict[str, str]] = {}
     with connect() as session:
         from arm_cli.ros.graph import Graph
@@ -124,12 +119,7 @@ def list_parameters(options: argparse.Namespace) -> None:
 
 @verb(*NODE, PARAMETER, Flag("--hide-type", help="print only the value"), JSON)
 def get(options: argparse.Namespace) -> None:
-    """Print the value.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no such parameter.
-        UnansweredError: the node does not answer.
-    """
+    """Print the value."""
     with open_parameters(options.node_name) as parameters:
         from arm_cli.ros.parameters import LABELS, NOT_SET, content_of, read_value
 
@@ -159,12 +149,7 @@ def get(options: argparse.Namespace) -> None:
     ),
 )
 def describe(options: argparse.Namespace) -> None:
-    """Print the descriptions of parameters.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no such parameter.
-        UnansweredError: the node does not answer.
-    """
+    """Print the descriptions of parameters."""
     with open_parameters(options.node_name) as parameters:
         parameters.check_known(*options.parameter_names)
         descriptors = parameters.descriptors(options.parameter_names)
@@ -201,12 +186,7 @@ def _print(descriptor: Any) -> None:
     ),
 )
 def set_parameter(options: argparse.Namespace) -> int:
-    """Set the value; the exit code is 1 if the node refuses it.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no such parameter.
-        UnansweredError: the node does not answer.
-    """
+    """Set the value; the exit code is 1 if the node refuses it."""
     with open_parameters(options.node_name) as parameters:
         from rcl_interfaces.msg import ParameterValue
 
@@ -220,12 +200,7 @@ def set_parameter(options: argparse.Namespace) -> int:
 
 @verb(*NODE, PARAMETER)
 def delete(options: argparse.Namespace) -> int:
-    """Remove the parameter; the exit code is 1 if the node refuses.
-
-    Raises:
-        NoSuchNameError: there is no such node, or it has no such parameter.
-        UnansweredError: the node does not answer.
-    """
+    """Remove the parameter; the exit code is 1 if the node refuses."""
     with open_parameters(options.node_name) as parameters:
         from rcl_interfaces.msg import ParameterValue
 
@@ -262,13 +237,7 @@ def _report(result: "SetParametersResult", success: str, failure: str) -> int:
     JSON,
 )
 def dump(options: argparse.Namespace) -> None:
-    """Print the parameters in the form that `arm param load` and launch files read.
-
-    Raises:
-        NoSuchNameError: there is no such node.
-        UnansweredError: the node does not answer.
-        CommandUsageError: the file cannot be written.
-    """
+    """Print the parameters in the form that `arm param load` and launch files read."""
     with open_parameters(options.node_name) as parameters:
         from arm_cli.ros.parameters import read_value
 
@@ -304,13 +273,7 @@ def _save(text: str, folder: Path, node: str) -> None:
     Flag("--no-use-wildcard", help="ignore the file's section '/**'"),
 )
 def load(options: argparse.Namespace) -> int:
-    """Set the parameters one by one; the exit code is 1 if the node refuses one.
-
-    Raises:
-        NoSuchNameError: there is no such node or file, or the file has no section for the node.
-        MessageError: the file is not a parameter file.
-        UnansweredError: the node does not answer.
-    """
+    """Set the parameters one by one; the exit code is 1 if the node refuses one."""
     node = absolute_name(options.node_name)
     sections = ([] if options.no_use_wildcard else ["/**"]) + [node]
     contents = read_parameters(Path(options.parameter_file), sections)

@@ -31,12 +31,7 @@ MIN_SAMPLES = 10_000
     epilog="example: arm planning srdf my_robot.urdf -o my_robot.srdf",
 )
 def srdf(options: argparse.Namespace) -> None:
-    """Print or write the SRDF.
-
-    Raises:
-        CommandUsageError: there are too few samples, or the output already exists.
-        ArmCliError: the file cannot be read or is not a robot, or the output cannot be written.
-    """
+    """Print or write the SRDF."""
     if options.samples < MIN_SAMPLES:
         raise CommandUsageError(
             f"{options.samples} samples are too few to tell which links never touch; the least is "

@@ -40,14 +40,7 @@ if TYPE_CHECKING:
     JSON,
 )
 def call(options: argparse.Namespace) -> None:
-    """Call the service and print its answer.
-
-    Raises:
-        NoSuchNameError: there is no such type.
-        CommandUsageError: the service has another type.
-        MessageError: the values do not fit the request.
-        UnansweredError: there is no service, or no answer, within `--timeout`.
-    """
+    """Call the service and print its answer."""
     type_ = InterfaceIndex().find(options.service_type, ("srv",))
     from arm_cli.messages.filling import fill_message, read_yaml
 
@@ -126,13 +119,7 @@ QUEUE = 100
     "for example with rclpy's configure_introspection().",
 )
 def echo(options: argparse.Namespace) -> None:
-    """Print the events of the service until a signal or the timeout.
-
-    Raises:
-        NoSuchNameError: there is no such service or type.
-        UnansweredError: there is no event within `--timeout`.
-        StoppedError: a signal arrived.
-    """
+    """Print the events of the service until a signal or the timeout."""
     from arm_cli.messages.text import to_plain, to_yaml
 
     count = 0

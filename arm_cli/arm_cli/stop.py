@@ -30,11 +30,7 @@ ANSWER_TIMEOUT_S = 10.0
     ),
 )
 def stop(options: argparse.Namespace) -> None:
-    """Stop or release the robots, and print what each service answers.
-
-    Raises:
-        UnansweredError: there is no robot, or one does not answer or refuses.
-    """
+    """Stop or release the robots, and print what each service answers."""
     with connect() as session:
         robots = _EmergencyStop(session, engaged=not options.release)
         if options.namespace is not None:

@@ -38,11 +38,7 @@ if TYPE_CHECKING:
     ),
 )
 def sweep(options: argparse.Namespace) -> int:
-    """Make the runs, write the tables; return 1 if a run has failed.
-
-    Raises:
-        ArmCliError: the study cannot be read or run.
-    """
+    """Make the runs, write the tables; return 1 if a run has failed."""
     from arm_sim.errors import ArmSimError
     from arm_sim.sweep.journal import Journal
     from arm_sim.sweep.study import read_study

@@ -15,11 +15,7 @@ from arm_cli.output import print_json, say
 
 @verb(Argument("bag", type=Path, help="folder of the bag"), JSON)
 def size(options: argparse.Namespace) -> None:
-    """Print the size.
-
-    Raises:
-        NoSuchNameError: the folder has no recording.
-    """
+    """Print the size."""
     files = list(options.bag.glob("*.mcap"))
     if not files:
         raise NoSuchNameError(f"{options.bag} has no recording")

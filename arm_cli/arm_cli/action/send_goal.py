@@ -36,14 +36,7 @@ if TYPE_CHECKING:
     ),
 )
 def send_goal(options: argparse.Namespace) -> None:
-    """Send the goal and print its progress and result; Ctrl-C cancels it.
-
-    Raises:
-        NoSuchNameError: there is no such type.
-        CommandUsageError: the action has another type.
-        MessageError: the values do not fit the goal.
-        UnansweredError: there is no server, or no result, within `--timeout`.
-    """
+    """Send the goal and print its progress and result; Ctrl-C cancels it."""
     type_ = InterfaceIndex().find(options.action_type, ("action",))
     from arm_cli.messages.filling import fill_message, read_yaml
 

@@ -67,11 +67,7 @@ class Output:
     ),
 )
 def convert(options: argparse.Namespace) -> None:
-    """Write the bags.
-
-    Raises:
-        BagError: a bag or the options file cannot be read, or a bag cannot be written.
-    """
+    """Write the bags."""
     from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 
     outputs = read_outputs(Path(options.output_options))
@@ -225,11 +221,7 @@ def _messages(readers: list["BagReader"], topics: Mapping[str, object]) -> Itera
     Argument("storage_id", nargs="?", choices=("mcap",), help=argparse.SUPPRESS),
 )
 def reindex(options: argparse.Namespace) -> None:
-    """Write metadata.yaml.
-
-    Raises:
-        BagError: there are no files, the files cannot be read, or metadata.yaml cannot be written.
-    """
+    """Write metadata.yaml."""
     from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
     from arm_cli.bag_format.writer import write_metadata
 

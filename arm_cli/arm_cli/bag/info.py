@@ -45,11 +45,7 @@ def existing_path(text: str) -> Path:
     JSON,
 )
 def info(options: argparse.Namespace) -> None:
-    """Print the contents of a bag.
-
-    Raises:
-        BagError: the bag cannot be read.
-    """
+    """Print the contents of a bag."""
     from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 
     with BagReader(options.bag_path) as reader:

@@ -107,13 +107,7 @@ def _duration(text: str) -> float:
     Flag("--disable-keyboard-controls", help=argparse.SUPPRESS),
 )
 def play(options: argparse.Namespace) -> None:
-    """Play until the end or until a signal arrives.
-
-    Raises:
-        NoSuchNameError: the bag has no such topic.
-        BagError: the bag or the overrides cannot be read, or there is nothing to play.
-        CommandUsageError: a remapping is not of the form OLD:=NEW.
-    """
+    """Play until the end or until a signal arrives."""
     from arm_cli.bag_format.offered_qos import read_qos_overrides
     from arm_cli.bag_format.reader import BagReader, warn_if_unfinished
 

@@ -138,12 +138,7 @@ _PRESETS = {"none": "none", "fastwrite": "none", "zstd_fast": "zstd", "zstd_smal
     ),
 )
 def record(options: argparse.Namespace) -> None:
-    """Record until a signal arrives.
-
-    Raises:
-        BagError: nothing is selected, the overrides are malformed, or the bag cannot be written.
-        CommandUsageError: a given name is not a valid topic name, or --duration is given.
-    """
+    """Record until a signal arrives."""
     if options.duration is not None:
         raise CommandUsageError(
             f"no option --duration: end a recording with Ctrl-C, or after {options.duration} s "

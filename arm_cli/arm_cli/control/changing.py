@@ -41,11 +41,7 @@ _FAILING = {  # The words of ros2 control, which calls every step to inactive "s
     *MANAGER,
 )
 def load_controller(options: argparse.Namespace) -> int:
-    """Load the controller; the exit code is 1 if a step fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Load the controller; the exit code is 1 if a step fails."""
     name, state = options.controller_name, options.set_state
     with ask_manager(options) as manager:
         if name in manager.states():
@@ -88,11 +84,7 @@ def _give_parameters(manager: "ControllerManagerClient", options: argparse.Names
 
 @verb(CONTROLLER, *MANAGER)
 def unload_controller(options: argparse.Namespace) -> int:
-    """Unload the controller; the exit code is 1 if that fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Unload the controller; the exit code is 1 if that fails."""
     name = options.controller_name
     with ask_manager(options) as manager:
         if not manager.unload(name):
@@ -104,11 +96,7 @@ def unload_controller(options: argparse.Namespace) -> int:
 
 @verb(CONTROLLER, *MANAGER)
 def cleanup_controller(options: argparse.Namespace) -> int:
-    """Clean up the controller; the exit code is 1 if that fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Clean up the controller; the exit code is 1 if that fails."""
     name = options.controller_name
     with ask_manager(options) as manager:
         if not manager.cleanup(name):
@@ -122,11 +110,7 @@ def cleanup_controller(options: argparse.Namespace) -> int:
 
 @verb(CONTROLLER, Argument("state", choices=("unconfigured", "inactive", "active")), *MANAGER)
 def set_controller_state(options: argparse.Namespace) -> int:
-    """Bring the controller to the state; the exit code is 1 if that fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Bring the controller to the state; the exit code is 1 if that fails."""
     name = options.controller_name
     with ask_manager(options) as manager:
         states = manager.states()
@@ -175,11 +159,7 @@ def _impossible(name: str, current: str, wanted: str) -> str:
     *MANAGER,
 )
 def switch_controllers(options: argparse.Namespace) -> int:
-    """Switch controllers; the exit code is 1 if the manager refuses.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Switch controllers; the exit code is 1 if the manager refuses."""
     strictness = STRICT if options.strict else BEST_EFFORT if options.best_effort else DEFAULT
     with ask_manager(options) as manager:
         response = manager.switch(
@@ -201,11 +181,7 @@ def switch_controllers(options: argparse.Namespace) -> int:
 
 @verb(Flag("--force-kill", help="deactivate and unload controllers first"), *MANAGER)
 def reload_controller_libraries(options: argparse.Namespace) -> int:
-    """Reload the controllers' code; the exit code is 1 if that fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Reload the controllers' code; the exit code is 1 if that fails."""
     with ask_manager(options) as manager:
         if not manager.reload_libraries(options.force_kill):
             return refuse("Error reloading libraries, check controller_manager logs")
@@ -223,11 +199,7 @@ def reload_controller_libraries(options: argparse.Namespace) -> int:
     *MANAGER,
 )
 def set_hardware_component_state(options: argparse.Namespace) -> int:
-    """Set the component's state; the exit code is 1 if that fails.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Set the component's state; the exit code is 1 if that fails."""
     name, state = options.hardware_component_name, options.state
     with ask_manager(options) as manager:
         response = manager.set_component_state(name, state)

@@ -52,11 +52,7 @@ _COLOURS = {"active": ACTIVE, "inactive": INACTIVE, "unconfigured": UNCONFIGURED
     *MANAGER,
 )
 def list_controllers(options: argparse.Namespace) -> None:
-    """Print the controllers, newest first.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Print the controllers, newest first."""
     with ask_manager(options) as manager:
         controllers = manager.controllers()
     if options.json:
@@ -95,11 +91,7 @@ def _is_wanted(part: str, options: argparse.Namespace) -> bool:
 
 @verb(JSON, *MANAGER)
 def list_controller_types(options: argparse.Namespace) -> None:
-    """Print the types and their base classes.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Print the types and their base classes."""
     with ask_manager(options) as manager:
         types = manager.controller_types()
     if options.json:
@@ -111,11 +103,7 @@ def list_controller_types(options: argparse.Namespace) -> None:
 
 @verb(Flag("-v", "--verbose", help="also show state interfaces and data types"), JSON, *MANAGER)
 def list_hardware_components(options: argparse.Namespace) -> None:
-    """Print the components.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Print the components."""
     with ask_manager(options) as manager:
         components = manager.hardware_components()
     if options.json:
@@ -163,11 +151,7 @@ def claimed(interface: Any) -> str:
 
 @verb(JSON, *MANAGER)
 def list_hardware_interfaces(options: argparse.Namespace) -> None:
-    """Print the interfaces, sorted.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-    """
+    """Print the interfaces, sorted."""
     with ask_manager(options) as manager:
         interfaces = manager.hardware_interfaces()
     if options.json:
@@ -189,12 +173,7 @@ STATES, COMMANDS = "state interfaces", "command interfaces"
 
 @verb(Flag("--save", help="accepted; the picture is always saved"), *MANAGER)
 def view_controller_chains(options: argparse.Namespace) -> None:
-    """Write the picture and its graphviz source.
-
-    Raises:
-        UnansweredError: the manager does not answer.
-        CommandUsageError: the file cannot be written.
-    """
+    """Write the picture and its graphviz source."""
     with ask_manager(options) as manager:
         controllers = manager.controllers()
     path = write_picture(controller_graph(controllers), Path(STEM))

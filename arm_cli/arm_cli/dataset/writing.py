@@ -91,11 +91,7 @@ def _add_bag(writer: "DatasetWriter", bag: Path, task: str, wanted: DatasetOptio
 
 @verb(Argument("folder", type=Path, metavar="DIR", help="a dataset in LeRobot's format"))
 def check(options: argparse.Namespace) -> int:
-    """Print the faults of a dataset; return 1 if it has any.
-
-    Raises:
-        BagError: the dataset cannot be read, or the extra is not installed.
-    """
+    """Print the faults of a dataset; return 1 if it has any."""
     from arm_sim.errors import ArmSimError
 
     try:
@@ -133,11 +129,7 @@ NODE_NAME = "dataset_recorder"
     *DATASET,
 )
 def record(options: argparse.Namespace) -> None:
-    """Record a bag for each episode beside the dataset, then write the dataset.
-
-    Raises:
-        ArmCliError: the folder exists, or the recording is not a dataset.
-    """
+    """Record a bag for each episode beside the dataset, then write the dataset."""
     if options.episodes > 1 and options.duration is None:
         raise ArmCliError("several episodes need --duration")
     bags = options.output.with_name(f"{options.output.name}_bags")

@@ -181,11 +181,7 @@ topic_type, service_type, action_type = _type(TOPICS), _type(SERVICES), _type(AC
 
 @verb(name_argument(TOPICS), Flag("-v", "--verbose", help="show every endpoint with its QoS"), JSON)
 def topic_info(options: argparse.Namespace) -> None:
-    """Print the topic's type and the numbers of its publishers and subscriptions.
-
-    Raises:
-        NoSuchNameError: there is no such topic.
-    """
+    """Print the topic's type and the numbers of its publishers and subscriptions."""
     with settled_graph() as graph:
         types = graph.find_topic(options.topic_name)
         topic = absolute_name(options.topic_name)
@@ -209,11 +205,7 @@ def topic_info(options: argparse.Namespace) -> None:
 
 @verb(name_argument(SERVICES), JSON)
 def service_info(options: argparse.Namespace) -> None:
-    """Print the service's type and its numbers of clients and servers.
-
-    Raises:
-        NoSuchNameError: there is no such service.
-    """
+    """Print the service's type and its numbers of clients and servers."""
     name = absolute_name(options.service_name)
     with settled_graph() as graph:
         types = graph.find_service(name)
@@ -233,11 +225,7 @@ def service_info(options: argparse.Namespace) -> None:
     JSON,
 )
 def action_info(options: argparse.Namespace) -> None:
-    """Print the action's clients and servers.
-
-    Raises:
-        NoSuchNameError: there is no such action.
-    """
+    """Print the action's clients and servers."""
     name = absolute_name(options.action_name)
     with settled_graph() as graph:
         types = graph.find_action(name)
@@ -301,11 +289,7 @@ def node_list(options: argparse.Namespace) -> None:
     JSON,
 )
 def node_info(options: argparse.Namespace) -> None:
-    """Print the node's topics, services and actions.
-
-    Raises:
-        NoSuchNameError: there is no such node.
-    """
+    """Print the node's topics, services and actions."""
     with settled_graph() as graph:
         node = graph.find_node(options.node_name)
         parts = {

@@ -29,11 +29,7 @@ SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".md": "mermaid", ".dot": "dot", "
     Flag("-a", "--all", help="include hidden nodes and topics, /rosout and /parameter_events"),
 )
 def graph(options: argparse.Namespace) -> None:
-    """Print or write the graph.
-
-    Raises:
-        CommandUsageError: the file cannot be written, or its suffix names no format.
-    """
+    """Print or write the graph."""
     suffix = Path(options.output).suffix if options.output else ""
     if suffix and not options.format and suffix not in SUFFIXES:
         raise CommandUsageError(

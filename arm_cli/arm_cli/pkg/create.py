@@ -52,11 +52,7 @@ NO_LICENSE = "TODO: License declaration"
     Argument("--library-name", metavar="LIBRARY", help="also create an empty module"),
 )
 def create(options: argparse.Namespace) -> None:
-    """Write the package and list its files.
-
-    Raises:
-        CommandUsageError: a name is not valid, or the folder already exists.
-    """
+    """Write the package and list its files."""
     refuse_build_type(options.build_type)
     name = options.package_name
     node = options.node_name or f"{name}_node"

@@ -66,10 +66,6 @@ def deps(options: argparse.Namespace) -> int:
     """Print the dependencies, and install missing ones if requested.
 
     Returns 1 if any is still missing.
-
-    Raises:
-        NoSuchNameError: there is no such folder, or no package in it.
-        CommandUsageError: a package.xml is malformed.
     """
     needed = needs_of(options.paths)
     found = [describe(name, by) for name, by in sorted(needed.items())]

@@ -38,11 +38,7 @@ def list_packages(options: argparse.Namespace) -> None:
     Flag("--share", help="print its share folder instead"),
 )
 def prefix(options: argparse.Namespace) -> None:
-    """Print the folder.
-
-    Raises:
-        NoSuchNameError: there is no such package; the message suggests similar names.
-    """
+    """Print the folder."""
     packages = Packages(os.environ)
     find = packages.share_folder if options.share else packages.prefix
     try:
@@ -62,11 +58,7 @@ def prefix(options: argparse.Namespace) -> None:
     JSON,
 )
 def executables(options: argparse.Namespace) -> None:
-    """Print package and name of each executable.
-
-    Raises:
-        NoSuchNameError: there is no such package; the message suggests similar names.
-    """
+    """Print package and name of each executable."""
     packages = Packages(os.environ)
     found = packages.executables()
     wanted = options.package_name
@@ -96,11 +88,7 @@ def _path(packages: Packages, package: str, name: str) -> Path:
     Argument("-t", "--tag", help="print only the text of this element, such as version"),
 )
 def xml(options: argparse.Namespace) -> None:
-    """Print the manifest, or one of its elements.
-
-    Raises:
-        NoSuchNameError: there is no such package, manifest or element.
-    """
+    """Print the manifest, or one of its elements."""
     try:
         path = Packages(os.environ).share_folder(options.package_name) / MANIFEST
     except LaunchError as error:

@@ -36,11 +36,7 @@ SCOPE_TIME, SCOPE_STATE, SCOPE_SPAWNED, SCOPE_ALL = 1, 2, 4, 255
     NAMESPACE,
 )
 def spawn(options: argparse.Namespace) -> None:
-    """Spawn the entity and print its name.
-
-    Raises:
-        SimulationRefusedError: the entity cannot be spawned.
-    """
+    """Spawn the entity and print its name."""
     with ask_simulation(options.namespace) as simulation:
         from geometry_msgs.msg import PoseStamped
         from simulation_interfaces.msg import Resource
@@ -66,11 +62,7 @@ def spawn(options: argparse.Namespace) -> None:
     NAMESPACE,
 )
 def delete(options: argparse.Namespace) -> None:
-    """Delete the entities, one after another.
-
-    Raises:
-        SimulationRefusedError: there is no such entity, or it cannot be deleted.
-    """
+    """Delete the entities, one after another."""
     with ask_simulation(options.namespace) as simulation:
         for entity in options.entities:
             simulation.ask("DeleteEntity", "delete_entity", entity=entity)
@@ -89,12 +81,7 @@ def delete(options: argparse.Namespace) -> None:
     NAMESPACE,
 )
 def move(options: argparse.Namespace) -> None:
-    """Move an entity, which is at rest afterwards.
-
-    Raises:
-        CommandUsageError: there are one or two angles, or more than three.
-        SimulationRefusedError: there is no such entity, or it cannot be moved.
-    """
+    """Move an entity, which is at rest afterwards."""
     if len(options.rpy) not in (0, 3):
         raise CommandUsageError("a pose is X Y Z, or X Y Z ROLL PITCH YAW")
     with ask_simulation(options.namespace) as simulation:
@@ -123,22 +110,14 @@ def _pose(x: float, y: float, z: float, rpy: Sequence[float]) -> "Pose":
 
 @verb(NAMESPACE)
 def pause(options: argparse.Namespace) -> None:
-    """Pause the simulation.
-
-    Raises:
-        SimulationRefusedError: it is already paused.
-    """
+    """Pause the simulation."""
     with ask_simulation(options.namespace) as simulation:
         simulation.set_state(PAUSED)
 
 
 @verb(NAMESPACE)
 def play(options: argparse.Namespace) -> None:
-    """Resume the simulation.
-
-    Raises:
-        SimulationRefusedError: it is already running, or there is no world.
-    """
+    """Resume the simulation."""
     with ask_simulation(options.namespace) as simulation:
         simulation.set_state(PLAYING)
 
@@ -149,11 +128,7 @@ def play(options: argparse.Namespace) -> None:
     NAMESPACE,
 )
 def reset(options: argparse.Namespace) -> None:
-    """Return everything to its start, apart from what the options keep.
-
-    Raises:
-        SimulationRefusedError: a controller cannot be reset, or the clock must not be set.
-    """
+    """Return everything to its start, apart from what the options keep."""
     scope = SCOPE_ALL
     if options.keep_spawned or options.keep_clock:
         scope = SCOPE_STATE
@@ -186,12 +161,7 @@ def _factor(text: str) -> float:
     NAMESPACE,
 )
 def speed(options: argparse.Namespace) -> None:
-    """Set the factor, or print it.
-
-    Raises:
-        UnansweredError: no simulation answers.
-        SimulationRefusedError: it refuses the factor.
-    """
+    """Set the factor, or print it."""
     with ask_simulation(options.namespace, must_run=options.factor is None) as simulation:
         if options.factor is None:
             from arm_cli.ros.parameters import content_of
@@ -234,12 +204,7 @@ def _seconds(text: str) -> float:
     NAMESPACE,
 )
 def step(options: argparse.Namespace) -> None:
-    """Advance the simulation, and wait until the states of the last step have been published.
-
-    Raises:
-        SimulationRefusedError: it is not paused, or its time is past `--until`.
-        CommandUsageError: the number of steps is below 1, or both a number and a time are given.
-    """
+    """Advance the simulation, and wait until the states of the last step have been published."""
     _check(options)
     service = "step_simulation_with_sensors" if options.with_sensors else "step_simulation"
     with ask_simulation(options.namespace) as simulation:

@@ -19,11 +19,7 @@ CATEGORIES = {0: "object", 1: "robot", 2: "human", 4: "moving", 5: "static"}
 
 @verb(JSON, NAMESPACE)
 def info(options: argparse.Namespace) -> None:
-    """Print the simulation's state and contents.
-
-    Raises:
-        NoSuchNameError: no simulation runs.
-    """
+    """Print the simulation's state and contents."""
     with ask_simulation(options.namespace, must_run=True) as simulation:
         report = _report(simulation)
     if options.json:
@@ -99,11 +95,7 @@ def _entity(simulation: SimulationClient, name: str, state: Any) -> dict[str, An
 
 @verb(JSON, NAMESPACE)
 def stats(options: argparse.Namespace) -> None:
-    """Print the figures of the last second or two.
-
-    Raises:
-        NoSuchNameError: no simulation runs.
-    """
+    """Print the figures of the last second or two."""
     with ask_simulation(options.namespace, must_run=True) as simulation:
         parts = simulation.statistics()
     if options.json:

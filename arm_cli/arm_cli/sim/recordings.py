@@ -38,12 +38,7 @@ _REFUSED = " (refused)"
     NAMESPACE,
 )
 def record(options: argparse.Namespace) -> None:
-    """Record the inputs and states of a running simulation until Ctrl-C.
-
-    Raises:
-        UnansweredError: no simulation answers.
-        SimulationRefusedError: it cannot write the file, or is already recording.
-    """
+    """Record the inputs and states of a running simulation until Ctrl-C."""
     # A relative path is relative to this process, not to the simulation's working folder.
     path = options.file.absolute()
     with ask_simulation(options.namespace) as simulation:
@@ -90,11 +85,7 @@ def _say_recorded(path: Path) -> None:
     ),
 )
 def replay(options: argparse.Namespace) -> int:
-    """Run a recording again; return 1 unless every control period is equal.
-
-    Raises:
-        ArmCliError: the recording cannot be read, or its run cannot be built.
-    """
+    """Run a recording again; return 1 unless every control period is equal."""
     with _sentences():
         from arm_gazebo.recording.replay import Replay
         from arm_gazebo.recording.run_file import RunFile
@@ -192,11 +183,7 @@ def _say_joints(run: "Replay") -> None:
     Argument("second", type=Path, help="another one"),
 )
 def diff(options: argparse.Namespace) -> int:
-    """Name the first difference of two recordings; return 1 if there is one.
-
-    Raises:
-        ArmCliError: a recording cannot be read.
-    """
+    """Name the first difference of two recordings; return 1 if there is one."""
     with _sentences():
         from arm_gazebo.recording.comparison import compare
         from arm_gazebo.recording.run_file import RunFile

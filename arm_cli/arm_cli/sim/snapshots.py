@@ -21,21 +21,13 @@ def _snapshot(name: str) -> Argument:
 
 @verb(_snapshot("a name; a snapshot of that name is replaced"), NAMESPACE)
 def save(options: argparse.Namespace) -> None:
-    """Save the state of the run; print what was saved.
-
-    Raises:
-        SimulationRefusedError: a controller cannot be saved, or the file cannot be written.
-    """
+    """Save the state of the run; print what was saved."""
     say(_ask(options, "save_snapshot").description)
 
 
 @verb(_snapshot("a name"), NAMESPACE)
 def restore(options: argparse.Namespace) -> None:
-    """Continue from a snapshot; print it.
-
-    Raises:
-        SimulationRefusedError: there is none, or it does not fit the simulation.
-    """
+    """Continue from a snapshot; print it."""
     moment, _, remark = _ask(options, "restore_snapshot").description.partition("; ")
     say(moment)
     if remark:
@@ -44,11 +36,7 @@ def restore(options: argparse.Namespace) -> None:
 
 @verb(JSON, NAMESPACE)
 def list_snapshots(options: argparse.Namespace) -> None:
-    """Print the snapshots with names.
-
-    Raises:
-        NoSuchNameError: no simulation runs.
-    """
+    """Print the snapshots with names."""
     with ask_simulation(options.namespace, must_run=True) as simulation:
         found = simulation.ask("GetAvailableWorlds", "list_snapshots").worlds
     named = {snapshot.world_resource.uri: snapshot.description for snapshot in found}
@@ -61,11 +49,7 @@ def list_snapshots(options: argparse.Namespace) -> None:
 
 @verb(_snapshot("a name"), NAMESPACE)
 def remove(options: argparse.Namespace) -> None:
-    """Forget a snapshot, or delete its file.
-
-    Raises:
-        SimulationRefusedError: there is none.
-    """
+    """Forget a snapshot, or delete its file."""
     _ask(options, "remove_snapshot")
 
 

@@ -33,11 +33,7 @@ def _wait_time(default_s: float) -> Argument:
 
 @verb(_wait_time(TREE_LISTEN_S), JSON)
 def tree(options: argparse.Namespace) -> None:
-    """Print the tree.
-
-    Raises:
-        UnansweredError: nobody publishes transforms.
-    """
+    """Print the tree."""
     with connect() as session:
         from arm_cli.tf.ros_listener import listen
 
@@ -60,12 +56,7 @@ def tree(options: argparse.Namespace) -> None:
     ),
 )
 def view_frames(options: argparse.Namespace) -> None:
-    """Write the picture and its graphviz source.
-
-    Raises:
-        UnansweredError: nobody publishes transforms.
-        CommandUsageError: the file cannot be written.
-    """
+    """Write the picture and its graphviz source."""
     stem = options.output or time.strftime("frames_%Y-%m-%d_%H.%M.%S")
     say(f"Listening to tf data for {options.wait_time:g} seconds...")
     with connect() as session:
@@ -127,12 +118,7 @@ def _describe(history: FrameHistory) -> str:
     JSON,
 )
 def echo(options: argparse.Namespace) -> None:
-    """Print the transform repeatedly.
-
-    Raises:
-        NoSuchNameError: there is no such frame, or the two are in different trees.
-        UnansweredError: nobody publishes transforms.
-    """
+    """Print the transform repeatedly."""
     source, target = (f.lstrip("/") for f in (options.source_frame, options.target_frame))
     with connect() as session:
         from arm_cli.tf.ros_listener import listen
@@ -202,12 +188,7 @@ SETTLE_S = 2.0
     Flag("--once", help="print once and end"),
 )
 def monitor(options: argparse.Namespace) -> None:
-    """Print the delays every second.
-
-    Raises:
-        CommandUsageError: there is one frame; all frames, or two, can be shown.
-        NoSuchNameError: there is no such frame, or the two are in different trees.
-    """
+    """Print the delays every second."""
     ends = [f.lstrip("/") for f in (options.source_frame, options.target_frame) if f is not None]
     if len(ends) == 1:
         raise CommandUsageError("name two frames, or none for all of them")

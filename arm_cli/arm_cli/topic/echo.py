@@ -61,13 +61,7 @@ TRUNCATE_LENGTH = 128
     qos_arguments("a profile that matches the topic's publishers"),
 )
 def echo(options: argparse.Namespace) -> None:
-    """Print the messages.
-
-    Raises:
-        CommandUsageError: options exclude each other, or the filter is not Python.
-        NoSuchNameError: there is no such topic, type or field.
-        UnansweredError: there is no message within `--timeout`.
-    """
+    """Print the messages."""
     printer = _printer(options)
     class_ = None
     if options.message_type:

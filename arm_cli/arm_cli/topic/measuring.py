@@ -187,13 +187,7 @@ def report_every_second(
     FILTER,
 )
 def hz(options: argparse.Namespace) -> None:
-    """Print the rate every second.
-
-    Raises:
-        CommandUsageError: the filter is not a Python expression.
-        MessageError: the filter does not fit the messages.
-        StoppedError: a signal arrived.
-    """
+    """Print the rate every second."""
     fits = message_filter(options.filter) if options.filter else None
     window = RateWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
@@ -212,11 +206,7 @@ def hz(options: argparse.Namespace) -> None:
 
 @verb(*_measured(FEW_MESSAGES))
 def bw(options: argparse.Namespace) -> None:
-    """Print the bandwidth every second.
-
-    Raises:
-        StoppedError: a signal arrived.
-    """
+    """Print the bandwidth every second."""
     window = BandwidthWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
         from arm_cli.ros.listeners import TopicListener
@@ -234,12 +224,7 @@ def bw(options: argparse.Namespace) -> None:
 
 @verb(*_measured(MANY_MESSAGES))
 def delay(options: argparse.Namespace) -> None:
-    """Print the age of the stamps on arrival, every second.
-
-    Raises:
-        MessageError: the topic's messages have no header.
-        StoppedError: a signal arrived.
-    """
+    """Print the age of the stamps on arrival, every second."""
     window = DelayWindow(options.window)
     with connect(use_sim_time=options.use_sim_time) as session:
         from arm_cli.ros.listeners import TopicListener

@@ -93,13 +93,7 @@ AFTER_MATCH_S = 0.4
     qos_arguments("reliable, volatile, the last 10"),
 )
 def pub(options: argparse.Namespace) -> None:
-    """Publish the messages.
-
-    Raises:
-        NoSuchNameError: there is no such type.
-        MessageError: the values do not fit the type, or the file holds no message.
-        UnansweredError: there are not enough subscriptions within `--max-wait-time-secs`.
-    """
+    """Publish the messages."""
     type_ = InterfaceIndex().find(options.message_type, ("msg",))
     messages = _messages(options, type_)
     times = 1 if options.once else options.times
