@@ -20,10 +20,9 @@ import psutil
 from harness import Row
 
 from arm_sim.sweep.engine import Engine
-from arm_sim.sweep.journal import FILE_NAME, Journal, Outcome
+from arm_sim.sweep.journal import FILE_NAME, Journal, Outcome, write_tables
 from arm_sim.sweep.pool import Pool, ProcessPool
 from arm_sim.sweep.study import Study
-from arm_sim.sweep.table import write_tables
 
 TASK = """
 import time

@@ -40,9 +40,8 @@ if TYPE_CHECKING:
 def sweep(options: argparse.Namespace) -> int:
     """Make the runs, write the tables; return 1 if a run has failed."""
     from arm_sim.errors import ArmSimError
-    from arm_sim.sweep.journal import Journal
+    from arm_sim.sweep.journal import Journal, write_tables
     from arm_sim.sweep.study import read_study
-    from arm_sim.sweep.table import write_tables
 
     folder = options.output or options.study.with_name(f"{options.study.stem}-results")
     try:

@@ -11,10 +11,9 @@ import pytest
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim.sweep.engine import Engine
-from arm_sim.sweep.journal import FILE_NAME, Journal
+from arm_sim.sweep.journal import FILE_NAME, Journal, write_tables
 from arm_sim.sweep.pool import ProcessPool
 from arm_sim.sweep.study import Study, StudyError
-from arm_sim.sweep.table import write_tables
 
 TASK = """
 import os, signal, time
