@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -34,9 +34,9 @@ class InterfaceType:
 class InterfaceIndex:
     """Finds types in the share folders of the prefixes."""
 
-    def __init__(self, environ: Mapping[str, str] = os.environ) -> None:
+    def __init__(self) -> None:
         """Search the prefixes of AMENT_PREFIX_PATH and of this Python."""
-        self._shares = [Path(prefix, "share") for prefix in ament_prefixes(environ)]
+        self._shares = [Path(prefix, "share") for prefix in ament_prefixes(os.environ)]
 
     def packages(self, kinds: tuple[str, ...] = KINDS) -> list[str]:
         """Return the packages that define types of these kinds, sorted."""

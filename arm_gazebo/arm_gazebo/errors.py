@@ -16,8 +16,10 @@ GazeboError
 ├── FaultError      a requested fault is not possible here
 ├── SimSettingsError   invalid parameter of the simulation node
 │   └── ControllerTypeError  a file names a controller's type that does not exist
-└── RequestError    a request to the running world is refused; see `refusal`
+└── RequestError    a request to the running world is refused; see `Refusal`
 """
+
+from enum import Enum, auto
 
 
 class GazeboError(Exception):
@@ -82,3 +84,36 @@ class RecordingError(GazeboError):
 
 class FaultError(GazeboError):
     """A requested fault is not possible here; the message says which ones are."""
+
+
+class Refusal(Enum):
+    """The kinds of refusal that result codes distinguish."""
+
+    UNSUPPORTED = auto()
+    NOT_FOUND = auto()
+    INCORRECT_STATE = auto()
+    FAILED = auto()
+    NAME_NOT_UNIQUE = auto()
+    NAME_INVALID = auto()
+    NAMESPACE_INVALID = auto()
+    UNSUPPORTED_FORMAT = auto()
+    NO_RESOURCE = auto()
+    UNREADABLE = auto()
+    MISSING_ASSETS = auto()
+    UNSUPPORTED_ELEMENTS = auto()
+    INVALID_POSE = auto()
+    NO_WORLD = auto()
+    ALREADY_THERE = auto()
+    INCORRECT_TRANSITION = auto()
+
+
+class RequestError(GazeboError):
+    """A request to the running world is refused; nothing was changed.
+
+    Attributes:
+        refusal: the kind; the message is for the user.
+    """
+
+    def __init__(self, refusal: Refusal, message: str) -> None:
+        super().__init__(message)
+        self.refusal = refusal

@@ -138,11 +138,11 @@ def read_words(value: object) -> tuple[str, ...]:
     return read_texts(value.replace(",", " ").split() if isinstance(value, str) else value)
 
 
-def read_numbers(value: object, wanted: str = "a list of finite numbers") -> tuple[float, ...]:
+def read_numbers(value: object) -> tuple[float, ...]:
     """Return finite numbers; a string such as `[1, 0.5]` counts as a list, see `numbers_in`."""
     values = numbers_in(value)
     if not isinstance(values, list | tuple | array) or not all(map(is_finite, values)):
-        raise refusal(wanted, value)
+        raise refusal("a list of finite numbers", value)
     return tuple(map(float, values))
 
 

@@ -8,7 +8,7 @@ from robots import control, pendulum, sensor
 
 from arm_control.controllers.goals import GoalOutcome
 from arm_control.errors import StateError
-from arm_gazebo.world.refusal import RequestError
+from arm_gazebo.errors import RequestError
 from arm_sim import CallError, GoalError, JointTrajectory, Simulation
 
 FOLLOWER = "joint_trajectory_controller"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from arm_control.errors import UnhandledFailureError
-from arm_gazebo.world.refusal import RequestError
+from arm_gazebo.errors import RequestError
 from arm_sim import CallError, Simulation, UnknownNameError
 from arm_sim.user_traceback import ends_at_the_caller
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_gazebo.world.refusal import RequestError
+from arm_gazebo.errors import RequestError
 from arm_sim import CallError, Simulation
 
 CAN = """<sdf version='1.9'><model name='can'><link name='body'>

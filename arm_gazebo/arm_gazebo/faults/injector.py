@@ -26,20 +26,14 @@ class FaultInjector:
 
     Args:
         run: the run.
-        sleep: waits for some seconds of wall time.
 
     Attributes:
         active: the faults that have begun and not ended.
     """
 
-    def __init__(
-        self,
-        run: SimulationRun,
-        sleep: Callable[[float], None] = time.sleep,
-    ) -> None:
+    def __init__(self, run: SimulationRun) -> None:
         self.active: list[Fault] = []
         self._run = run
-        self._sleep = sleep
         self._feeds: dict[Fault, _EachTick] = {}
 
     def check(self, fault: Fault) -> None:
@@ -75,7 +69,7 @@ class FaultInjector:
             self._fail(fault.target)
             self._do_each_tick(fault, lambda: self._fail(fault.target))
         else:
-            self._do_each_tick(fault, lambda: self._sleep(fault.amount))
+            self._do_each_tick(fault, lambda: time.sleep(fault.amount))
         self.active.append(fault)
 
     def end(self, fault: Fault) -> None:

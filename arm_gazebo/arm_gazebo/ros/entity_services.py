@@ -15,6 +15,7 @@ from simulation_interfaces.srv import (
     SpawnEntity,
 )
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.ros.world_convert import (
     ServiceRow,
     answer,
@@ -28,7 +29,6 @@ from arm_gazebo.ros.world_convert import (
     twist_of,
 )
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 SPAWN_CODES = {
     Refusal.NAME_NOT_UNIQUE: SpawnEntity.Response.NAME_NOT_UNIQUE,

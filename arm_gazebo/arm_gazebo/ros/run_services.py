@@ -23,12 +23,12 @@ from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import call_on_loop, wait_for_future
 from arm_gazebo.camera.feed import CameraFeed
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.ros.world_convert import ServiceRow, answer, create_services, refuse, world_message
 from arm_gazebo.state.run_reset import ResetScope, RunReset
 from arm_gazebo.state.snapshots import RunSnapshot, SnapshotStore
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.run_control import RunControl, RunState
 from arm_gazebo.world.spawn_model import FORMATS
 

@@ -19,6 +19,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_control.loop.control_loop import ControlLoop
 from arm_gazebo.camera.feed import CameraFeed
+from arm_gazebo.errors import RequestError
 from arm_gazebo.physics.statistics import SimulationStatistics, StatusReport
 from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.ros.entity_services import EntityServices
@@ -29,7 +30,6 @@ from arm_gazebo.state.run_reset import RunReset
 from arm_gazebo.state.snapshots import SnapshotStore
 from arm_gazebo.world.editor import LoopCall, WorldEditor
 from arm_gazebo.world.entity import WORLD_FRAME
-from arm_gazebo.world.refusal import RequestError
 from arm_gazebo.world.run_control import RunControl
 from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
 from arm_node.executor_thread import ExecutorThread

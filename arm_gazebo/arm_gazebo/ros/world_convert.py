@@ -22,12 +22,12 @@ from simulation_interfaces.msg import (
 )
 
 from arm_description.transforms import rotation_from_quaternion, transform
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.ros.topic import set_stamp
 from arm_gazebo.world.changes import Matrix, quaternion_of
 from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
 from arm_gazebo.world.entity_motion import Box, EntityFilter, EntityMotion, Volume
 from arm_gazebo.world.loading import NamedWorld
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 ServiceRow = tuple[Any, str, Callable[[Any, Any], Any]]
 """Type, name and callback, which takes request and response and returns the response."""

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, Self, TypeVar
 
 from arm_control.errors import LoopStoppedError
-from arm_gazebo.errors import SimSettingsError
+from arm_gazebo.errors import Refusal, RequestError, SimSettingsError
 from arm_gazebo.mesh.cache import cache_folder
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import ClockPublisher, SilentClock, SimulationTick
@@ -18,7 +18,6 @@ from arm_gazebo.run.robot import ManagedRobot, SimulatedRobot
 from arm_gazebo.run.settings import SimulationSettings
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.world.loading import WorldLoader
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 if TYPE_CHECKING:
     from arm_gazebo.world.changes import WorldChanges

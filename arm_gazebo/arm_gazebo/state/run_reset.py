@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from arm_control.errors import StateError
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.world.editor import WorldEditor
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 
 @dataclass(frozen=True, slots=True)

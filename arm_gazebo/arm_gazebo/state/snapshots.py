@@ -12,13 +12,13 @@ import zstandard
 
 from arm_control.errors import StateError
 from arm_control.state.encoding import decode, encode
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.state.made_with import machine_differences, made_with
 from arm_gazebo.world.changes import Spawned, WorldChanges
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import NAME
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 from arm_node.names import describe_known
 

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_node.names import listing
 
 Vector = NDArray[np.float64]

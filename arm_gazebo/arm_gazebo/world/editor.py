@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 import mujoco
 import numpy as np
 
-from arm_gazebo.errors import GazeboError, WorldError
+from arm_gazebo.errors import GazeboError, Refusal, RequestError, WorldError
 from arm_gazebo.feed.state_feed import PreparedModel
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.physics import Physics
@@ -29,7 +29,6 @@ from arm_gazebo.world.entity import (
     WorldEntity,
 )
 from arm_gazebo.world.entity_motion import EntityMotions
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 
 logger = logging.getLogger(__name__)

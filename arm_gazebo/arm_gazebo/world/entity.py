@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.world.changes import WorldChanges
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_node.names import listing
 
 NAME = re.compile(r"[A-Za-z0-9_.\-]{1,100}", re.ASCII)

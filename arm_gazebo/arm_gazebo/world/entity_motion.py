@@ -7,10 +7,10 @@ import numpy as np
 import re2
 from numpy.typing import NDArray
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.physics.state_probe import WorldState
 from arm_gazebo.world.changes import Matrix
 from arm_gazebo.world.entity import Category, Entities, WorldEntity
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 Vector = NDArray[np.float64]
 Box = NDArray[np.float64]

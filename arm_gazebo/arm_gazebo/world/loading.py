@@ -13,7 +13,7 @@ from arm_description.errors import DescriptionError, ResourceNotFoundError, XmlE
 from arm_description.resources import resolve_uri
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.build_report import BuildOutcome, BuildReport
-from arm_gazebo.errors import GazeboError
+from arm_gazebo.errors import GazeboError, Refusal, RequestError
 from arm_gazebo.launching.world_path import find_world, shipped_worlds
 from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, MemoryLimit
 from arm_gazebo.mjcf.references import check_readable
@@ -22,7 +22,6 @@ from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
 from arm_gazebo.robot.part import RobotInWorld
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import WORLD_PROCESSOR_S, check_mjcf_files
 from arm_node.user_file import read_text
 

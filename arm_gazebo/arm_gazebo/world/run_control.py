@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from enum import Enum
 
 from arm_control.loop.control_loop import ControlLoop
-from arm_gazebo.world.refusal import Refusal, RequestError
+from arm_gazebo.errors import Refusal, RequestError
 
 
 class RunState(Enum):

@@ -17,7 +17,7 @@ from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
 from arm_description.xacro.expansion import expand_xacro_file
 from arm_gazebo.build_report import BuildReport, Finding
-from arm_gazebo.errors import GazeboError, MeshError
+from arm_gazebo.errors import GazeboError, MeshError, Refusal, RequestError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, MemoryLimit
@@ -33,7 +33,6 @@ from arm_gazebo.sdf.body import WORLD_MASKS, add_model
 from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.model import read_model
 from arm_gazebo.sdf.scope import SdfScope, sdf_file_in
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.trial import MjcfTrial, can_be_simulated, check_mjcf_files
 from arm_node.names import listing
 from arm_node.user_file import UnusableFileError, read_text

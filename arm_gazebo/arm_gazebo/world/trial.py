@@ -16,10 +16,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.feed.child_process import describe_exit
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.mjcf.references import check_readable, references
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 MODULE = "arm_gazebo.world.trial_process"
 END_TIMEOUT_S = 5.0

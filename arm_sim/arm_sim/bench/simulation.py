@@ -10,14 +10,13 @@ from shlex import quote
 from typing import Any
 
 from arm_control.errors import StateError
-from arm_gazebo.errors import RecordingError
+from arm_gazebo.errors import RecordingError, RequestError
 from arm_gazebo.recording.recorded_run import first_inputs, header_of
 from arm_gazebo.recording.recorder import RunRecorder
 from arm_gazebo.recording.run_file import Record, RecordedInput, RunFileWriter, StateBlock
 from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.world.contacts import bodies_of
 from arm_gazebo.world.entity import WORLD_FRAME
-from arm_gazebo.world.refusal import RequestError
 from arm_sim.bench.configuration import configuration_key
 from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
 from arm_sim.bench.history import StateHistory

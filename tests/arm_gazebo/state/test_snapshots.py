@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from robots import crate
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.state.snapshots import (
     MAGIC,
     SnapshotStore,
@@ -15,7 +16,6 @@ from arm_gazebo.state.snapshots import (
     write_snapshot,
 )
 from arm_gazebo.world.editor import SpawnRequest, WorldEditor
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 
 CRATE = crate()

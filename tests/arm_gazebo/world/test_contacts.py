@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from arm_gazebo.build_report import BuildReport
+from arm_gazebo.errors import RequestError
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.world.changes import NOTHING
 from arm_gazebo.world.contacts import contacts_of
 from arm_gazebo.world.entity import Entities
-from arm_gazebo.world.refusal import RequestError
 
 TOWER = """
 <mujoco><worldbody>

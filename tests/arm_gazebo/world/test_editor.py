@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.editor import SpawnRequest
 from arm_gazebo.world.entity import Category, EntityNote
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 
 @pytest.fixture

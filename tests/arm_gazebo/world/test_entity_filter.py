@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from arm_gazebo.errors import RequestError
 from arm_gazebo.world.entity import Category
 from arm_gazebo.world.entity_motion import EntityFilter, Volume
-from arm_gazebo.world.refusal import RequestError
 
 
 @pytest.fixture

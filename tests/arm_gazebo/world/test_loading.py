@@ -3,10 +3,10 @@ import pytest
 
 from arm_control.hardware.info import parse_hardware_info
 from arm_description.urdf.parser import parse_urdf
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.robot.part import BuildOptions, RobotInWorld
 from arm_gazebo.world.loading import WorldLoader, available_worlds
-from arm_gazebo.world.refusal import Refusal, RequestError
 
 SDF = "<sdf version='1.9'><world name='w'><gravity>0 0 -9.8</gravity>{more}</world></sdf>"
 

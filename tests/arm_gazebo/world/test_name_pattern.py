@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from arm_gazebo.errors import RequestError
 from arm_gazebo.world.entity_motion import NamePattern
-from arm_gazebo.world.refusal import RequestError
 
 ITEMS = st.sampled_from(["a", "b", ".", "^", "$", "[ab]", "[^a]", r"\w", r"\b", ""])
 TIMES = st.sampled_from(["*", "+", "?", "{2}", "{1,2}", "{2,}", "*?"])

@@ -2,7 +2,7 @@ import pytest
 
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
-from arm_gazebo.world.refusal import Refusal, RequestError
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.run_control import RunControl, RunState
 
 

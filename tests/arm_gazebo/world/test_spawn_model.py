@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from arm_gazebo.world.refusal import Refusal, RequestError
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 
 SOURCE = ModelSource(0.002)

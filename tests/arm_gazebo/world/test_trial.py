@@ -7,8 +7,8 @@ import signal
 import psutil
 import pytest
 
+from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
-from arm_gazebo.world.refusal import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
 from arm_gazebo.world.trial import MjcfTrial
 
