@@ -60,6 +60,7 @@ class OrientationConstraint:
         tolerances: largest error about x, y and z, in rad.
         error: how the error is measured.
         frame: a link that the orientation moves with, or "" for the planning frame.
+        axes: how the axes x, y and z of a rotation vector's tolerances are turned in `frame`.
     """
 
     link: str
@@ -68,6 +69,7 @@ class OrientationConstraint:
     error: OrientationError = OrientationError.XYZ_EULER_ANGLES
     frame: str = ""
     weight: float = 1.0
+    axes: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)

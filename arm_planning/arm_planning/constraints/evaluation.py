@@ -188,7 +188,8 @@ class ConstraintEvaluator:
         wanted = rotation_from_quaternion(np.array(each.orientation))
         if each.error is OrientationError.ROTATION_VECTOR:
             # R_link R_wanted^T, whose rotation vector is already in the frame of the constraint.
-            return rotation_vector(rotation @ wanted.T)
+            error = rotation_vector(rotation @ wanted.T)
+            return rotation_from_quaternion(np.array(each.axes)).T @ error
         return euler_error(wanted.T @ rotation, each.tolerances)
 
     def _orientation(self, each: OrientationConstraint, q: Array) -> ConstraintResult:

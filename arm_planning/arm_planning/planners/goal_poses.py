@@ -113,7 +113,8 @@ def _rotation(each: OrientationConstraint, random: np.random.Generator | None) -
     tolerances = np.minimum(each.tolerances, np.pi)
     x, y, z = random.uniform(-tolerances, tolerances).tolist()
     if each.error is OrientationError.ROTATION_VECTOR:
-        return _about((x, y, z)) @ wanted
+        axes = rotation_from_quaternion(np.array(each.axes))
+        return axes @ _about((x, y, z)) @ axes.T @ wanted
     return wanted @ _about((x, 0.0, 0.0)) @ _about((0.0, y, 0.0)) @ _about((0.0, 0.0, z))
 
 

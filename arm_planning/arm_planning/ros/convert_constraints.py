@@ -209,13 +209,6 @@ def _orientation(
             f"{what} has the parameterization {message.parameterization}; there are "
             "0 (XYZ_EULER_ANGLES) and 1 (ROTATION_VECTOR)"
         )
-    is_turned = abs(origin.rotation[3]) < 1.0 - 1e-9
-    if message.parameterization and is_turned and not frame and len(set(tolerances)) > 1:
-        raise _invalid(
-            f"{what} has tolerances about the axes of '{message.header.frame_id}', which is turned "
-            "against the planning frame: give the orientation in the planning frame, or equal "
-            "tolerances"
-        )
     # The link is where the object on it would be in the wanted orientation.
     return OrientationConstraint(
         link,
@@ -224,6 +217,7 @@ def _orientation(
         OrientationError(message.parameterization),
         frame,
         _weight(message.weight, what, warn),
+        axes=origin.rotation,
     )
 
 

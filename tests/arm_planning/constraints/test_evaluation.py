@@ -137,6 +137,16 @@ def test_a_rotation_vector_is_about_the_axes_of_the_frame_and_euler_angles_of_th
         assert evaluator(rolled).satisfied(q(math.pi / 2.0, 0.4)) is satisfied
 
 
+def test_the_axes_of_a_rotation_vectors_tolerances_may_be_turned():
+    quarter = tuple(Rotation.from_euler("z", math.pi / 2.0).as_quat().tolist())
+    # The link rolls about the y axis, which is the turned x axis.
+    for tolerances, satisfied in (((0.5, 0.01, 0.01), True), ((0.01, 0.5, 0.01), False)):
+        rolled = OrientationConstraint(
+            "b", quarter, tolerances, OrientationError.ROTATION_VECTOR, axes=quarter
+        )
+        assert evaluator(rolled).satisfied(q(math.pi / 2.0, 0.4)) is satisfied
+
+
 def test_an_orientation_in_the_frame_of_a_link_moves_with_it():
     level = OrientationConstraint("b", (0.0, 0.0, 0.0, 1.0), (0.1, 0.1, 0.1), frame="a")
     assert evaluator(level).satisfied(q(2.0, 0.05))

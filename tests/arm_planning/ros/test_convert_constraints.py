@@ -150,10 +150,10 @@ def test_a_request_has_moveits_defaults_and_the_nodes_seed():
     assert plan_request(MotionPlanRequest(), 0, frames(), print).goals == ()
 
 
-def test_unequal_tolerances_about_the_axes_of_a_turned_frame_are_refused():
+def test_the_tolerances_of_a_rotation_vector_are_about_the_axes_of_the_frame_that_is_named():
     turned = RigidTransform((0.0, 0.0, 0.0), (0.0, 0.0, HALF, HALF))
     message = pose_goal("tip", (0.1, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), "table")
-    assert converted(message, table=turned).orientations
-    message.orientation_constraints[0].absolute_z_axis_tolerance = 3.0
-    with pytest.raises(PlanningError, match="about the axes of 'table', which is turned"):
-        converted(message, table=turned)
+    message.orientation_constraints[0].absolute_x_axis_tolerance = 0.5
+    (constraint,) = converted(message, table=turned).orientations
+    assert constraint.tolerances == (0.5, 1e-3, 1e-3)
+    assert constraint.axes == turned.rotation
