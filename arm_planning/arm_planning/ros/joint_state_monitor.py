@@ -104,8 +104,8 @@ class JointStateMonitor:
             names = listing(missing)
             return f"The complete state of the robot is not yet known.  Missing {names}"
         return (
-            f"joint_states stopped {age_s:.1f} s ago; planning starts from the last state (a "
-            "simulation that is paused publishes none)"
+            f"joint_states stopped {age_s:.1f} s ago; is joint_state_broadcaster active? (A "
+            "simulation that is paused publishes none.)"
         )
 
     def _take(self) -> None:

@@ -109,7 +109,7 @@ class PlanningSession:
             PlanningError: a change is not possible.
         """
         if problem := self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
-            LOGGER.warning("%s", problem)
+            LOGGER.warning("planning starts from the last known state: %s", problem)
         scene = self.monitor.current()
         if diff is None:
             return scene

@@ -281,7 +281,8 @@ class _Goal:
         if self._refused:
             return ExecutionOutcome(
                 MoveItErrorCode.CONTROL_FAILED,
-                f"controller '{name}' refused the trajectory; see its log",
+                f"controller '{name}' refused the trajectory; is it active? "
+                "`arm control list_controllers` and its log tell",
             )
         if self._result is not None:
             return self._ended(self._result)

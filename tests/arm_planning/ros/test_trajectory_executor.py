@@ -165,4 +165,7 @@ def test_a_refused_motion_names_the_controller(manager: ExecutionManager, contro
     controller.accepted = False
     outcome = manager.execute(MOTION)
     assert outcome.code is MoveItErrorCode.CONTROL_FAILED
-    assert outcome.message == "controller 'arm_controller' refused the trajectory; see its log"
+    assert outcome.message == (
+        "controller 'arm_controller' refused the trajectory; is it active? "
+        "`arm control list_controllers` and its log tell"
+    )
