@@ -24,7 +24,7 @@ from arm_viewer.panels.panel import Panel
 from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
-from arm_viewer.requests import Send
+from arm_viewer.requests import Send, Watch
 from arm_viewer.rviz_config import PageConfig
 from arm_viewer.scene.first_view import FirstView
 from arm_viewer.scene.frames import Frames
@@ -34,6 +34,8 @@ from arm_viewer.typed_numbers import KIND as TYPED_NUMBER
 from arm_viewer.typed_numbers import typed_number_handler
 
 TICK_S = 1.0 / 30.0
+UNWATCHED_TICK_S = 0.2
+"""Time between two updates while no browser is connected."""
 
 Tabs = Mapping[str, tuple[Panel, ...]]
 """The panels of each tab, by title."""
@@ -57,7 +59,7 @@ def page_running(
     loop = server.get_event_loop()
     panels = asyncio.run_coroutine_threadsafe(_build(server, send, config), loop).result()
     ended = threading.Event()
-    updates = asyncio.run_coroutine_threadsafe(_update(server, panels, latest, ended), loop)
+    updates = asyncio.run_coroutine_threadsafe(_update(server, panels, latest, send, ended), loop)
     try:
         yield
     finally:
@@ -81,8 +83,12 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
         "Control": (ClockPanel(), ControllerPanel(send)),
         "System": (GraphPanel(), TopicPanel(send)),
     }
-    cameras = {"Cameras": (CameraPanel(send, lambda: bool(server.get_clients())),)}
-    plots = {"Plots": (PlotPanel(),)}
+
+    def is_watched() -> bool:
+        return bool(server.get_clients())
+
+    cameras = {"Cameras": (CameraPanel(send, is_watched),)}
+    plots = {"Plots": (PlotPanel(is_watched),)}
     above, below = gui.add_panel(), gui.add_panel()
     above.dock_left()
     below.dock_below(above)
@@ -109,15 +115,22 @@ async def _update(
     server: PageServer,
     panels: Sequence[Panel],
     latest: Callable[[], Snapshot],
+    send: Send,
     ended: threading.Event,
 ) -> None:
+    was_watched = True
     while not ended.is_set():
-        await asyncio.sleep(TICK_S)
+        is_watched = bool(server.get_clients())
+        if is_watched != was_watched:
+            was_watched = is_watched
+            send(Watch(is_watched))
+        await asyncio.sleep(TICK_S if is_watched else UNWATCHED_TICK_S)
         snapshot = latest()
-        for panel in panels:
-            try:
-                with server.atomic():
+        # One for all panels, because the end of each wakes viser's senders.
+        with server.atomic():
+            for panel in panels:
+                try:
                     panel.update(snapshot)
-            except Exception:
-                # The page's top-level handler: a panel that fails must not stop the others.
-                logging.getLogger(__name__).exception("%s failed", type(panel).__name__)
+                except Exception:
+                    # The page's top-level handler: a panel that fails must not stop the others.
+                    logging.getLogger(__name__).exception("%s failed", type(panel).__name__)

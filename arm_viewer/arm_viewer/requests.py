@@ -59,6 +59,13 @@ class ShowPictures:
     topics: frozenset[str]
 
 
-Request = ShowPictures | MoveJoints | SwitchControllers | Configure | MeasureRates
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """Collect messages at the full rate, or only now and then while no browser shows them."""
+
+    wanted: bool
+
+
+Request = Watch | ShowPictures | MoveJoints | SwitchControllers | Configure | MeasureRates
 Send = Callable[[Request], None]
 """Passes a request to the ROS thread without blocking; any thread may call it."""

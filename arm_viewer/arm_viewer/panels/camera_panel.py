@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from viser import GuiApi, GuiImageHandle
 
 from arm_viewer.errors import PictureError
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, note, show
 from arm_viewer.requests import Send, ShowPictures
 from arm_viewer.snapshot import Picture, Snapshot
 
@@ -40,7 +40,7 @@ class CameraPanel:
             if topic not in self._cameras:
                 with self._place:
                     self._cameras[topic] = _Camera(self._gui, topic, shown=not self._cameras)
-        self._hint.visible = not snapshot.image_topics
+        show(self._hint, not snapshot.image_topics)
         for topic, camera in self._cameras.items():
             camera.update(topic in snapshot.image_topics, snapshot.pictures.get(topic))
         shown = [topic for topic, camera in self._cameras.items() if camera.is_shown]
@@ -68,9 +68,10 @@ class _Camera:
 
     def update(self, is_published: bool, picture: Picture | None) -> None:
         """Show a new image; without one the last image stays."""
-        self._folder.visible = is_published
+        show(self._folder, is_published)
         if not self._switch.value:
-            self._image.visible = self._problem.visible = False
+            show(self._image, False)
+            show(self._problem, False)
             self._picture = None
         elif picture is not None and picture is not self._picture:
             self._picture = picture
@@ -81,9 +82,11 @@ class _Camera:
             self._image.image = colours(picture)
         except PictureError as error:
             self._problem.content = note(str(error), PROBLEM_COLOUR)
-            self._problem.visible, self._image.visible = True, False
+            show(self._problem, True)
+            show(self._image, False)
         else:
-            self._problem.visible, self._image.visible = False, True
+            show(self._problem, False)
+            show(self._image, True)
 
 
 MAX_PIXELS_WIDE = 480

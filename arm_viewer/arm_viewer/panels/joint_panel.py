@@ -13,7 +13,7 @@ from viser import GuiApi, GuiEvent
 from arm_description.publishers.joint_state_merge import position_range
 from arm_description.urdf.robot import Joint
 from arm_viewer.joint_move import joint_drives
-from arm_viewer.panels.panel import note
+from arm_viewer.panels.panel import note, show
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
 from arm_viewer.typed_numbers import number_typed
@@ -21,6 +21,8 @@ from arm_viewer.typed_numbers import number_typed
 STEPS = 1000
 STILL_S = 0.5
 MAX_HOLD_S = 5.0
+FOLLOW_S = 0.1
+"""Time between two positions that a slider shows of a joint that moves."""
 NO_DRIVE = "No active controller takes positions: the sliders only show them."
 NUMBER_STYLE = "text-align:right;vertical-align:top;white-space:nowrap;padding-left:1em"
 
@@ -215,8 +217,8 @@ class _RobotSliders:
         for slider in self._sliders:
             slider.update(readings, displays or slider.range.name in driven)
         self._mimics.update(readings)
-        self._buttons.visible = displays
-        self._hint.visible = not (displays or driven)
+        show(self._buttons, displays)
+        show(self._hint, not (displays or driven))
 
     def slider(self, identifier: str) -> "_JointSlider | None":
         return next((s for s in self._sliders if s.identifier == identifier), None)
@@ -245,6 +247,7 @@ class _JointSlider:
         self.range = joint
         self._move = move
         self._held = HeldSlider(joint.step)
+        self._followed_s = -math.inf
         self._handle = gui.add_slider(
             joint.name,
             min=joint.lower,
@@ -289,9 +292,14 @@ class _JointSlider:
         reading = readings.get(self.range.name)
         if reading is None:
             return
-        shown = self._held.shown(reading.position, time.monotonic())
-        if shown is not None:
-            self._handle.value = self.range.nearest(shown)
+        now_s = time.monotonic()
+        shown = self._held.shown(reading.position, now_s)
+        if shown is None or now_s - self._followed_s < FOLLOW_S:
+            return
+        nearest = self.range.nearest(shown)
+        if nearest != self._handle.value:
+            self._followed_s = now_s
+            self._handle.value = nearest
 
     def _moved(self, event: GuiEvent[Any]) -> None:
         # Without a client the change came from `update`, which must not move the joint.

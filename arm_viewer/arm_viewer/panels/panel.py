@@ -19,6 +19,24 @@ def note(text: str, colour: str = "inherit") -> str:
     )
 
 
+class Hideable(Protocol):
+    """An element of the page, or a node of the scene."""
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is shown."""
+        ...
+
+    @visible.setter
+    def visible(self, shown: bool) -> None: ...
+
+
+def show(element: Hideable, shown: bool) -> None:
+    """Show or hide an element; viser's setter takes its time even if nothing changes."""
+    if element.visible != shown:
+        element.visible = shown
+
+
 class Panel(Protocol):
     """A panel of the page; used only in viser's event loop.
 

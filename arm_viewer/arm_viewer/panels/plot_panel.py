@@ -1,18 +1,21 @@
 """Plots of the joints over the last seconds: position, velocity and effort, commands dashed."""
 
+import itertools
 import math
-from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
+from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
 from viser import GuiApi, GuiUplotHandle, uplot
 
-from arm_viewer.snapshot import JointReading, JointStates, Snapshot
+from arm_viewer.snapshot import Description, JointReading, JointStates, Snapshot
 
 GAP_S = 0.5
 """Readings farther apart than this are not joined by a line."""
+FIRST_ROOM = 64
+"""Number of readings that a new history has room for."""
 
 
 class Quantity(Enum):
@@ -35,11 +38,8 @@ class JointHistory:
 
     def __init__(self, window_s: float) -> None:
         """Keep readings up to `window_s` old."""
-        self.joints: tuple[str, ...] = ()
         self._window_s = window_s
-        self._times: deque[float] = deque()
-        # Each entry has shape (2, 3, n): readings and commands, by quantity, by joint.
-        self._rows: deque[NDArray[np.float64]] = deque()
+        self.clear()
 
     def add(
         self, time_s: float, readings: Mapping[str, JointReading], commands: Mapping[str, float]
@@ -55,18 +55,20 @@ class JointHistory:
         if joints != self.joints:
             self.clear()
             self.joints = joints
-        if self._times and time_s - self._times[-1] > GAP_S:
-            self._append(self._times[-1], np.full((2, len(_QUANTITIES), len(joints)), math.nan))
+            self._values = np.empty((2, len(_QUANTITIES), len(joints), FIRST_ROOM))
+        if self._end > self._begin and time_s - self._times[self._end - 1] > GAP_S:
+            self._append(float(self._times[self._end - 1]), math.nan)
         self._append(time_s, _row(readings, commands))
-        while self._times[0] < time_s - self._window_s:
-            self._times.popleft()
-            self._rows.popleft()
+        while self._times[self._begin] < time_s - self._window_s:
+            self._begin += 1
 
     def clear(self) -> None:
         """Forget everything, including the joints."""
-        self.joints = ()
-        self._times.clear()
-        self._rows.clear()
+        self.joints: tuple[str, ...] = ()
+        self._times = np.empty(FIRST_ROOM)
+        # Readings and commands, by quantity, by joint, by time; valid from `_begin` to `_end`.
+        self._values = np.empty((2, len(_QUANTITIES), 0, FIRST_ROOM))
+        self._begin = self._end = 0
 
     def table(
         self, quantity: Quantity, now_s: float
@@ -77,16 +79,25 @@ class JointHistory:
             Times relative to `now_s` in s, so negative, oldest first (m,); readings (n, m);
             commands (n, m). Missing values are NaN.
         """
-        ages = np.array(self._times) - now_s
-        if not self._rows:
-            empty = np.empty((len(self.joints), 0))
-            return ages, empty, empty
-        values = np.stack(self._rows, axis=-1)[:, _QUANTITIES.index(quantity)]
-        return ages, values[0], values[1]
+        kept = slice(self._begin, self._end)
+        values = self._values[:, _QUANTITIES.index(quantity), :, kept]
+        return self._times[kept] - now_s, values[0].copy(), values[1].copy()
 
-    def _append(self, time_s: float, row: NDArray[np.float64]) -> None:
-        self._times.append(time_s)
-        self._rows.append(row)
+    def _append(self, time_s: float, row: NDArray[np.float64] | float) -> None:
+        if self._end == len(self._times):
+            self._make_room()
+        self._times[self._end] = time_s
+        self._values[..., self._end] = row
+        self._end += 1
+
+    def _make_room(self) -> None:
+        """Move what is valid to the front of arrays of twice its size."""
+        count = self._end - self._begin
+        times, values = self._times[self._begin :], self._values[..., self._begin :]
+        self._times = np.empty(max(2 * count, FIRST_ROOM))
+        self._values = np.empty((*values.shape[:-1], len(self._times)))
+        self._times[:count], self._values[..., :count] = times, values
+        self._begin, self._end = 0, count
 
 
 def _row(
@@ -104,7 +115,7 @@ DEFAULT_TOPIC: str = "/joint_states"
 WINDOW_S = 10.0
 PERIOD_S = 0.1
 """Time between two updates of the charts."""
-HEIGHT = 150
+HEIGHT = 116
 UNITS = {
     Quantity.POSITION: "rad, m",
     Quantity.VELOCITY: "rad/s, m/s",
@@ -116,23 +127,31 @@ COLOURS = (
     *("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f"),
     *("#bcbd22", "#17becf", "#1a2a6c", "#f4b400", "#00695c", "#ff5fa2", "#5d4037", "#76d7c4"),
 )
+LEGEND_STYLE = "font-size:0.7rem;line-height:1.5;padding:0 0.75em 0.5em"
 _TEXT, _GRID = "#495057", "#dee2e6"
 
 
 class PlotPanel:
-    """Charts of the joints of one topic, by default the first robot's."""
+    """Charts of the joints of one topic, by default the first robot's.
 
-    def __init__(self) -> None:
+    Joints that follow others are left out: their curves say nothing new.
+    """
+
+    def __init__(self, is_watched: Callable[[], bool]) -> None:
+        """Draw while `is_watched` returns whether any browser is connected."""
+        self._is_watched = is_watched
         self._history = JointHistory(WINDOW_S)
         self._charts: tuple[_Chart, ...] = ()
         self._seen: JointStates | None = None
         self._drawn_s = -math.inf
+        self._explained = ""
 
     def build(self, gui: GuiApi) -> None:
         """Create the charts."""
         self._topic = gui.add_dropdown("Joints of", (DEFAULT_TOPIC,), visible=False)
         self._frozen = gui.add_checkbox("Freeze", False, hint="stop the charts to look at them")
         self._charts = tuple(_Chart(gui, quantity) for quantity in Quantity)
+        self._legend = gui.add_html("")
 
     def update(self, snapshot: Snapshot) -> None:
         """Store new readings, and redraw the charts ten times a second."""
@@ -142,12 +161,24 @@ class PlotPanel:
             self._history.clear()
         elif states is not self._seen:
             self._seen = states
-            commands = snapshot.commands.get(self._topic.value.removesuffix(DEFAULT_TOPIC), {})
-            self._history.add(states.received_s, states.joints, commands)
-        if snapshot.made_s - self._drawn_s >= PERIOD_S and not self._frozen.value:
+            namespace = self._topic.value.removesuffix(DEFAULT_TOPIC)
+            followers = _followers(snapshot.descriptions.get(f"{namespace}/robot_description"))
+            leaders = {name: r for name, r in states.joints.items() if name not in followers}
+            commands = snapshot.commands.get(namespace, {})
+            self._history.add(states.received_s, leaders, commands)
+        is_due = snapshot.made_s - self._drawn_s >= PERIOD_S and not self._frozen.value
+        if is_due and self._is_watched():
             self._drawn_s = snapshot.made_s
             for chart in self._charts:
                 chart.draw(self._history, snapshot.made_s)
+            self._explain({joint for chart in self._charts for joint in chart.commanded})
+
+    def _explain(self, commanded: set[str]) -> None:
+        """Say once below all charts which colour is which joint's."""
+        text = _legend(self._history.joints, bool(commanded))
+        if text != self._explained:
+            self._explained = text
+            self._legend.content = text
 
     def _offer(self, topics: tuple[str, ...]) -> None:
         topics = topics or (DEFAULT_TOPIC,)
@@ -156,12 +187,29 @@ class PlotPanel:
             self._topic.visible = len(topics) > 1
 
 
+def _followers(description: Description | None) -> frozenset[str]:
+    if description is None or description.robot is None:
+        return frozenset()
+    return frozenset(joint.name for joint in description.robot.joints if joint.mimic is not None)
+
+
+def _legend(joints: tuple[str, ...], has_commands: bool) -> str:
+    entries = "".join(
+        f'<span style="white-space:nowrap;margin-right:0.9em"><span style="color:{colour}">'
+        f"&#9632;</span> {escape(joint)}</span> "
+        for joint, colour in zip(joints, itertools.cycle(COLOURS), strict=False)
+    )
+    dashed = '<span style="white-space:nowrap">dashed: command</span>' if has_commands else ""
+    return f'<div style="{LEGEND_STYLE}">{entries}{dashed}</div>'
+
+
 class _Chart:
     """The chart of one quantity."""
 
     def __init__(self, gui: GuiApi, quantity: Quantity) -> None:
         self._quantity = quantity
         self._lines: tuple[tuple[str, bool], ...] = ()
+        self._joints: tuple[str, ...] = ()
         empty = np.empty(0)
         self._plot: GuiUplotHandle = gui.add_uplot(
             data=(empty, empty),
@@ -169,10 +217,15 @@ class _Chart:
             title=f"{quantity.value} ({UNITS[quantity]})",
             scales={"x": uplot.Scale(time=False, auto=False, range=(-WINDOW_S, 0.0))},
             axes=(_axis(), _axis()),
-            # A live legend shows "--" for every line until the mouse is over the chart.
-            legend=uplot.Legend(live=False),
+            # One below all charts says it once.
+            legend=uplot.Legend(show=False),
             height=HEIGHT,
         )
+
+    @property
+    def commanded(self) -> tuple[str, ...]:
+        """The joints whose commands are drawn."""
+        return tuple(joint for joint, is_command in self._lines if is_command)
 
     def draw(self, history: JointHistory, now_s: float) -> None:
         ages, readings, commands = history.table(self._quantity, now_s)
@@ -185,9 +238,9 @@ class _Chart:
                 self._plot.data = (np.empty(0), np.empty(0))
                 self._plot.series = (uplot.Series(), _invisible())
             return
-        if lines != self._lines:
-            self._lines = lines
-            drawn = map(_series, lines, _colours(lines))
+        if (lines, history.joints) != (self._lines, self._joints):
+            self._lines, self._joints = lines, history.joints
+            drawn = map(_series, lines, _colours(lines, history.joints))
             self._plot.series = (uplot.Series(label="s"), *drawn, _invisible())
         # Before the first command, the dashed line follows the reading.
         readings = interpolated(ages, readings)
@@ -205,6 +258,8 @@ def interpolated(ages: NDArray[np.float64], rows: NDArray[np.float64]) -> NDArra
         ages: ascending (m,).
         rows: (n, m); a row of NaN only is unchanged.
     """
+    if not np.isnan(rows).any():
+        return rows
     filled = rows.copy()
     for row in filled:
         known = ~np.isnan(row)
@@ -246,9 +301,8 @@ def _axis() -> uplot.Axis:
     )
 
 
-def _colours(lines: tuple[tuple[str, bool], ...]) -> list[str]:
+def _colours(lines: tuple[tuple[str, bool], ...], joints: tuple[str, ...]) -> list[str]:
     """Return a colour for each line, the same for the reading and the command of a joint."""
-    joints = list(dict.fromkeys(joint for joint, _ in lines))
     return [COLOURS[joints.index(joint) % len(COLOURS)] for joint, _ in lines]
 
 

@@ -62,6 +62,7 @@ class ClockComparison:
 
     def __init__(self) -> None:
         self._readings: deque[tuple[float, float]] = deque()
+        self._recent: deque[tuple[float, float]] = deque()
 
     def add(self, wall_s: float, time_s: float) -> None:
         """Add a reading, with a later wall time than all before.
@@ -69,14 +70,16 @@ class ClockComparison:
         If simulation time goes back, the simulation was reset, and the comparison restarts.
         """
         if self._readings and time_s < self._readings[-1][1]:
-            self._readings.clear()
-        self._readings.append((wall_s, time_s))
-        while self._readings[0][0] < wall_s - WINDOW_S:
-            self._readings.popleft()
+            self.clear()
+        for readings, window_s in ((self._readings, WINDOW_S), (self._recent, FACTOR_WINDOW_S)):
+            readings.append((wall_s, time_s))
+            while readings[0][0] < wall_s - window_s:
+                readings.popleft()
 
     def clear(self) -> None:
         """Forget all readings."""
         self._readings.clear()
+        self._recent.clear()
 
     def result(self) -> SimulationTime | None:
         """Return the real-time factor and lag, or None before the first reading."""
@@ -84,8 +87,7 @@ class ClockComparison:
             return None
         last_wall_s, last_s = self._readings[-1]
         first_wall_s, first_s = self._readings[0]
-        recent = (r for r in self._readings if r[0] >= last_wall_s - FACTOR_WINDOW_S)
-        recent_wall_s, recent_s = next(recent)
+        recent_wall_s, recent_s = self._recent[0]
         passed_s = last_wall_s - recent_wall_s
         return SimulationTime(
             time_s=last_s,

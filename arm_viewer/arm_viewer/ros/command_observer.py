@@ -1,5 +1,6 @@
 """Observe the commands to active controllers."""
 
+import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -14,6 +15,7 @@ from arm_viewer.ros.observer import TopicTypes, topics_of
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import ListedController
 
+PERIOD_S = 0.09
 _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
@@ -35,6 +37,7 @@ class CommandObserver:
         self._controllers = controllers
         self._arrays: dict[str, TopicReader[Float64MultiArray]] = {}
         self._trajectories: dict[str, TopicReader[JointTrajectoryControllerState]] = {}
+        self._collected_s = -math.inf
         self.commands: Mapping[str, Mapping[str, float]] = MappingProxyType({})
 
     def discover(self, topics: TopicTypes) -> None:
@@ -55,7 +58,10 @@ class CommandObserver:
         )
 
     def collect(self, now_s: float) -> None:
-        """Take what has arrived."""
+        """Take what has arrived, ten times a second: a trajectory controller says a lot."""
+        if now_s - self._collected_s < PERIOD_S:
+            return
+        self._collected_s = now_s
         for controller in self._controllers():
             new = {**self._array_commands(controller), **self._trajectory_commands(controller)}
             if new:

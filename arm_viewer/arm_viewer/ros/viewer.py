@@ -19,6 +19,7 @@ from arm_viewer.requests import (
     Request,
     ShowPictures,
     SwitchControllers,
+    Watch,
 )
 from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
 from arm_viewer.ros.clock_observer import ClockObserver
@@ -33,6 +34,8 @@ from arm_viewer.ros.robot_observer import DescriptionObserver, TransformObserver
 from arm_viewer.snapshot import ListedController, Snapshot
 
 TICK_S = 1.0 / 30.0
+UNWATCHED_TICK_S = 0.2
+"""Time between two collections while no browser is connected."""
 DISCOVERY_PERIOD_S = 1.0
 DEFAULT_PORT = 8080
 
@@ -91,7 +94,7 @@ class Viewer(Node):
         self._latest = Snapshot()
         self._requests: SimpleQueue[Request] = SimpleQueue()
         self._request_waits = self.create_guard_condition(self._serve)
-        self.create_timer(TICK_S, self._collect)
+        self._tick = self.create_timer(TICK_S, self._collect)
         self.create_timer(DISCOVERY_PERIOD_S, self._discover)
 
     def latest(self) -> Snapshot:
@@ -163,6 +166,10 @@ class Viewer(Node):
                     self._commander.move(request)
                     if self._source is not None:
                         self._source.move(request)
+                case Watch():
+                    self._tick.timer_period_ns = int(
+                        1e9 * (TICK_S if request.wanted else UNWATCHED_TICK_S)
+                    )
                 case ShowPictures():
                     self._images.serve(request)
                 case SwitchControllers() | Configure():

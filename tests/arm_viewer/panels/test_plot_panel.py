@@ -1,12 +1,20 @@
 """The history of joints, and the rows that the charts draw."""
 
 import math
+from dataclasses import replace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
-from arm_viewer.panels.plot_panel import JointHistory, Quantity, interpolated, span_row
-from arm_viewer.snapshot import JointReading
+from arm_description.urdf.parser import parse_urdf
+from arm_viewer.panels.plot_panel import JointHistory, PlotPanel, Quantity, interpolated, span_row
+from arm_viewer.snapshot import Description, JointReading, JointStates, Snapshot
+
+GRIPPER = """<robot name='r'><link name='palm'/><link name='left'/><link name='right'/>
+  <joint name='a' type='continuous'><parent link='palm'/><child link='left'/></joint>
+  <joint name='b' type='continuous'><parent link='palm'/><child link='right'/>
+    <mimic joint='a'/></joint></robot>"""
 
 
 def reading(position, velocity=0.0, effort=math.nan):
@@ -94,3 +102,35 @@ def test_a_chart_of_joints_at_rest_is_not_all_noise():
 
 def test_a_chart_of_joints_that_move_is_as_high_as_they_go():
     np.testing.assert_allclose(span_row(np.array([[-1.0, 2.0, 0.0]]), 0.5), [-1.0, 2.0, -1.0])
+
+
+def test_a_long_history_keeps_its_window():
+    history = JointHistory(window_s=1.0)
+    for k in range(1000):
+        history.add(0.01 * k, {"j0": reading(k), "j1": reading(-k)}, {})
+    ages, readings, _ = history.table(Quantity.POSITION, now_s=9.99)
+    np.testing.assert_allclose(ages, np.arange(-1.0, 0.001, 0.01), atol=1e-9)
+    np.testing.assert_array_equal(readings, [np.arange(899, 1000), -np.arange(899, 1000)])
+
+
+def test_nothing_is_drawn_without_a_browser_nor_what_follows_another_joint():
+    watched, gui = [], MagicMock()
+    panel = PlotPanel(lambda: bool(watched))
+    gui.add_dropdown.return_value = MagicMock(value="/joint_states", options=("/joint_states",))
+    gui.add_checkbox.return_value = MagicMock(value=False)
+    panel.build(gui)
+    robot = parse_urdf(GRIPPER)
+    states = JointStates({"a": reading(1.0), "b": reading(1.0)}, received_s=1.0)
+    snapshot = Snapshot(
+        made_s=1.0,
+        descriptions={"/robot_description": Description("/robot_description", "", robot)},
+        joint_states={"/joint_states": states},
+    )
+    legend = gui.add_html.return_value
+    legend.content = ""
+    panel.update(snapshot)
+    assert legend.content == ""
+    watched.append("a browser")
+    panel.update(replace(snapshot, made_s=2.0))
+    assert "</span> a</span>" in legend.content
+    assert "</span> b</span>" not in legend.content
